@@ -4,6 +4,7 @@ from pydantic import BaseModel
 
 from schemas.diagnosis_result import SpecimenView
 from schemas.feedforward_result import FeedforwardView
+from schemas.result import RigStated
 
 Matrix = list[list[float]]
 
@@ -188,6 +189,7 @@ class SizesView(BaseModel):
     servo_valve: str
     notes: str
     volume: float | None
+    rig: RigStated | None = None
 
 
 class CarriedView(BaseModel):

@@ -9,6 +9,7 @@ import typer
 
 from app.cli.output import STANDARD_OUTPUT, check_target, write_json
 from app.cli.preprocessing_options import NoRunExclusion, switches
+from app.cli.rig_option import RigFile, on_rig
 from ident.words.number import count
 from ident.words.severity import level, levels
 from ident.words.uses import data
@@ -22,6 +23,7 @@ if TYPE_CHECKING:
 def check(
     matrix: Annotated[Path, typer.Argument(metavar="MATRIX", help="Data set: a folder, its matrix.yaml, or a .zip.")],
     json: Annotated[Path | None, typer.Option(metavar="FILE", help="Write the findings as JSON; - is stdout.")] = None,
+    rig: RigFile = None,
     no_run_exclusion: NoRunExclusion = False,
 ) -> None:
     """List and check the contents of a data set.
@@ -35,7 +37,7 @@ def check(
     from ident.readers import read_matrix
 
     check_target(json)
-    read = screen(read_matrix(matrix), switches(no_run_exclusion=no_run_exclusion))
+    read = screen(on_rig(read_matrix(matrix), rig), switches(no_run_exclusion=no_run_exclusion))
     findings = findings_of(read)
     if json is not None:
         write_json([asdict(finding) for finding in findings], json)

@@ -9,6 +9,7 @@ import typer
 
 from app.cli.given import read_fit
 from app.cli.output import write_bytes, write_json
+from app.cli.rig_option import RigFile, rig_in
 from ident.errors import Unusable
 
 if TYPE_CHECKING:
@@ -30,15 +31,18 @@ def control(
         str, typer.Option(metavar="NAME", help="feedback or two-degree (two degrees of freedom).")
     ] = "feedback",
     seed: Annotated[int, typer.Option(min=0, max=2**31 - 1, help="Random seed of the draws from the covariance.")] = 0,
+    rig: RigFile = None,
 ) -> None:
     """Design a tracking controller by H-infinity loop shaping.
 
     The design uses the linear part of the fit and the specimen, gain, sample rate and delay of the case. It is tested
     on 100 models drawn from the covariance of the fit.
     """
+    from dataclasses import replace
+
     from app.cli.tables import show
     from ident.hybrid.case import read_case
-    from ident.hybrid.controller_design import design_controller
+    from ident.hybrid.controller_design import design_controller, held_to_limits
     from ident.hybrid.target import QIAN2014_TARGET
 
     result, given = read_fit(fit), read_case(case)
@@ -47,6 +51,7 @@ def control(
         result, given.physical, sample_rate=given.sample_rate, gain=given.gain, piston_area=given.piston_area,
         delay=given.delay, target=wanted, structure=structure, seed=seed,
     )  # fmt: skip
+    made = held_to_limits(made, result, given if rig is None else replace(given, rig=rig_in(rig)))
     _write(made, out, given.name)
     show(made.listings())
     print(f"wrote {', '.join(FILES)} to {out}")

@@ -11,6 +11,7 @@ from app.cli.arguments import effect_values
 from app.cli.given import read_fit
 from app.cli.output import STANDARD_OUTPUT, check_target, write_bytes, write_json
 from app.cli.progress import shown
+from app.cli.rig_option import RigFile, rig_in
 
 if TYPE_CHECKING:
     from ident.figures import Chart
@@ -40,6 +41,7 @@ def hybrid(
     shares: Annotated[
         bool, typer.Option("--map", help="Also map stability over the physical/numerical split.")
     ] = False,
+    rig: RigFile = None,
     json: Annotated[Path | None, typer.Option(metavar="FILE", help="Write the scores as JSON; - is stdout.")] = None,
     out: Annotated[Path | None, typer.Option(metavar="DIR", help="Write the figures: svg, png, pdf, json.")] = None,
 ) -> None:
@@ -56,6 +58,7 @@ def hybrid(
     check_target(json)
     result, of = read_fit(fit), read_case(case)
     of = of if ground is None else of.with_ground(ground)
+    of = of if rig is None else replace(of, rig=rig_in(rig))
     effects = effect_values(effect or [], result.model)
     acting = controller_called(controller, result, of)
     with shown() as report:

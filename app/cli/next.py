@@ -9,6 +9,7 @@ import typer
 
 from app.cli.given import read_diagnosis
 from app.cli.output import STANDARD_OUTPUT, check_target, write_json
+from app.cli.rig_option import RigFile, on_rig
 
 
 def next_(
@@ -16,6 +17,7 @@ def next_(
     diagnosis: Annotated[Path, typer.Option(metavar="D.json", help="File from `servoident diagnose --json`.")],
     out: Annotated[Path, typer.Option(metavar="DIR", help="Folder for command.csv, command.mat, experiment.json.")],
     seed: Annotated[int, typer.Option(min=0, max=2**31 - 1, help="Seed of the command signal.")] = 0,
+    rig: RigFile = None,
     json: Annotated[Path | None, typer.Option(metavar="FILE", help="Write the proposal as JSON; - is stdout.")] = None,
 ) -> None:
     """Propose the next run to record.
@@ -28,7 +30,7 @@ def next_(
 
     check_target(json)
     in_question = competing_models(read_diagnosis(diagnosis))
-    proposal = propose(in_question, read_matrix(matrix), seed)
+    proposal = propose(in_question, on_rig(read_matrix(matrix), rig), seed)
     proposal.write(out)
     if json is not None:
         write_json(proposal.to_json(), json)

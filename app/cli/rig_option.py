@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 if TYPE_CHECKING:
+    from ident.matrix import Matrix
     from ident.rig.limits import RigLimits
 
 RigFile = Annotated[
@@ -23,3 +24,12 @@ def rig_in(file: Path | None) -> RigLimits | None:
     from ident.readers.rig import read_rig
 
     return None if file is None else read_rig(file)
+
+
+def on_rig(matrix: Matrix, file: Path | None) -> Matrix:
+    """The matrix with the limits in the file of `--rig` in place of its own. Raises Unusable."""
+    from dataclasses import replace
+
+    if file is None:
+        return matrix
+    return replace(matrix, actuator=replace(matrix.actuator, rig=rig_in(file)))

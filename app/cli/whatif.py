@@ -13,6 +13,7 @@ from app.cli.compare import FORMATS
 from app.cli.given import read_fit
 from app.cli.output import STANDARD_OUTPUT, check_target, write_bytes, write_json
 from app.cli.progress import shown
+from app.cli.rig_option import RigFile, rig_in
 from ident.words.nearest import did_you_mean
 
 if TYPE_CHECKING:
@@ -69,7 +70,7 @@ Out = Annotated[Path | None, typer.Option(metavar="DIR", help="Write the figures
 def whatif(
     fit: FitPath, set_: Changed = None, fitted: Fitted = None, specimen: OfSpecimen = None, gain: Gains = None,
     peak: AtPeak = None, tolerance: Near = None, axes: InAxes = None, up_to: UpTo = None, seed: Seed = 0,
-    json: Json = None, out: Out = None,
+    rig: RigFile = None, json: Json = None, out: Out = None,
 ) -> None:  # fmt: skip
     """Predict the response after a change of the machine.
 
@@ -84,7 +85,7 @@ def whatif(
     gains = None if gain is None else _range(gain, "--gain", "LO:HI")
     target = _target(peak, tolerance, axes or [], up_to)
     with shown() as report:
-        found = what_if(result, change, gains, target, seed, report)
+        found = what_if(result, change, gains, target, seed, report, rig_in(rig))
     if json is not None:
         write_json(found.to_json(), json)
     if json != STANDARD_OUTPUT:

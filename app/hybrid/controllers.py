@@ -18,7 +18,7 @@ from app.paging import cursor, keys_of
 from app.tables import ControllerRow
 from ident.fit.result import FitResult
 from ident.hybrid.controller import SampledController
-from ident.hybrid.controller_design import ControllerDesign, design_controller
+from ident.hybrid.controller_design import ControllerDesign, design_controller, held_to_limits
 from ident.hybrid.export import as_header, as_mat
 from ident.hybrid.target import QIAN2014_TARGET, target_of
 from schemas.hybrid import ControllerRequest
@@ -51,10 +51,11 @@ def _designed(context: Context, asked: dict[str, Any]) -> ControllerDesign:
     fit = FitResult.from_json(fits.find(context, asked["fit"]).result)
     case = AskedCase(asked["case"], None).read()
     target = target_of(asked["target"]) if "target" in asked else QIAN2014_TARGET
-    return design_controller(
+    made = design_controller(
         fit, case.physical, sample_rate=case.sample_rate, gain=case.gain, piston_area=case.piston_area,
         delay=case.delay, target=target, structure=asked["structure"], seed=asked["seed"],
     )  # fmt: skip
+    return held_to_limits(made, fit, case)
 
 
 def made_as(context: Context, controller: str) -> ControllerView | None:

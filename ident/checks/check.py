@@ -18,6 +18,7 @@ from ident.checks.passivity import turned_sign
 from ident.checks.ranges import ranges
 from ident.checks.repeats import repeats
 from ident.checks.response import Response, respond
+from ident.checks.rig import BEYOND, beyond_rig
 from ident.checks.scale import scale
 from ident.checks.statements import statements
 from ident.checks.summary import RunSummary, Summary, describe
@@ -35,13 +36,13 @@ ORDER = ("fault", "doubt", "note")
 
 @stated_kinds
 def check(matrix: Matrix) -> Findings:
-    """Everything that a person should know about the data: faults first, then doubts, then notes."""
+    """Everything that a person should know about the data: what left the rig's limits, faults, doubts, notes."""
     matrix = screen(matrix)
     measured = [(run, respond(run)) for run in matrix.runs]
     found = [finding for run, response in measured for finding in one_run(run, response, matrix.actuator)]
     found += [*delays(measured), *(scaled := list(scale(measured))), *repeats(matrix), *statements(matrix)]
     found += unit_factor(measured, [one.run for one in scaled])
-    return Findings(sorted(_once(found, matrix), key=lambda finding: ORDER.index(finding.severity)))
+    return Findings(sorted(_once(found, matrix), key=lambda each: (each.code != BEYOND, ORDER.index(each.severity))))
 
 
 def _once(found: Sequence[Finding], matrix: Matrix) -> Iterator[Finding]:
@@ -70,3 +71,4 @@ def one_run(run: Run, response: Response | None, actuator: Actuator) -> Iterator
     yield from offset(run)
     yield from feedback(run)
     yield from ranges(run, actuator)
+    yield from beyond_rig(run, actuator)

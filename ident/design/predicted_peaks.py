@@ -96,12 +96,18 @@ class UncertainMachine:
 
     def peaks(self, run: Run) -> Peaks:
         """The peaks of a run that begins and ends at rest, over the corners."""
+        off, found = self._linear(run)
+        return self._with_flow(found.worst if self.is_linear else self._simulated(run, off, found))
+
+    def linear_peaks(self, run: Run) -> Peaks:
+        """The same of the linear part alone, which takes no simulation."""
+        return self._with_flow(self._linear(run)[1].worst)
+
+    def _linear(self, run: Run) -> tuple[dict[str, Array], _Corners]:
+        """The deviations at the corners, and the peaks of the linear part there."""
         core = self._chain(self.preset.core)
         off = corners({name: w for name, w in self.half_widths.items() if name in core.symbols}, self.seed)
-        found = _linear_peaks(core, self._symbols(core, run, off), self.signals, run)
-        if self.is_linear:
-            return self._with_flow(found.worst)
-        return self._with_flow(self._simulated(run, off, found))
+        return off, _linear_peaks(core, self._symbols(core, run, off), self.signals, run)
 
     def _with_flow(self, peaks: Peaks) -> Peaks:
         """With the flow that moves the piston, where the model has none of its own."""

@@ -21,6 +21,7 @@ from numpy.typing import NDArray
 from ident.design.candidate_runs import candidate_runs
 from ident.design.excitation import KINDS
 from ident.design.experiment import Experiment
+from ident.design.inside_rig import inside_rig, machines_of, proposed_inside
 from ident.design.rival import PRIOR, Rival, deviation_of_noise
 from ident.design.rivals import Rivals
 from ident.errors import Unusable
@@ -30,6 +31,7 @@ from ident.fit.reduction import excited_band
 from ident.matrix import Matrix
 from ident.parallel import each
 from ident.preprocessing import prepare
+from ident.rig.limits import RigLimits
 from ident.run import Run
 
 Array = NDArray[np.float64]
@@ -62,7 +64,7 @@ class Worth:
 def propose(in_question: Rivals, matrix: Matrix, seed: int = 0) -> Experiment:
     """The best further run for the models in question. Raises Unusable where there is none, or none can be run."""
     rivals = _rivals(in_question, matrix)
-    worths = _judged(rivals, list(candidate_runs(rivals[0].matrix, rivals[0].band, seed)))
+    worths = _judged(rivals, _candidates(rivals, seed))
     if not worths:
         raise Unusable("no-experiment", "the models are stable in no run that could be proposed", "models",
                        "fit the models again")  # fmt: skip
@@ -75,14 +77,40 @@ def propose(in_question: Rivals, matrix: Matrix, seed: int = 0) -> Experiment:
         best.experiment, separation=best.separation, so_far=so_far, typical=typical, information=best.information,
         std_errors=best.std_errors,
     )  # fmt: skip
-    return replace(found, text=_text(found, rivals, tells_apart))
+    return _within_rig(replace(found, text=_text(found, rivals, tells_apart)), rivals, tells_apart)
 
 
 def ranked(in_question: Rivals, matrix: Matrix, seed: int = 0) -> list[Worth]:
     """Every run that was weighed, the one that separates the models best first."""
     rivals = _rivals(in_question, matrix)
-    worths = _judged(rivals, list(candidate_runs(rivals[0].matrix, rivals[0].band, seed)))
+    worths = _judged(rivals, _candidates(rivals, seed))
     return sorted(worths, key=lambda worth: worth.rank, reverse=True)
+
+
+def _candidates(rivals: Sequence[Rival], seed: int) -> list[Experiment]:
+    """The runs that are weighed, inside the limits of the rig where the matrix states any."""
+    found, first = list(candidate_runs(rivals[0].matrix, rivals[0].band, seed)), rivals[0].matrix.runs[0]
+    limits = _rig(rivals[0].matrix)
+    if limits is None or not found:
+        return found
+    short = min(_TRIAL / first.sample_rate, found[0].seconds)
+    return inside_rig(found, machines_of(rivals), limits, lambda one: _run(one.lasting(short), "trial", first))
+
+
+def _within_rig(found: Experiment, rivals: Sequence[Rival], tells_apart: bool) -> Experiment:
+    """The run that is proposed, made smaller where effects or its length ask for it; its text says what it takes."""
+    limits, first = _rig(rivals[0].matrix), rivals[0].matrix.runs[0]
+    if limits is None:
+        return found
+    kept, takes = proposed_inside(found, machines_of(rivals), limits, lambda one: _run(one, "next", first))
+    said = "No limit of the rig can be judged." if takes is None else f"Inside the limits of the rig: {takes}."
+    return replace(kept, text=f"{said} {_text(kept, rivals, tells_apart)}")
+
+
+def _rig(matrix: Matrix) -> RigLimits | None:
+    """The limits that the matrix states under `rig`; None where there are none, or the period is unknown."""
+    stated = matrix.actuator.rig is not None and matrix.runs[0].time_unit == "s"
+    return matrix.actuator.rig_limits if stated else None
 
 
 def _rivals(in_question: Rivals, matrix: Matrix) -> list[Rival]:

@@ -57,8 +57,10 @@ class Spread:
 def corners(half_widths: Mapping[str, float], seed: int = 0) -> dict[str, Array]:
     """Deviations (c,) of each parameter: none of any, then every corner of the box; of more than seven, 128 of them."""
     names = [name for name, width in half_widths.items() if width > 0]
+    if not names:
+        return {}
     if len(names) <= _WHOLE:
-        signs = np.array(list(product((-1.0, 1.0), repeat=len(names)))).reshape(-1, len(names))
+        signs = np.array(list(product((-1.0, 1.0), repeat=len(names))))
     else:
         signs = np.random.default_rng(seed).choice([-1.0, 1.0], (_DRAWN, len(names)))
     return {name: np.concatenate([[0.0], half_widths[name] * signs[:, i]]) for i, name in enumerate(names)}

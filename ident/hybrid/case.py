@@ -8,6 +8,7 @@
     sample_rate: 4096 Hz        # of the outer loop
     delay: 1                    # samples from a measurement to the command that answers it
     noise:      {displacement: 1 um, force: 1 N, quantisation: {displacement: 1 um, force: 0.1 N}, seed: 0}
+    rig:        {stroke: 152.4 mm, speed: 0.5 m/s}      # limits; where none are stated those of the fit's matrix
 
 A matrix is a list of rows, `{matrix: [[...]], unit: kN/m}` or a list of lists of quantities; a plain list of quantities
 is a diagonal; `damping: {ratio: 5 %}` gives every mode that ratio.
@@ -29,7 +30,9 @@ from ident.errors import Unusable
 from ident.hybrid.ground import Ground, ground_of
 from ident.readers.fields import Fields
 from ident.readers.loop_settings import loop_gain, sample_rate
+from ident.readers.rig import rig_of
 from ident.readers.strict_yaml import read_yaml
+from ident.rig.limits import RigLimits
 from ident.run import Specimen
 from ident.units.quantity import quantity, shown, split
 from ident.words.nearest import did_you_mean
@@ -37,7 +40,7 @@ from ident.words.nearest import did_you_mean
 Array = NDArray[np.float64]
 _KEYS = (
     "name", "structure", "physical", "gain", "piston_area", "supply_pressure", "ground", "sample_rate", "delay",
-    "noise",
+    "noise", "rig",
 )  # fmt: skip
 _LARGEST, _STOREYS = 1_000_000, 12
 _LATEST = 500
@@ -82,6 +85,7 @@ class Case:
     sample_rate: float = 4096.0
     delay: int = 1
     noise: Noise = field(default_factory=Noise)
+    rig: RigLimits | None = None
 
     def __post_init__(self) -> None:
         n = len(self.mass)
@@ -262,6 +266,7 @@ def case_of(data: Any, base: Path | None = Path(), name: str = "case") -> Case:
         sample_rate=4096.0 if rate is None else rate,
         delay=delay,
         noise=_noise(top.data["noise"]) if "noise" in top else Noise(),
+        rig=rig_of(top.data["rig"]) if "rig" in top else None,
     )
 
 

@@ -3,16 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 
 from ident.fit.result import FitResult
+from ident.hybrid.case import Case
 from ident.hybrid.draws import DRAWS, drawn_parameters
 from ident.hybrid.linear_plant import linear_plant
 from ident.hybrid.loop_shaping import Design, design
 from ident.hybrid.margins import Margins, margins
+from ident.hybrid.rig import simulate_hybrid
+from ident.hybrid.rig_limits import limits_of
 from ident.hybrid.robustness import (
     Robustness,
     frequencies,
@@ -29,12 +32,16 @@ LITTLE_MARGIN = 2.5
 
 @dataclass(frozen=True)
 class ControllerDesign(Shown):
-    """A design, its margins, its robustness over the fitted covariance (None where that is unknown), and notes."""
+    """A design, its margins, its robustness over the fitted covariance (None where that is unknown), and notes.
+
+    `beyond` says what leaves the limits of the rig where the controller runs its case.
+    """
 
     design: Design
     margins: Margins
     robustness: Robustness | None
     notes: tuple[str, ...]
+    beyond: tuple[str, ...] = ()
 
     def to_json(self) -> dict[str, Any]:
         """The JSON of the controller, with the design beside it."""
@@ -50,7 +57,7 @@ class ControllerDesign(Shown):
             },
             "order": {"full": made.full.order, "reduced": made.controller.order},
             "margins": self.margins.to_json(),
-            "notes": list(self.notes),
+            "notes": [*self.beyond, *self.notes],
         }
         if self.robustness is not None:
             counts = {name: getattr(self.robustness, name) for name in ("draws", "stable", "within")}
@@ -58,7 +65,8 @@ class ControllerDesign(Shown):
         return {**made.controller.to_json(), "design": found}
 
     def listings(self) -> Iterator[Listing | str]:
-        """What the loop can stand and how it follows, and the notes."""
+        """What leaves the limits of the rig, what the loop can stand and how it follows, the notes."""
+        yield from self.beyond
         yield Listing("", ("quantity", "value", "unit"), self.rows, ("value",))
         for note in self.notes:
             yield f"note: {note}"
@@ -116,6 +124,18 @@ def design_controller(
         judged = robustness(made.controller, delay, plants, wanted, undetermined(fit))
     found = margins(made.loop)
     return ControllerDesign(made, found, judged, _notes(found, plant.left_out, judged))
+
+
+def held_to_limits(made: ControllerDesign, fit: FitResult, case: Case) -> ControllerDesign:
+    """The design with what leaves the limits of the rig when it runs its case, which is simulated where any is stated.
+
+    Raises Unusable as :func:`ident.hybrid.rig.simulate_hybrid`.
+    """
+    if not limits_of(fit, case):
+        return made
+    run = simulate_hybrid(fit, case, made.design.controller)
+    beyond = run.beyond if run.ended is None else ("beyond the rig: the case runs away under this controller",)
+    return replace(made, beyond=beyond)
 
 
 def _notes(found: Margins, left_out: tuple[str, ...], judged: Robustness | None) -> tuple[str, ...]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from time import perf_counter
 from typing import Any, Protocol
 
@@ -15,6 +15,7 @@ from ident.hybrid.case import Case
 from ident.hybrid.controller import SampledController
 from ident.hybrid.loop import LANES, Rig, advance_under, close, read
 from ident.hybrid.machine import DISPLACEMENT, FORCE, Machine, machine
+from ident.hybrid.rig_limits import leaving
 from ident.hybrid.scores import Scores, scores
 from ident.hybrid.stability import critical_delay, spectral_radius
 from ident.hybrid.substructure import numerical, reference
@@ -60,7 +61,7 @@ class HybridResult(Shown):
     `measured` is what the displacement transducer read, `numerical` what the substructure asked for, `reference` what
     the whole structure does, `force` what the load cell read, `command` what the controller gave. `scores` are None
     where it ran away, at `ended` s. `radius` is the largest magnitude of a pole of the whole sampled loop, None where
-    the loop is not linear. `seconds` is how long the simulation took.
+    the loop is not linear. `seconds` is how long the simulation took, `beyond` says what leaves the limits of the rig.
     """
 
     case: Case
@@ -80,6 +81,7 @@ class HybridResult(Shown):
     command: Array
     force: Array
     notes: tuple[str, ...] = ()
+    beyond: tuple[str, ...] = ()
 
     @property
     def sample_rate(self) -> float:
@@ -87,7 +89,8 @@ class HybridResult(Shown):
         return self.case.sample_rate
 
     def listings(self) -> Iterator[Listing | str]:
-        """The scores, the verdict, the notes."""
+        """What leaves the limits of the rig, the scores, the verdict, the notes."""
+        yield from self.beyond
         rows: list[tuple[str, str, str]] = []
         if (of := self.scores) is not None:
             rows = [
@@ -128,7 +131,7 @@ class HybridResult(Shown):
             "samples": len(self.ground),
             "units": {"scores": "1, delay s", "command_rms": "m", "critical_delay": "s", "ended": "s",
                       "sample_rate": "Hz", "delay": "samples", "seconds": "s"},
-            "notes": list(self.notes),
+            "notes": [*self.beyond, *self.notes],
             "seconds": self.seconds,
         }  # fmt: skip
 
@@ -140,10 +143,14 @@ def simulate_hybrid(
     """Simulate a case on the identified machine of a fit, at rest in the beginning.
 
     Without a `controller` the command is what is wanted. `effects` are further effects of the machine: values by name,
-    SI. Raises Unusable where fit and case do not go together, or the controller has another sample rate than the case;
-    what `report` raises to cancel passes through.
+    SI. Its motion is held against the limits of the rig that the case or the fit states. Raises Unusable where fit and
+    case do not go together, or the controller has another sample rate than the case; what `report` raises to cancel
+    passes through.
     """
-    return simulate_machine(machine(fit, case, effects), case, controller, effects, report)
+    found = simulate_machine(machine(fit, case, effects), case, controller, effects, report)
+    if found.ended is not None:  # it ran away, which says more
+        return found
+    return replace(found, beyond=leaving(fit, case, found.measured, found.command, found.force))
 
 
 def simulate_machine(

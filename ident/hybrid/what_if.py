@@ -18,9 +18,11 @@ from ident.hybrid.fig_19 import said_of_fig_19
 from ident.hybrid.oil_column import PeakSearch, find_peak
 from ident.hybrid.peak_problem import PeakTarget
 from ident.hybrid.peaks import Peak, peaks
+from ident.hybrid.reached_limits import reached
 from ident.matrix import Actuator
 from ident.plain import written
 from ident.progress import Report, silent
+from ident.rig.limits import RigLimits
 from ident.run import Specimen
 from ident.words.number import trimmed
 from ident.words.shown import Listing, Shown
@@ -118,9 +120,11 @@ def _in_words(of: Response, after: str = "") -> str:
 
 def what_if(
     fit: FitResult, change: Change, gains: tuple[float, float] | None = None, peak: PeakTarget | None = None,
-    seed: int = 0, report: Report = silent,
+    seed: int = 0, report: Report = silent, rig: RigLimits | None = None,
 ) -> WhatIf:  # fmt: skip
     """The machine of a fit after a change, at the two ends of a range of gains Kp; what would put a `peak` there.
+
+    Where limits of the `rig`, or of the fit's matrix, are stated, the first notes say which command reaches them.
 
     Responses are the linearisation of the fitted chain (:meth:`ident.chain.chain.Chain.linearise`). Raises Unusable
     as :func:`ident.hybrid.changed_machine.changed_machine` does, and for gains that are no range above 0.
@@ -130,6 +134,7 @@ def what_if(
     band = _band(machine, ends)
     responses = tuple(response(machine, gain, band) for gain in ends)
     oil, found = _oil(fit, machine), None
+    limits = rig or (fit.actuator.rig if fit.actuator else None)
     with_peak: tuple[Response, ...] = ()
     if peak is not None:
         found = find_peak(machine, replace(peak, gains=tuple(gain or 1.0 for gain in ends)), seed, report=report)
@@ -138,7 +143,8 @@ def what_if(
         model=fit.model, output=machine.output, actuator=machine.actuator, specimen=machine.specimen,
         parameters=dict(machine.parameters), responses=responses, locus=_locus(machine, ends),
         critical_gain=_critical_gain(machine, ends), bulk_modulus=oil,
-        peak=found, with_peak=with_peak, notes=(*_notes(machine, responses, oil), *(found.text if found else ())),
+        peak=found, with_peak=with_peak,
+        notes=(*reached(machine, ends, limits), *_notes(machine, responses, oil), *(found.text if found else ())),
     )  # fmt: skip
 
 

@@ -91,6 +91,13 @@ class RigLimits:
         found = [Utilisation(name, peaks[name], allowed) for name, allowed in self.allowed.items() if name in peaks]
         return tuple(sorted(found, key=lambda each: each.share, reverse=True))
 
+    def leaving(self, peaks: Mapping[str, float]) -> tuple[str, ...]:
+        """A sentence for each limit that peaks leave, the worst first, with the factor that would keep it."""
+        left = (each for each in self.utilisation(peaks) if each.exceeded)
+        return tuple(
+            f"beyond the rig: {each}; {each.limit} is kept at {1 / each.share:.3g} times that" for each in left
+        )
+
     def unjudged(self, peaks: Mapping[str, float]) -> tuple[str, ...]:
         """The limits that are stated, and that these peaks say nothing of."""
         return tuple(name for name in self.stated if name not in peaks)

@@ -25,6 +25,7 @@ from ident.fit.simulated_fitness import SimulatedFitness
 from ident.fit.space import search_space
 from ident.matrix import Actuator, Matrix
 from ident.presets import Preset, preset
+from ident.rig.limits import RigLimits
 from ident.run import Run
 from ident.workflows import identify
 from tests.fit.recovery import NOISE, matrix
@@ -225,3 +226,16 @@ def test_where_no_run_could_be_made_that_is_said(monkeypatch):
     monkeypatch.setattr("ident.design.proposal.candidate_runs", lambda *_: iter(()))
     with pytest.raises(Unusable, match="stable in no run"):
         propose(question(confused()[1]), confused()[0])
+
+
+def test_a_proposal_stays_inside_the_limits_of_the_rig():
+    """The speed that the models predict bounds its amplitude; played on the reference it keeps the limit."""
+    few, models = confused()
+    free = propose(question(models), few)
+    fastest = float(np.abs(np.diff(recorded(free, 3).measured)).max()) * free.sample_rate
+    rig = RigLimits(speed=0.5 * fastest)
+    proposal = propose(question(models), replace(few, actuator=replace(few.actuator, rig=rig)))
+    assert proposal.text.startswith("Inside the limits of the rig: speed")
+    smooth = np.convolve(recorded(proposal, 3).measured, np.ones(8) / 8, "valid")
+    assert np.abs(np.diff(smooth)).max() * proposal.sample_rate < rig.speed
+    assert "rig" not in free.text
