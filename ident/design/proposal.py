@@ -241,9 +241,9 @@ def _text(found: Experiment, rivals: Sequence[Rival], tells_apart: bool) -> str:
             said += f" The runs so far separate them by {found.so_far:.3g}."
         return f"Run a {found.conditions}. {said}"
     best = sorted(found.std_errors.items(), key=lambda item: item[1])[:2]
-    left = " and ".join(f"of {name} to {100 * share:.0f} %" for name, share in best)
+    left = " and ".join(f"{100 * share:.0f} % ({name})" for name, share in best)
     why = " No feasible run separates the models." if len(rivals) > 1 else ""
     return (
         f"Run a {found.conditions}.{why} Expected information gain: {found.information:.2g} nats. "
-        f"The standard error falls {left} of its present value."
+        f"The standard errors fall to {left} of their present values."
     )
