@@ -45,9 +45,10 @@ def plan(
     seed: Annotated[int, typer.Option(min=0, max=2**31 - 1, help="Seed of the commands.")] = 0,
     json: Annotated[Path | None, typer.Option(metavar="FILE", help="Write the plan as JSON; - is stdout.")] = None,
 ) -> None:
-    """Plan the runs of a program for a rig: command files, and a matrix.yaml that the answers drop into.
+    """Plan the runs of a test program for a rig.
 
-    Each command is held against the limits of the rig and scaled to stay inside. Exit status 1 where a run is refused.
+    It writes the command files, and a matrix.yaml for the measured records. Each command is checked against the limits
+    of the rig, and scaled to stay inside them. Exit status 1 if a run is refused.
     """
     from app.cli.tables import show
     from ident.planning.plan import plan as planned
