@@ -29,20 +29,19 @@ def residual_correlation(
     found, run = correlation(compared, lags), compared.run
     panels, tables, told = [], {}, []
     for name, title, shown in (
-        ("auto", "Residual autocorrelation (–)", found.auto),
-        ("cross", "Cross-correlation, residual and command (–)", found.cross),
+        ("auto", "Autocorrelation (–)", found.auto),
+        ("cross", "Cross-correlation (–)", found.cross),
     ):
         if shown is None:
             continue
         tables[name] = _rows(shown, run)
         panels.append(_panel(name, title, shown.band, run, look))
-        told.append(
-            f"{percent(shown.outside)} {'of the autocorrelation' if name == 'auto' else 'of the cross-correlation'}"
-        )
+        told.append(f"{percent(shown.outside)} of the {'auto' if name == 'auto' else 'cross-'}correlation")
     subtitle = [
         words.verdict(fit),
         words.describe(run),
-        f"lags outside the {SURE:.0%} band: {', '.join(told)} (expected by chance: 1.00 %)",
+        f"lags outside the {SURE:.0%} band (1.00 % expected):",
+        ", ".join(told),
     ]
     headline = alt.TitleParams(words.headline(actuator, "residual whiteness and cross-correlation"), subtitle=subtitle)
     chart: Chart = alt.vconcat(*panels, title=headline, spacing=14, datasets=datasets(tables)).configure(

@@ -23,7 +23,7 @@ def test_a_term_is_proposed_added_and_the_error_is_the_noise_s(page, site, scree
     diagnosed(site, fit, propose=False)
     page.goto(f"{site.address}/?token={site.token}")
     page.goto(f"{site.address}/fits/{fit}#missing")
-    expect(page.locator("#left")).to_contain_text("Something is left")
+    expect(page.locator("#left")).to_contain_text("Unmodelled dynamics remain")
     page.get_by_role("button", name="Search for unknown terms").click()
     if not full:
         page.locator("#missing").get_by_role("button", name="Cancel").click(timeout=story.LONG)
@@ -35,7 +35,7 @@ def test_a_term_is_proposed_added_and_the_error_is_the_noise_s(page, site, scree
     expect(card).to_contain_text("Acts at one part of the way")
     expect(card.locator("math")).to_have_count(1)
     expect(card.locator(".evidence canvas")).to_be_visible(timeout=story.LONG)  # the term through what is missing
-    expect(page.locator("#left")).to_contain_text("Something is left")  # what is proposed is no finding
+    expect(page.locator("#left")).to_contain_text("Unmodelled dynamics remain")  # what is proposed is no finding
     if screenshots:
         everywhere(page, screenshots, "proposed")
     assert barriers(page) == []
