@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 Array = NDArray[np.float64]
 _APART = 0.1  # of an axis, from which on two starts are distinct
 _SAME = 1e-6  # relative difference of errors that is none
-_AGREE = 1e-3  # relative difference of errors of one optimum, found twice
+AGREE = 1e-3  # relative difference of errors of one optimum, found twice
 _BOUND = 1e-6  # of an axis
 SETTLED = 3  # starts that end together
 _NEAR = 0.01  # relative difference of errors that is no reason to prefer one end to another
@@ -44,7 +44,7 @@ def valley(ends: Sequence[End]) -> list[Array]:
 
 def agreeing(ends: Sequence[End], best: End) -> int:
     """How many ends have the error of the best."""
-    return sum(bool(end.error <= best.error * (1 + _AGREE)) for end in ends)
+    return sum(bool(end.error <= best.error * (1 + AGREE)) for end in ends)
 
 
 def at_bound(end: End) -> bool:

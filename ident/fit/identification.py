@@ -30,6 +30,7 @@ from ident.fit.simulated_fitness import SimulatedFitness, shortened
 from ident.fit.simulated_runs import is_simulated
 from ident.fit.space import search_space
 from ident.fit.summary import noticed, summarise
+from ident.fit.wider_bounds import beyond_bounds
 from ident.fit.windows import in_longer_windows, in_windows
 from ident.matrix import Matrix
 from ident.noise.floor import noise_floors
@@ -173,6 +174,8 @@ class Identification:
         count = int(self.search.options.get("starts", 0))
         drawn = np.array(state["history"][0]["population"])[: -max(_FURTHER, count) - 1 : -1]
         found = multistart(self.searched, objective, distinct(members, CANDIDATES), self.report, drawn, count)
+        given = {self.preset.parameter(name).in_equations for name in of_model(self.settings, self.preset).bounds}
+        found = beyond_bounds(found, self.searched, objective, given, self.report, drawn)
         # A measured motion that a specimen integrates is known; only what a command drives is disturbed on its way.
         if self._integrates and self.preset.driven_by == "command":
             if not state.get("horizon"):

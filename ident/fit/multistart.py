@@ -13,6 +13,7 @@ from ident.fit.fitness import Fitness, Local
 from ident.fit.levenberg_marquardt import STEPS
 from ident.fit.result import Starts
 from ident.fit.simulated_fitness import SimulatedFitness
+from ident.fit.space import Space
 from ident.progress import Progress, Report
 from ident.run import Run
 
@@ -21,11 +22,21 @@ _RIVALS = 2  # ends that are followed to the last sample, beside the best
 
 
 @dataclass(frozen=True)
+class Beyond:
+    """A parameter that was searched on beyond its `bound`, SI, at which the fit left `error`."""
+
+    name: str
+    bound: float
+    error: float
+
+
+@dataclass(frozen=True)
 class Optimum:
     """The optimum of a fitness, and the fitness there; points that are as good, (k, p); where starts ended.
 
     The optimum is the first of the ends. `left_out` has the ids of runs that one model cannot explain beside the
-    others: `fitness` is that of the runs without them.
+    others: `fitness` is that of the runs without them. Where bounds were left `beyond` has them, and `searched` is the
+    space of the search.
     """
 
     fitness: Fitness
@@ -35,6 +46,8 @@ class Optimum:
     ends: tuple[End, ...] = ()
     starts: Starts | None = None
     left_out: tuple[str, ...] = ()
+    beyond: tuple[Beyond, ...] = ()
+    searched: Space | None = None
 
 
 def multistart(

@@ -24,6 +24,7 @@ from ident.fit.search import evolution
 from ident.fit.settings import Settings
 from ident.fit.simulated_fitness import SimulatedFitness
 from ident.fit.slow_answer import slow_lag
+from ident.fit.space import Space
 from ident.fit.uncertainty import COMBINED, DETERMINED, Covariance, covariance
 from ident.noise.floor import Floors
 from ident.presets.preset import Combined
@@ -31,6 +32,7 @@ from ident.presets.record_units import SAMPLE
 from ident.run import Run, over_runs
 from ident.simulation.steps import FASTEST, MOST
 from ident.unstable import UNSTABLE
+from ident.words.engineering import quantity
 from ident.words.error import error_said
 from ident.words.plus_minus import determined
 
@@ -138,14 +140,15 @@ def summarise(
         data_hash=matrix.data_hash,
         notes=(
             *_notes(settings, objective, floors, fit_errors),
+            *_beyond(optimum, values, label),
             *told,
             *_alone(optimum.starts),
-            *_fast_modes(objective, point, state),
+            *_fast_modes(objective, point, state, optimum.searched or space),
             *_bad_runs(fit_errors, optimum.left_out),
         ),
         settings=settings.to_json(),
         searched=tuple(label[name][0] for name in space.names),
-        evolution=evolution(objective.space, state),
+        evolution=evolution(optimum.searched or space, state),
         actuator=matrix.actuator,
         preprocessing=matrix.preprocessing,
     )
@@ -332,12 +335,24 @@ def _hardly_explained(settings: Settings, objective: Fitness, error: float) -> I
     yield f"{_HARDLY_SAID}: the error is {error_said(error)} of the output. Likely causes: {'; '.join(causes)}."
 
 
-def _fast_modes(objective: Fitness, point: Array, state: Mapping[str, Any]) -> Iterator[str]:
-    """What is followed only roughly: vectors of the search, the model that was found."""
+def _beyond(optimum: Optimum, values: Mapping[str, float], label: Mapping[str, tuple[str, str]]) -> Iterator[str]:
+    """What was searched on beyond a bound that nobody set, and what that brought."""
+    first = {one.name: one for one in reversed(optimum.beyond)}
+    for name, one in first.items():
+        called, unit = label[name]
+        yield (
+            f"{called} ended at {quantity(one.bound, unit)}, a bound that nobody set, with an error of "
+            f"{error_said(one.error)}: it was searched beyond it, and is {quantity(values[name], unit)} with "
+            f"{error_said(optimum.here.error)}."
+        )
+
+
+def _fast_modes(objective: Fitness, point: Array, state: Mapping[str, Any], searched: Space) -> Iterator[str]:
+    """What is followed only roughly: vectors of the search, over the space `searched`, and the model that was found."""
     if not isinstance(objective, SimulatedFitness):
         return
     roughly = f"above {FASTEST:.3g} radians per sample the integrator, with {MOST} steps per sample, is inaccurate."
-    tried = (objective.space.values(np.array(entry["population"])) for entry in state["history"])
+    tried = (searched.values(np.array(entry["population"])) for entry in state["history"])
     count = sum(int(np.sum(np.abs(objective.fastest(values)) > FASTEST)) for values in tried)
     if count:
         yield f"{count} candidate models had dynamics that are too fast for the integrator: {roughly}"

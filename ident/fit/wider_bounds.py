@@ -1,0 +1,103 @@
+"""Bounds follow the record: what ends at a bound that nobody set is searched again beyond it.
+
+The ranges of a machine of unknown size are orders of magnitude. A mass, a lag or a delay that ends at the end of one
+says that the range was too narrow for this machine, and not that the machine is there.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterable, Iterator, Mapping
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ident.fit.ends import AGREE
+from ident.fit.fitness import Fitness
+from ident.fit.linear_fitness import LinearFitness
+from ident.fit.multistart import Beyond, Optimum, multistart
+from ident.fit.simulated_fitness import SimulatedFitness
+from ident.fit.space import Axis, Space
+from ident.progress import Report
+
+Array = NDArray[np.float64]
+FURTHER = 10.0
+"""Times as far reaches a range that was too narrow. Why: a decade is a step that a polish takes at once."""
+ROUNDS = 3  # of widening at most: a thousandfold; beyond it the parameter is not seen, and said to be at its bound
+WIDENED = ("kg", "s")
+"""Units of what is searched beyond its bound: masses, lags and delays. A ratio at its bound says what it is."""
+
+
+def beyond_bounds(
+    found: Optimum, searched: Fitness, objective: Fitness, given: Collection[str], report: Report,
+    drawn: Iterable[Array] = (),
+) -> Optimum:  # fmt: skip
+    """The optimum of an objective, or the one beyond the bounds that it ended at, where that leaves less.
+
+    `given` are parameters whose bounds somebody set, by the equations' names. Those of the machine that a paper's
+    bounds were stated for, and of a user's effects, are set as well. `drawn` are points of the unit cube, (p,), from
+    which it is searched, too, where the first starts do not end together.
+    """
+    best, stated = found, {*given, *_stated(objective)}
+    for _ in range(ROUNDS):
+        space, count = best.fitness.space, best.fitness.evaluations
+        names = [name for name in _at_end(best) if name not in stated]
+        if not names or not space.scale_free:
+            break
+        values = {name: float(value[0]) for name, value in space.values(best.point[None]).items()}
+        wider = replace(space, axes=tuple(_wider(axis, best) if axis.name in names else axis for axis in space.axes))
+        over = _over(objective, wider, count)
+        trial = multistart(_over(searched, wider, 0), over, list(_starts(best, wider, values, names)), report, drawn)
+        if not trial.here.error < best.here.error * (1.0 - AGREE):
+            best.fitness.evaluations = trial.fitness.evaluations
+            break
+        bounds = space.bounds(values)
+        left = tuple(Beyond(name, bounds[name][_upper(best, name)], best.here.error) for name in names)
+        best = replace(trial, beyond=(*best.beyond, *left), searched=found.fitness.space)
+    return best
+
+
+def _starts(best: Optimum, wider: Space, values: Mapping[str, float], names: Iterable[str]) -> Iterator[Array]:
+    """The optimum, and the middle of what is new of each axis: at the old bound the error may be flat."""
+    start = wider.point(values)
+    yield start
+    for name in names:
+        at, further = wider.names.index(name), start.copy()
+        further[at] = 0.5 * (start[at] + _upper(best, name))
+        yield further
+
+
+def _stated(objective: Fitness) -> Iterator[str]:
+    """Parameters of effects that state their own bounds."""
+    return (p.in_equations for effect in objective.preset.effects if effect.own for p in effect.added)
+
+
+def _at_end(best: Optimum) -> Iterator[str]:
+    """The masses, lags and delays that ended at an end of their axes beyond which there is something.
+
+    None is shorter than what the samples show, or than nothing.
+    """
+    space = best.fitness.space
+    for axis in space.axes:
+        parameter = best.fitness.preset.parameter(axis.name)
+        goes_on = _upper(best, axis.name) or (parameter.unit == "kg" and axis.logarithmic)
+        if parameter.unit in WIDENED and goes_on and space.at_bound(axis.name, best.point):
+            yield axis.name
+
+
+def _upper(best: Optimum, name: str) -> bool:
+    return bool(best.point[best.fitness.space.names.index(name)] > 0.5)
+
+
+def _wider(axis: Axis, best: Optimum) -> Axis:
+    if _upper(best, axis.name):
+        return replace(axis, upper=axis.upper * FURTHER)
+    return replace(axis, lower=axis.lower / FURTHER)
+
+
+def _over(fitness: Fitness, space: Space, evaluations: int) -> Fitness:
+    """The same over another space, which goes on counting."""
+    if isinstance(fitness, SimulatedFitness):
+        return replace(fitness, space=space, evaluations=evaluations, starts=dict(fitness.starts))
+    assert isinstance(fitness, LinearFitness)
+    return replace(fitness, space=space, evaluations=evaluations)

@@ -1,0 +1,54 @@
+"""Bounds follow the record: what ends at a bound that nobody set is searched again beyond it."""
+
+from __future__ import annotations
+
+from functools import cache
+
+import numpy as np
+import pytest
+import scipy.signal
+
+from ident import from_arrays, identify
+from ident.fit.result import FitResult
+
+RATE, LAG, LATE = 100.0, 0.05, 32  # Hz, s, samples: six times the lag, where three are searched
+
+
+@cache
+def fitted(longest: str = "") -> FitResult:
+    """A first-order lag behind a delay under a held command, in closed form."""
+    command = np.repeat(np.random.default_rng(8).standard_normal(60), 20)
+    command[:40] = 0.0
+    pole = np.exp(-1.0 / (RATE * LAG))
+    follows = scipy.signal.lfilter([0.0, 1.0 - pole], [1.0, -pole], np.concatenate([np.zeros(LATE), command[:-LATE]]))
+    noisy = follows + 0.002 * np.random.default_rng(9).standard_normal(len(follows))
+    units = {"command": "V", "displacement": "mm"}
+    matrix = from_arrays({"command": command, "displacement": noisy}, units=units, sample_rate="100 Hz", hold="zoh")
+    bounds = {"command_delay.delay": ("0 s", longest)} if longest else {}
+    return identify(matrix, model="first_order", effects=("command_delay",), bounds=bounds)
+
+
+def test_a_delay_beyond_its_range_is_found_and_it_is_said():
+    found = fitted()
+    delay, lag = found.parameters["command_delay.delay"], found.parameters["tau"]
+    assert delay.value == pytest.approx(LATE / RATE, rel=0.01)
+    assert lag.value == pytest.approx(LAG, rel=0.01)
+    assert not delay.at_bound
+    assert delay.lower <= delay.value <= delay.upper
+    assert found.starts.agree >= min(3, found.starts.tried)
+    (told,) = [note for note in found.notes if "a bound that nobody set" in note]
+    assert told.startswith("command_delay.delay ended at ")
+
+
+def test_a_bound_that_was_set_is_kept():
+    found = fitted("0.1 s")
+    assert found.parameters["command_delay.delay"].at_bound
+    assert found.parameters["command_delay.delay"].upper == pytest.approx(0.1)
+    assert not any("a bound that nobody set" in note for note in found.notes)
+
+
+def test_the_generations_of_the_search_stay_where_they_were():
+    """Their populations are of the ranges that were searched, not of those beyond."""
+    found = fitted()
+    lies = found.searched.index("command_delay.delay")
+    assert max(member[lies] for one in found.evolution for member in one.population) <= 0.15
