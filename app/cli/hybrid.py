@@ -49,6 +49,8 @@ def hybrid(
 
     It couples a numerical substructure, a controller, the identified actuator and a specimen.
     """
+    from dataclasses import replace
+
     from app.cli.tables import show
     from ident.hybrid.acting import controller_called
     from ident.hybrid.case import read_case

@@ -61,7 +61,7 @@ def inside_rig(
     if not kept:
         smaller = f"at {needed:.3g} times the amplitudes of the matrix" if needed else "at smaller gains"
         raise Unusable("beyond-limits", "every run that could be proposed leaves the limits of the rig", "rig",
-                       f"make runs {smaller}, or state wider limits")  # fmt: skip
+                       f"make runs {remedy}, or state wider limits")  # fmt: skip
     return list(kept.values())
 
 
