@@ -59,7 +59,7 @@ def inside_rig(
             smaller = one if factor == 1.0 else replace(one, amplitude=float(f"{factor * one.amplitude:.3g}"))
             kept.setdefault((*key, smaller.amplitude), smaller)
     if not kept:
-        smaller = f"at {needed:.3g} times the amplitudes of the matrix" if needed else "at smaller gains"
+        remedy = f"at {needed:.3g} times the amplitudes of the matrix" if needed else "at smaller gains"
         raise Unusable("beyond-limits", "every run that could be proposed leaves the limits of the rig", "rig",
                        f"make runs {remedy}, or state wider limits")  # fmt: skip
     return list(kept.values())

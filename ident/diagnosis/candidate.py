@@ -68,8 +68,8 @@ def in_rank_order(models: CandidateModels, candidates: Iterable[Candidate]) -> l
 
 def _dominated_last(tied: Sequence[Candidate]) -> list[Candidate]:
     """Candidates that tie in the order of their own, but those last that others of them dominate."""
-    left = {one.effect for one in not_dominated(tied)}
-    return sorted(tied, key=lambda one: one.effect not in left)
+    best = {one.effect for one in not_dominated(tied)}
+    return sorted(tied, key=lambda one: one.effect not in best)
 
 
 def not_dominated(tied: Sequence[Candidate]) -> list[Candidate]:

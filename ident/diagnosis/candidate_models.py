@@ -99,9 +99,9 @@ class CandidateModels:
 
     def doubting(self, fitted: FittedModel) -> CandidateModels:
         """The same models, without the noise floors that a fitted model comes below."""
-        told, ratio = self.floors.by_run, CRITERIA.noise.floor_contradicted
+        floors, ratio = self.floors.by_run, CRITERIA.noise.floor_contradicted
         left = {run.id: found.error for run, found in zip(fitted.fitness.runs, fitted.local.runs, strict=True)}
-        doubted = frozenset(run for run, error in left.items() if (floor := told[run]) and floor > ratio * error)
+        doubted = frozenset(run for run, error in left.items() if (floor := floors[run]) and floor > ratio * error)
         return replace(self, doubted=doubted, _known={}, _compared={}, bars={}) if doubted else self
 
     def over_windows(self, horizon: float | None, memory: float | None) -> CandidateModels:

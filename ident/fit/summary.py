@@ -341,7 +341,7 @@ def _beyond(optimum: Optimum, values: Mapping[str, float], label: Mapping[str, t
     for name, one in first.items():
         called, unit = label[name]
         yield (
-            f"{called} ended at {quantity(one.bound, unit)}, a bound that nobody set, with an error of "
+            f"{called} ended at {quantity(one.bound, unit)}, a bound that no user set, with an error of "
             f"{error_said(one.error)}: it was searched beyond it, and is {quantity(values[name], unit)} with "
             f"{error_said(optimum.here.error)}."
         )

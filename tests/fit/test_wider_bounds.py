@@ -1,4 +1,4 @@
-"""Bounds follow the record: what ends at a bound that nobody set is searched again beyond it."""
+"""Bounds follow the record: what ends at a bound that no user set is searched again beyond it."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ def test_a_delay_beyond_its_range_is_found_and_it_is_said():
     assert not delay.at_bound
     assert delay.lower <= delay.value <= delay.upper
     assert found.starts.agree >= min(3, found.starts.tried)
-    (told,) = [note for note in found.notes if "a bound that nobody set" in note]
+    (told,) = [note for note in found.notes if "a bound that no user set" in note]
     assert told.startswith("command_delay.delay ended at ")
 
 
@@ -44,7 +44,7 @@ def test_a_bound_that_was_set_is_kept():
     found = fitted("0.1 s")
     assert found.parameters["command_delay.delay"].at_bound
     assert found.parameters["command_delay.delay"].upper == pytest.approx(0.1)
-    assert not any("a bound that nobody set" in note for note in found.notes)
+    assert not any("a bound that no user set" in note for note in found.notes)
 
 
 def test_the_generations_of_the_search_stay_where_they_were():
