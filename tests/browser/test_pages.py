@@ -264,7 +264,7 @@ def test_a_refused_upload_says_what_where_and_the_remedy(page, watch, site, tmp_
 def test_what_is_left_is_told_in_its_unit_and_a_profile_is_drawn_when_it_is_opened(page, site, fitted):
     """In both themes, with its downloads; the choice of a parameter draws another."""
     page.goto(f"{site.address}/fits/{fitted}")
-    expect(page.locator('[data-size="use:fit"][data-of="rmse"]')).to_have_text(re.compile(r"\d.*m$"), timeout=60_000)
+    expect(page.locator('[data-size="use:fit"][data-of="mae"]')).to_have_text(re.compile(r"\d.*m$"), timeout=60_000)
     figure = page.locator("#figure-profile")
     expect(figure).to_be_hidden()
     page.locator("#profile summary").click()
