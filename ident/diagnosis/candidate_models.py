@@ -45,7 +45,7 @@ class CandidateModels:
 
     `given` are what the user holds fixed or bounds; `left_out` the ids of runs that are not fitted; `horizon` (s) the
     length of the windows over which a machine that integrates is fitted, None for whole runs, `memory` (s) as there. Of
-    the runs that are `doubted` no noise floor is known: a fitted model leaves less than what was told.
+    the runs that are `contradicted` no noise floor is known: a fitted model leaves less than what was told.
     """
 
     preset: Preset
@@ -60,7 +60,7 @@ class CandidateModels:
     _records: dict[int, tuple[Run, ...]] = field(default_factory=dict)
     _compared: dict[int, ComparedRecords] = field(default_factory=dict)
     bars: dict[tuple[str, ...], float] = field(default_factory=dict)
-    doubted: frozenset[str] = frozenset()
+    contradicted: frozenset[str] = frozenset()
 
     @classmethod
     def of(
@@ -101,8 +101,8 @@ class CandidateModels:
         """The same models, without the noise floors that a fitted model comes below."""
         floors, ratio = self.floors.by_run, CRITERIA.noise.floor_contradicted
         left = {run.id: found.error for run, found in zip(fitted.fitness.runs, fitted.local.runs, strict=True)}
-        doubted = frozenset(run for run, error in left.items() if (floor := floors[run]) and floor > ratio * error)
-        return replace(self, doubted=doubted, _known={}, _compared={}, bars={}) if doubted else self
+        contradicted = frozenset(run for run, error in left.items() if (floor := floors[run]) and floor > ratio * error)
+        return replace(self, contradicted=contradicted, _known={}, _compared={}, bars={}) if contradicted else self
 
     def over_windows(self, horizon: float | None, memory: float | None) -> CandidateModels:
         """The same models, fitted over other windows."""
@@ -200,7 +200,7 @@ class CandidateModels:
     def floors(self) -> Floors:
         """The noise floors of all runs of the matrix; over windows with what the noise adds where each begins."""
         floors = noise_floors(self.matrix.runs, self.band, self.left_out)
-        floors = replace(floors, by_run={run: None if run in self.doubted else f for run, f in floors.by_run.items()})
+        floors = replace(floors, by_run={run: None if run in self.contradicted else f for run, f in floors.by_run.items()})
         if self.horizon is None or floors.measured:
             return floors
         begun = SimulatedRuns(self.preset, self.matrix, (), self.band, horizon=self.horizon, memory=self.memory)
