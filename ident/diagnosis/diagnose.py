@@ -118,7 +118,7 @@ class Diagnoser:
         base = models.best_optimum(models.converged(models.refit(tuple(self.fit.effects), start)))
         if not base.stable:
             raise Unusable("bad-fit", "the fitted model is unstable on a run", "fit", "fit the model to this matrix")
-        if (models := models.doubting(base)).doubted:
+        if (models := models.doubting(base)).contradicted:
             base = replace(base, records=models.compared_records())
         models = from_the_start(models, base)
         return Moves(models, base, self.budget.most, self.budget.report_progress, self._publish_step, begin)
