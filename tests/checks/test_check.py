@@ -331,8 +331,6 @@ def test_the_summary_counts_what_is_there(healthy):
 
 
 DOUBTED = {
-    "bouc_wen": {"sample-rate"},  # five samples a cycle, which its README calls band-limited between samples
-    "silverbox": {"sample-rate"},  # three of them, likewise
     "mr_damper": {"turned-sign"},  # its README: turned in sign
     "rack": {"no-verify-runs"},  # one record, fitted only
 }
