@@ -153,7 +153,8 @@ def _serve_forks() -> None:
             os.closerange(first, held)
             first = held + 1
         os.closerange(first, os.sysconf("SC_OPEN_MAX"))
-        exec(called[-1], {"__name__": "__main__"})
+        with suppress(SystemExit):  # the way in which a server of forks ends
+            exec(called[-1], {"__name__": "__main__"})
         os._exit(0)
 
     multiprocessing.util.spawnv_passfds = forked

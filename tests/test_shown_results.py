@@ -54,7 +54,7 @@ def results() -> dict[str, Shown]:
         share_map(machine, case, masses=[0.0, 0.5], stiffnesses=[0.0, 0.9]),
         design_controller(machine, Specimen(8.75, 17.5e3), sample_rate=4096.0, gain=2.0, piston_area=497e-6, delay=1),
         Followed(20.0, 40.0, 0, 1e-3, 1e-4, None, None, None, curve, curve, curve, curve, curve, curve),
-        Analysis(notes=("a note",)),
+        Analysis(notes=("a note",)), ident.plan({"gains": [5.0], "amplitudes": ["1 mm"]}),
     )  # fmt: skip
     return {type(one).__name__: one for one in many if one is not None}
 

@@ -80,7 +80,8 @@ def test_a_value_of_a_wrong_kind_is_refused_in_one_line(
     """Each function × each parameter × values that are no such thing; all else that is given is right."""
     diagnosis = ident.load(ROOT / "tests" / "stored" / "diagnosis.json")
     right = {"matrix": matrix, "fit": fit, "result": fit, "found": diagnosis, "name": "time", "path": "matrix",
-             "arrays": {"command": np.zeros(8), "displacement": np.zeros(8)}, "table": {}}  # fmt: skip
+             "arrays": {"command": np.zeros(8), "displacement": np.zeros(8)}, "table": {},
+             "program": "qian"}  # fmt: skip
     called = getattr(ident, function)
     needed = {
         key: right[key]

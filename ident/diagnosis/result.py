@@ -62,7 +62,7 @@ class Ranked(Judged):
     predicted_error: float | None = None
     parameters: Mapping[str, ParameterEstimate] = field(default_factory=dict)
     group: tuple[str, ...] = ()
-    probability: float | None = None
+    probability: float | None = field(default=None, metadata=WHERE_KNOWN)
     evidence: Mapping[str, float | str | bool | None] = field(default_factory=dict)
     why: str = ""
     error_with_mean: Errors = field(default_factory=dict, metadata=WHERE_KNOWN)
@@ -149,7 +149,7 @@ class Verdict:
     at_bound: tuple[str, ...] = ()
     elsewhere: tuple[Explanation, ...] = ()
     stood_in: tuple[str, ...] = ()
-    probability: float | None = None
+    probability: float | None = field(default=None, metadata=WHERE_KNOWN)
     probabilities: Mapping[str, float] = field(default_factory=dict, metadata=WHERE_KNOWN)
     group_probabilities: tuple[float, ...] = field(default=(), metadata=WHERE_KNOWN)
 

@@ -12,6 +12,7 @@ import pytest
 from ident.chain.chain import Chain
 from ident.equations.equation import Equation
 from ident.presets import PRESETS
+from ident.simulation.between import ends
 from ident.simulation.recursion import discretise, respond
 from tests.reference import qian_reference as reference
 
@@ -132,7 +133,7 @@ def deviation(chain: Chain, hold: str) -> float:
     command = reference.band_limited_noise(4096, 1e-3, np.random.default_rng(11))
     expected = reference.simulate(plant, CELL, command, hold)
     batch = {name: np.array([value]) for name, value in values_of(plant, CELL).items()}
-    found = respond(discretise(chain.linearise(batch), reference.SAMPLE_RATE, hold), command)[0]
+    found = respond(discretise(chain.linearise(batch), reference.SAMPLE_RATE, hold), ends(command))[0]
     return float(np.std(found - expected) / np.std(expected))
 
 

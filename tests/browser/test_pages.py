@@ -136,8 +136,8 @@ def test_the_fit_page_shows_the_stored_parameters_and_errors(page, site, fitted)
 def test_the_run_table_sorts_by_number(page, site, fitted):
     page.goto(f"{site.address}/fits/{fitted}")
     page.get_by_text("Table of the 12 runs").click()
-    page.get_by_role("button", name="Error", exact=True).click()
-    texts = page.locator("table:has([data-pick]) tbody td:nth-child(2)").all_inner_texts()
+    page.get_by_role("button", name="Eq. (17)", exact=True).click()
+    texts = page.locator("table:has([data-pick]) tbody td:nth-child(4)").all_inner_texts()
     errors = [float(text.split()[0]) for text in texts]
     assert errors == sorted(errors)
     assert len(errors) == 12

@@ -110,7 +110,7 @@ def test_a_new_user_finds_what_is_missing_adds_it_and_sees_the_error_fall(page, 
     expect(
         page.get_by_role("button", name="Add all 2")
     ).to_be_in_viewport()  # the answer stays in sight as figures come
-    assert card.locator("math").count() == 1
+    assert card.locator("math").count() >= 1  # of a group an equation for each member
     the_error_falls_at_each_step(page)
     page.get_by_text("effects without significant improvement").click()
     if screenshots:

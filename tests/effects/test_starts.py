@@ -16,6 +16,7 @@ from tests.conftest import ROOT
 
 _OTHERWISE = {
     "ident/fit/bulk_modulus.py": "which parameter is a compressibility, that is not searched otherwise for it",
+    "ident/fit/wider_bounds.py": "which bounds are widened: those of masses, lags and delays, whatever they are called",
     "ident/design/experiment.py": "in which unit a signal is printed",
 }
 ROOMS = ("diagnosis", "fit", "bench", "presets", "design")

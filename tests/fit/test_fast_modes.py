@@ -37,7 +37,7 @@ def notes(radians: float, searched: bool) -> list[str]:
     options = {"generations": 2, "population": 10, "elite": 2}
     settings = Settings(effects=("coulomb_friction",), fixed={**fixed, **given}, options=options)
     found = identify(Matrix(Actuator("A", piston_area=PLANT.A), (run,)), settings)
-    return [note for note in found.notes if "radians a sample" in note]
+    return [note for note in found.notes if "radians per sample" in note]
 
 
 @pytest.mark.parametrize(("radians", "said"), [(12.0, False), (13.5, True), (40.0, True)])
@@ -46,7 +46,7 @@ def test_a_mode_that_is_cut_is_said(radians, said):
     found = notes(radians, searched=False)
     assert len(found) == said
     if said:
-        assert f"{radians:.3g} radians a sample" in found[0]
+        assert f"{radians:.3g} radians per sample" in found[0]
 
 
 def test_vectors_of_the_search_that_are_cut_are_counted():

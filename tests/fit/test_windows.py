@@ -9,6 +9,7 @@ import pytest
 import scipy.signal
 
 from ident.diagnosis.candidate_models import CandidateModels
+from ident.diagnosis.evidence.criteria import EVIDENCE_CRITERIA
 from ident.fit.levenberg_marquardt import Way
 from ident.fit.normal_matrices import NormalMatrices
 from ident.fit.settings import Settings
@@ -161,7 +162,7 @@ def test_a_dead_zone_is_found_below_the_disturbances():
     assert found.horizon is not None
     best = found.candidates[0]
     assert "dead_zone" in {best.effect, *best.group}
-    assert found.ladder[-1].nats > 10
+    assert found.ladder[-1].nats > 2 * EVIDENCE_CRITERIA.effect_prior
     width = next(c for c in found.candidates if c.effect == "dead_zone").parameters["dead_zone.half_width"]
     assert width.value == pytest.approx(0.2, abs=0.03)
 

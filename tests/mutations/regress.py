@@ -42,7 +42,8 @@ REGRESS = (
              "a factor of 1.01 in eq. (17)", _LINEAR),
     Mutation("regress-hold", "ident/simulation/recursion.py", 'if hold == "zoh":', 'if hold != "zoh":',
              "the two holds exchanged", _of("held")),
-    Mutation("regress-ramp", "ident/simulation/recursion.py", "step - ramp, ramp,", "step, ramp,",
+    Mutation("regress-ramp", "ident/simulation/recursion.py", "[powers[:, 0] - powers[:, 1], powers[:, 1]]",
+             "[powers[:, 0], powers[:, 1]]",
              "a term of the ramp dropped", _LINEAR),
 )  # fmt: skip
 """Each is put into a copy; the recheck of an approved fit has to say that something moved."""

@@ -108,9 +108,9 @@ def test_the_commands_keep_such_a_run_where_they_are_told_to(servoident, tmp_pat
     folder = bench(tmp_path / "bench")
     usual, kept = servoident("check", folder), servoident("check", folder, "--no-run-exclusion")
     assert "notice: run r2 stands still" in usual.stdout
-    assert "fit: 2 runs" in usual.stdout
+    assert "estimation data: 2 runs" in usual.stdout
     assert "stands still" not in kept.stdout
-    assert "fit: 3 runs" in kept.stdout
+    assert "estimation data: 3 runs" in kept.stdout
     assert "notice: The step run_exclusion of preprocessing is switched off" in kept.stdout
     held = [part for text in ("Kt=0.4", "c0=1", "m0=0.05") for part in ("--set", text)]
     file = tmp_path / "fit.json"
