@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from urllib.parse import quote
 
@@ -11,6 +10,7 @@ from app.fits.service import Yardstick
 from app.parameters.error import Use, error_of
 from ident.diagnosis.result import Verdict
 from ident.words.error import ErrorOf
+from ident.words.listed import all_of
 from ident.words.number import plain
 from ident.words.titles import title
 from schemas.fit import JobView
@@ -122,12 +122,7 @@ def _failing(ratio: float, verdict: Verdict | None, at: str) -> Next:
     if verdict.effects:
         sure = verdict.standing in (None, "found")
         said = "The model lacks" if sure else "The error is partly explained by"
-        return Next(f"{fails}. {said} {_listed(verdict.effects)}.", "Review and add", at, grade="poor")
+        return Next(f"{fails}. {said} {all_of([*map(title, verdict.effects)])}.", "Review and add", at, grade="poor")
     if verdict.suspects:
         return Next(f"{fails}. A run label looks wrong.", "Review the label", at, grade="poor")
     return Next(f"{fails}. No effect in the library explains it.", "Show the residual", at, grade="poor")
-
-
-def _listed(names: Sequence[str]) -> str:
-    *first, last = map(title, names)
-    return f"{', '.join(first)} and {last}" if first else last

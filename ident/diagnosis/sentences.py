@@ -17,6 +17,7 @@ from ident.effects.effect import Effect
 from ident.fit.result import Combination
 from ident.presets.record_units import SAMPLE
 from ident.words.error import error_said, unstable_on
+from ident.words.listed import all_of
 from ident.words.percent import percent
 from ident.words.probability import probability_said
 from ident.words.titles import title
@@ -144,7 +145,7 @@ def _improves(
     named: Sequence[str], in_doubt: bool, before: float, errors: Mapping[str, float | None],
     fewer: tuple[float, Sequence[str]] | None, unstable: Sequence[str],
 ) -> str:  # fmt: skip
-    names = _listed(named)
+    names = all_of(named)
     them = "it" if len(named) == 1 else "them"
     lacks = "What helps on the fitted runs is" if in_doubt else "The model lacks"
     verify = errors.get("verify")
@@ -152,11 +153,6 @@ def _improves(
     said = f" ({unstable_on(unstable)})" if unstable else said
     fell = f"from {error_said(before)} to {error_said(errors['fit'])}"
     return f"{lacks} {names}: with {them} the error falls {fell}{said}."
-
-
-def _listed(names: Sequence[str]) -> str:
-    *others, last = names
-    return f"{', '.join(others)} and {last}" if others else last
 
 
 def _with_fewer(of: tuple[float, Sequence[str]] | None) -> str:
@@ -176,7 +172,7 @@ def dispensable_sentence(names: Sequence[str]) -> Iterator[str]:
     """Which effects only stood for what a search proposes, in a sentence."""
     if names:
         needed = "are not needed: they stood" if len(names) > 1 else "is not needed: it stood"
-        listed = _listed([*map(title, names)])
+        listed = all_of([*map(title, names)])
         yield f"Beside what a search proposes beyond the catalogue {listed} {needed} for that."
 
 

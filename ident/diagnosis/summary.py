@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from ident.words.error import error_said
+from ident.words.listed import all_of
 from ident.words.percent import percent
 from ident.words.plus_minus import plus_minus
 from ident.words.probability import probability_said
@@ -25,7 +25,7 @@ def summary(found: Diagnosis) -> tuple[str, str, str]:
 def _missing(found: Diagnosis) -> str:
     verdict = found.verdict
     if verdict.effects:
-        names = _listed([_named(found, name) for name in verdict.effects])
+        names = all_of([_named(found, name) for name in verdict.effects])
         doubt = ", but validation data contradict it" if verdict.standing == "contradicted" else ""
         return f"Missing: {names}{doubt}."
     if not found.complete:
@@ -88,8 +88,3 @@ def _next(found: Diagnosis) -> str:
         added = f"add {them}, and " if verdict.effects else ""
         return f"{added}look at the proposed terms, or record the proposed run."
     return f"add {them} to the model, and compare the fits." if verdict.effects else "use the model as it is."
-
-
-def _listed(names: Sequence[str]) -> str:
-    *others, last = names
-    return f"{', '.join(others)} and {last}" if others else last

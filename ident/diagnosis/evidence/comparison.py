@@ -106,6 +106,11 @@ class Residuals:
         """Those of each run in each band, (runs, bands)."""
         return self.bands.by_run(self.series)
 
+    @property
+    def level_squares(self) -> Array:
+        """The squares of the levels, (runs,)."""
+        return np.broadcast_to(self.levels, len(self.series)) ** 2
+
     @cached_property
     def scaled(self) -> list[Array]:
         """The series over the standard deviations of the outputs."""
@@ -163,13 +168,12 @@ def compare(
     between = [first - second for first, second in zip(before.scaled, after.scaled, strict=True)]
     noise = min(float(np.mean(disturbance.floors)), before.power, after.power)
     excess = [residual**2 - floor for residual, floor in zip(before.scaled, disturbance.floors, strict=True)]
-    levels = [np.broadcast_to(side.levels, len(gained)) for side in (before, after)]
-    squares = [np.atleast_2d(of**2).T for of in levels]
+    squares = [side.level_squares[:, None] for side in (before, after)]
     best = before if before.power <= after.power else after
     return Evidence(
         gain=gain(before, after, disturbance),
         without=_without(disturbance, before.energies, after.energies)
-        + _level_gain(*_without_best(squares[0][:, 0], squares[1][:, 0], criteria), criteria),
+        + _level_gain(*_without_best(before.level_squares, after.level_squares, criteria), criteria),
         most=most(before, disturbance),
         distinct=disturbance.distinct,
         before=before.power,
@@ -181,7 +185,7 @@ def compare(
         apart=float(np.mean([np.mean(d**2) for d in between])),
         resolved=criteria.resolution * noise / best.independent,
         level=float(np.sqrt(squares[0].mean())),
-        levels_apart=float(np.sqrt(np.mean((levels[0] - levels[1]) ** 2))),
+        levels_apart=float(np.sqrt(np.mean((before.levels - after.levels) ** 2))),
         level_difference=block_mean(list(squares[0] - squares[1]), criteria),
         level_share=block_ratio(list(squares[0] - squares[1]), list(squares[0]), criteria),
     )
@@ -261,14 +265,13 @@ def dominated(evidence: Evidence, criteria: EvidenceCriteria = EVIDENCE_CRITERIA
 
 def gain(before: Residuals, after: Residuals, disturbance: Disturbance) -> float:
     """G in nats, of the waveforms and of the means of the runs."""
-    first, second = (np.broadcast_to(side.levels, len(side.series)) ** 2 for side in (before, after))
     waveform = disturbance.gain(before.energies.sum(axis=0), after.energies.sum(axis=0))
-    return waveform + _level_gain(first, second, disturbance.bands.criteria)
+    return waveform + _level_gain(before.level_squares, after.level_squares, disturbance.bands.criteria)
 
 
 def most(before: Residuals, disturbance: Disturbance) -> float:
     """The gain of a model that leaves nothing but the noise, and no mean that matters."""
-    levels = np.broadcast_to(before.levels, len(before.series)) ** 2
+    levels = before.level_squares
     of_levels = _level_gain(levels, np.zeros(len(levels)), disturbance.bands.criteria)
     return disturbance.most(before.energies.sum(axis=0)) + of_levels
 
