@@ -21,6 +21,7 @@ from ident.diagnosis.evidence.comparison import (
     generalises,
     improves,
     indistinguishable,
+    worth_adding,
 )
 from ident.diagnosis.evidence.criteria import EVIDENCE_CRITERIA, EvidenceCriteria
 from ident.diagnosis.evidence.disturbance import Disturbance
@@ -334,6 +335,33 @@ def test_a_member_that_is_worse_beyond_its_error_is_dominated() -> None:
 def gaining(most: float, **gains: float) -> SetGains:
     """Models that are named by the letters of their effects; `most` is what can be gained."""
     return SetGains({NOTHING: 0.0, **{frozenset(name): gain for name, gain in gains.items()}}, most)
+
+
+def test_an_effect_is_added_where_it_improves_and_generalises_alone() -> None:
+    """What gains half of all that can be gained passes whatever the bar, and loses in no half of the records."""
+    before, after = periodic(30, 0.3, seed=13)
+    found = compared([before], [after], [Record(1.0, period=87.3)])
+    assert worth_adding(found)
+    loses = {**found.parts, "second half": BlockMean(-0.5 * found.explainable, 1e-9, 20)}
+    assert not worth_adding(replace(found, parts=loses))
+    little = replace(found, gain=0.2 * found.most, without=0.2 * found.most)
+    assert not worth_adding(little)
+    assert worth_adding(little, lambda: 0.1 * found.most)
+
+
+def test_a_floor_above_what_is_left_is_no_floor() -> None:
+    """One that was told too large hides neither what an effect takes nor how sure that is; seed 20."""
+    noise = white(np.random.default_rng(20), 500)
+    bands = EnergyBands((Record(1.0, floor=100 * NOISE**2),), (500,))
+    assert Residuals((noise,), bands).floors == pytest.approx([np.mean(noise**2)])
+
+
+def test_no_member_is_dominated_whose_output_the_noise_hides() -> None:
+    """However sure the difference of the errors is."""
+    before, after = periodic(30, 0.3, left=0.5, seed=13)
+    worse = compared([after], [before], [Record(1.0, period=87.3)])
+    assert dominated(worse)
+    assert not dominated(replace(worse, resolved=2.0 * worse.apart))
 
 
 def test_a_gain_that_is_not_worth_the_prior_of_an_effect_does_not_improve() -> None:

@@ -1,0 +1,35 @@
+"""Of each set of effects the best refit is kept, and what speaks for it."""
+
+from __future__ import annotations
+
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from ident.diagnosis.evidence.comparison import Residuals
+from ident.diagnosis.evidence.energy_bands import EnergyBands, Record
+from ident.diagnosis.evidence.probability import NOTHING
+from ident.diagnosis.refitted_sets import RefittedSets
+
+NOISE = 0.01 * np.random.default_rng(21).standard_normal(600)
+BANDS = EnergyBands((Record(1.0, floor=1e-4),), (600,))
+
+
+def refit(*effects: str, left: float, finite: bool = True) -> Any:
+    """A refit with these effects that leaves noise and so much of a sine; seed 21."""
+    residuals = Residuals((NOISE + left * np.sin(np.arange(600) / 7.0),), BANDS)
+    held_out = SimpleNamespace(score=residuals.power**0.5)
+    return SimpleNamespace(effects=effects, finite=finite, held_out=held_out, residuals_held_out=residuals)
+
+
+def test_the_best_refit_of_each_set_is_kept_and_its_gain_is_over_the_fitted_model():
+    sets = RefittedSets(refit("given", left=0.1))
+    sets.met([refit("given", "a", left=0.05), refit("given", "a", left=0.0), refit("given", "a", left=0.03)])
+    sets.met([refit("given", left=0.0), refit("given", "b", left=0.0, finite=False)])
+    assert sets.best.keys() == {frozenset("a")}
+    found = sets.gains()
+    assert found.gains[NOTHING] == 0.0
+    assert found.gains[frozenset("a")] > 50
+    assert found.most == pytest.approx(found.gains[frozenset("a")], rel=0.05)
