@@ -26,6 +26,9 @@ HEEDFUL = {
 }  # fmt: skip
 """Of connections to PostgreSQL: a cut line is noticed within seconds (s, the last ms), not after the system's hours."""
 
+APART = {"apart": True}
+"""Of a session: what it commits is not the change that was asked for, and carries no line of the audit."""
+
 Acts = Callable[[Session], None]
 
 

@@ -14,7 +14,6 @@ from sqlalchemy.exc import DataError, OperationalError
 from starlette.exceptions import HTTPException
 from starlette.requests import ClientDisconnect
 
-from app.matrices.removed import Removed
 from app.nearest_field import body_of, remedy
 from app.storage import Unreachable
 from ident.errors import Unusable
@@ -41,6 +40,10 @@ class Failure(HTTPException):
     def __init__(self, status: int, code: str, what: str, where: str, remedy: str, **headers: str) -> None:
         super().__init__(status, what, headers)
         self.status, self.code, self.what, self.where, self.remedy = status, code, what, where, remedy
+
+
+class Removed(Unusable):
+    """Raw runs that were there and are gone; over HTTP 410."""
 
 
 def missing(kind: str, name: str, known: Iterable[str] = ()) -> Failure:

@@ -26,9 +26,9 @@ from app.blobs import open_storage
 from app.context import Context
 from app.database import connect, migrate, sessions
 from app.jobs.engine import Jobs
-from app.jobs.kinds import KINDS
 from app.jobs.service import resume
 from app.jobs.steps import Runs
+from app.kinds import KINDS
 from app.operation.logs import in_json
 from app.operation.metrics import Requests
 from app.operation.observed import Observed
@@ -51,8 +51,12 @@ FEATURES = (
     "matrices",
     "drafts",
     "limits",
+    "verdicts",
     "actuators",
+    "refits",
     "fits",
+    "approvals",
+    "figures",
     "profiles",
     "diagnoses",
     "jobs",
@@ -75,7 +79,7 @@ FEATURES = (
 _PATIENCE = 5  # s in which what is being answered ends, before the service does
 _TURN = 1e-3  # s after which a figure that is drawn lets an answer take its turn: the interpreter's own are 5
 READERS = 2  # uploads that are read at once
-WORK = "app.jobs.kinds"  # what processes apart have imported when they begin
+WORK = "app.kinds"  # what processes apart have imported when they begin
 
 
 def create_app(settings: Settings, apart: bool = False) -> FastAPI:

@@ -25,7 +25,7 @@ from typing import Any, ClassVar
 
 IMPORTED = ("app.cli.program", "app.main", "app.operation.migration", "ident.workflows", "uvicorn.protocols.http.auto",
             "uvicorn.loops.auto", "uvicorn.lifespan.on", "psycopg", "obstore", "dbos", "app.fits.work",
-            "app.diagnoses.work", "app.jobs.kinds")  # fmt: skip
+            "app.diagnoses.work", "app.kinds")  # fmt: skip
 COMMAND = "from app.cli.program import main; main()"
 WAIT = 240.0  # s, for a machine that is busy with other things
 

@@ -119,24 +119,37 @@ ROOMS = (
 """The files and folders of `ident`; each may use those before it."""
 
 
+ROOMS_OF_THE_SERVICE = (
+    "environment", "settings", "request_id", "nearest_field", "lru", "processes", "storage", "database", "tables",
+    "client", "blobs", "context", "errors", "form", "paging", "security", "reserve", "idempotency", "access", "openapi",
+    "catalogue", "parameters", "webhooks", "matrices", "drafts", "stream", "backup",
+    "jobs", "retention", "workers", "operation", "own_effects", "limits", "statistics",
+    "fits", "approvals", "diagnoses", "profiles", "refits", "hybrid", "plans", "regress",
+    "actuators", "verdicts", "report", "figures",
+    "kinds", "pages", "main", "cli", "__main__",
+)  # fmt: skip
+"""The files and folders of `app`; each may use those before it."""
+
+
 WORDS = {"specimen"}
 """Models called by a word that matrix.yaml has for something else: what a run moves."""
 
 
 def room(module: str) -> str:
-    """The room of a module of the library."""
+    """The room of a module of the library or of the service."""
     return module.split(".")[1]
 
 
-def test_the_rooms_of_the_library_stand_in_one_order():
-    """Data flow one way: a room uses what stands before it, so that there is no circle between rooms."""
+@pytest.mark.parametrize(("house", "rooms"), [("ident", ROOMS), ("app", ROOMS_OF_THE_SERVICE)])
+def test_the_rooms_stand_in_one_order(house, rooms):
+    """Data flow one way: a room uses what stands before it, so no two use each other and none stands in a circle."""
     upwards = {}
-    for file in files("ident/*/**/*.py", "ident/*.py"):
-        own = file.relative_to(ROOT / "ident").parts[0].removesuffix(".py")
+    for file in files(f"{house}/**/*.py"):
+        own = file.relative_to(ROOT / house).parts[0].removesuffix(".py")
         if own == "__init__":
             continue
         for module in imports(file):
-            if within(module, {"ident"}) and ROOMS.index(room(module)) > ROOMS.index(own):
+            if within(module, {house}) and "." in module and rooms.index(room(module)) > rooms.index(own):
                 upwards.setdefault((own, room(module)), []).append(f"{file.relative_to(ROOT)} imports {module}")
     assert not upwards
 
@@ -237,9 +250,12 @@ def test_the_client_needs_httpx_and_the_contract_only():
     assert {m.split(".")[0] for m in imports(file)} - STANDARD == {"httpx", "schemas"}
 
 
-FRAME = {"app.access.roles", "app.access.who", "app.context", "app.errors", "app.form", "app.idempotency"}
+FRAME = {
+    "app.access.roles", "app.access.who", "app.context", "app.errors", "app.form", "app.idempotency",
+    "app.jobs.queueing",
+}  # fmt: skip
 """What every endpoint may use beside its service: who may and who asks, the running service, its refusals, answers
-given once."""
+given once, a job queued once."""
 
 
 @pytest.mark.parametrize("file", files("app/**/*endpoints.py"), ids=lambda file: f"{file.parent.name}.{file.stem}")

@@ -18,11 +18,8 @@ from starlette.types import Scope
 from app.access import repository
 from app.access.roles import declared
 from app.access.who import Who
-from app.database import on_commit
+from app.database import APART, on_commit
 from app.request_id import request_id
-
-APART = {"apart": True}
-"""Of a session: what it commits is not the change that was asked for."""
 
 
 @dataclass
@@ -73,7 +70,7 @@ def carry(makers: sessionmaker[Session]) -> None:
 
 def _add(session: Session) -> None:
     change = _current.get()
-    if change is not None and change.waits and "apart" not in session.info:
+    if change is not None and change.waits and APART.keys().isdisjoint(session.info):
         change.note(session)
         session.info["noted"] = change
 

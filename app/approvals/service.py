@@ -5,27 +5,25 @@ from __future__ import annotations
 from sqlalchemy.orm import Session
 
 from app.approvals import repository
-from app.approvals.objections import objections
 from app.context import Context
-from app.diagnoses.repository import verdicts
-from app.errors import Failure, missing
-from app.fits import repository as fits
+from app.errors import Failure
+from app.fits import service as fits
+from app.fits.objections import of_fit
 from app.limits.broken import tell_broken
-from app.parameters.error import USES, error_of
-from app.tables import FitRow
 from app.webhooks.outbox import announce
+from schemas.fit import FitView
 from schemas.parameters import ApprovalView
 from schemas.webhooks import SetApproved, SetWithdrawn
 
 
-def approve(context: Context, fit: str, who: str, why: str) -> None:
+def approve(context: Context, fit: str, who: str, why: str) -> FitView:
     """Make a fit the set in force of its actuator. One that is in force stays so, since then.
 
     Raises Failure 404, 409 where the search of the fit ran out of its time, and 422 where something speaks against the
     fit and no reason is given.
     """
     with context.sessions.begin() as session:
-        row = _fit(session, fit)
+        row = fits.recorded(session, fit)
         if row.result.get("ended_early"):
             raise Failure(409, "ended-early", "the search of this fit ran out of its time", f"fit {fit}",
                           "fit again without a budget")  # fmt: skip
@@ -37,39 +35,19 @@ def approve(context: Context, fit: str, who: str, why: str) -> None:
             repository.put_in_force(session, row.serial, row.set.number, who, why)
             announce(session, SetApproved, serial=row.serial, fit=fit, who=who, why=why)
             tell_broken(session, row.set)
+    return fits.get(context, fit)
 
 
-def of_fit(session: Session, row: FitRow) -> tuple[str, ...]:
-    """What speaks against approving a fit, each a clause: its errors, and what was found on the fit before it."""
-    found = row.result
-    verdict = verdicts(session, [row.parent]).get(row.parent) if row.parent else None
-    contradicted = (verdict or {}).get("contradicted_by", ())
-    error = {use: error_of(row.set, use) for use in USES}
-    return objections(error, found.get("noise_floor") or {}, found.get("effects", ()), contradicted)
-
-
-def against(context: Context, fit: str) -> tuple[str, ...]:
-    """The same by the id of the fit; raises Failure 404."""
-    with context.sessions() as session:
-        return of_fit(session, _fit(session, fit))
-
-
-def withdraw(context: Context, fit: str, who: str, why: str) -> None:
+def withdraw(context: Context, fit: str, who: str, why: str) -> FitView:
     """Nothing is in force any more for the fit's actuator; raises Failure 404, 409 where the fit was not in force."""
     with context.sessions.begin() as session:
-        row = _fit(session, fit)
+        row = fits.recorded(session, fit)
         if not row.set.current:
             raise Failure(409, "not-in-force", "this fit is not the approved set, and cannot be withdrawn", "fit",
                           "withdraw the approved set: the actuator lists it")  # fmt: skip
         repository.put_in_force(session, row.serial, None, who, why)
         announce(session, SetWithdrawn, serial=row.serial, fit=fit, who=who, why=why)
-
-
-def _fit(session: Session, fit: str) -> FitRow:
-    row = fits.fit(session, fit)
-    if row is None:
-        raise missing("fit", fit)
-    return row
+    return fits.get(context, fit)
 
 
 def of_actuator(context: Context, serial: str) -> list[ApprovalView]:

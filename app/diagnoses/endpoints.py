@@ -11,7 +11,8 @@ from app.access.who import Me
 from app.context import Here
 from app.diagnoses import proposal, service
 from app.errors import COMMON
-from app.idempotency import Key, fingerprint, queued_once
+from app.idempotency import Key, fingerprint
+from app.jobs.queueing import queued_once
 from schemas.diagnosis import DiagnosisPage, DiagnosisRequest, DiagnosisView
 from schemas.diagnosis_result import ProposalView
 from schemas.fit import JobView

@@ -31,9 +31,3 @@ def page(session: Session, fit: str | None, after: tuple[str, ...] | None, limit
     if after is not None:
         query = query.where(tuple_(DiagnosisRow.created_at, DiagnosisRow.id) < after)
     return session.scalars(query).all()
-
-
-def verdicts(session: Session, fits: Sequence[str]) -> dict[str, Any]:
-    """The verdict of the newest diagnosis of each of these fits that has one."""
-    query = select(DiagnosisRow.fit, DiagnosisRow.result["verdict"]).where(DiagnosisRow.fit.in_(fits))
-    return dict(session.execute(query.order_by(DiagnosisRow.created_at, DiagnosisRow.id)).all())

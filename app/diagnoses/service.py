@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 from app.context import Context
 from app.diagnoses import repository
 from app.errors import Failure, missing
+from app.fits import repository as stored_fits
 from app.fits import service as fits
 from app.jobs import repository as recorded
 from app.jobs import service as jobs
@@ -143,7 +144,7 @@ def of_fit(context: Context, fit: str) -> tuple[Stored | None, JobView | None]:
 def searches(context: Context, fits: Sequence[str]) -> dict[str, Search]:
     """That of each of these fits that was or is being diagnosed."""
     with context.sessions() as session:
-        verdicts, waiting = repository.verdicts(session, fits), recorded.diagnosing(session, fits)
+        verdicts, waiting = stored_fits.verdicts(session, fits), recorded.diagnosing(session, fits)
     found = {fit: read(Verdict, verdict) for fit, verdict in verdicts.items()}
     return {fit: Search(found.get(fit), waiting.get(fit)) for fit in found.keys() | waiting.keys()}
 

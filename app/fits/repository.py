@@ -11,7 +11,7 @@ from sqlalchemy.orm import Session, aliased, raiseload
 from app.fits.equations import equations_of
 from app.fits.history import read, taken_apart
 from app.storage import Storage
-from app.tables import EvolutionRow, FitRow, JobRow, MatrixRow, SetRow, ValueRow
+from app.tables import DiagnosisRow, EvolutionRow, FitRow, JobRow, MatrixRow, SetRow, ValueRow
 from ident.fit.result import FitResult
 from ident.run import USES
 
@@ -40,6 +40,12 @@ def floors(session: Session, fits: Sequence[str]) -> Sequence[tuple[str, str | N
     query = query.join(earlier, earlier.fit == FitRow.parent, isouter=True).where(FitRow.id.in_(fits))
     query = query.options(raiseload(earlier.values), raiseload(earlier.approvals))
     return [(fit, parent, before, floor) for fit, parent, before, floor in session.execute(query)]
+
+
+def verdicts(session: Session, fits: Sequence[str]) -> dict[str, Any]:
+    """The verdict of the newest diagnosis of each of these fits that has one."""
+    query = select(DiagnosisRow.fit, DiagnosisRow.result["verdict"]).where(DiagnosisRow.fit.in_(fits))
+    return dict(session.execute(query.order_by(DiagnosisRow.created_at, DiagnosisRow.id)).all())
 
 
 def add_fit(session: Session, job: JobRow, result: dict[str, Any]) -> FitRow:

@@ -1,4 +1,4 @@
-"""Fits: queue, look, compare, approve."""
+"""Fits: queue, look, compare."""
 
 from __future__ import annotations
 
@@ -6,10 +6,12 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any
 
-from app.approvals import service as approvals
+from sqlalchemy.orm import Session
+
 from app.context import Context
 from app.errors import missing
 from app.fits import repository
+from app.fits.objections import of_fit
 from app.jobs import service as jobs
 from app.matrices import service as matrices
 from app.own_effects.naming import with_kept
@@ -121,10 +123,21 @@ def yardsticks(context: Context, fits: Sequence[str]) -> dict[str, Yardstick]:
 def find(context: Context, fit_id: str) -> FitRow:
     """The record of a fit; raises Failure 404."""
     with context.sessions() as session:
-        row = repository.fit(session, fit_id)
-    if row is None:
+        return recorded(session, fit_id)
+
+
+def recorded(session: Session, fit_id: str) -> FitRow:
+    """The same within a transaction."""
+    found = repository.fit(session, fit_id)
+    if found is None:
         raise missing("fit", fit_id)
-    return row
+    return found
+
+
+def against(context: Context, fit_id: str) -> tuple[str, ...]:
+    """What speaks against approving a fit, each a clause; raises Failure 404."""
+    with context.sessions() as session:
+        return of_fit(session, recorded(session, fit_id))
 
 
 def get(context: Context, fit_id: str) -> FitView:
@@ -133,7 +146,7 @@ def get(context: Context, fit_id: str) -> FitView:
     return FitView(
         id=row.id, matrix=row.matrix, serial=row.serial, parent=row.parent, created_at=row.created_at,
         approved_at=row.set.approved_at, current=row.set.current, result=FitResultView(**result),
-        objections=list(approvals.against(context, fit_id)),
+        objections=list(against(context, fit_id)),
     )  # fmt: skip
 
 
@@ -151,18 +164,6 @@ def _whole(context: Context, fit_id: str) -> tuple[FitRow, dict[str, Any]]:
     row = find(context, fit_id)
     with context.sessions() as session:
         return row, repository.whole_result(session, context.storage, row)
-
-
-def approve(context: Context, fit_id: str, who: str, why: str) -> FitView:
-    """Make a fit the set in force of its actuator."""
-    approvals.approve(context, fit_id, who, why)
-    return get(context, fit_id)
-
-
-def withdraw(context: Context, fit_id: str, who: str, why: str) -> FitView:
-    """Let a fit be in force no longer, so that its actuator has no set in force."""
-    approvals.withdraw(context, fit_id, who, why)
-    return get(context, fit_id)
 
 
 def comparison(context: Context, fit_id: str) -> ComparisonView:

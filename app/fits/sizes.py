@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from app.context import Context
-from app.fits.drawing import study
+from app.fits.studied import study
 from ident.comparison.compare import RunComparison
 from ident.words.engineering import quantity
 from schemas.fit import ErrorSize, ErrorSizesView

@@ -10,7 +10,8 @@ from app.access.roles import LAB, READERS
 from app.context import Here
 from app.errors import COMMON
 from app.hybrid import controllers, drawing, service, tracking, what_if
-from app.idempotency import Answer, Key, fingerprint, once, queued_once
+from app.idempotency import Answer, Key, fingerprint, once
+from app.jobs.queueing import queued_once
 from schemas.fit import JobView
 from schemas.hybrid import ControllerRequest, HybridRequest, WhatIfRequest
 from schemas.hybrid_result import ControllerPage, ControllerView, HybridPage, HybridView, WhatIfView

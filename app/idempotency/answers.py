@@ -19,7 +19,7 @@ from fastapi.responses import JSONResponse
 from sqlalchemy.exc import IntegrityError
 from sqlalchemy.orm import Session, sessionmaker
 
-from app.access.noting import APART
+from app.database import APART
 from app.errors import Failure
 from app.idempotency import repository
 from app.tables import AnswerRow, before

@@ -10,7 +10,7 @@ from sqlalchemy import ColumnElement, Select, or_, select, text, tuple_, update
 from sqlalchemy.dialects import postgresql, sqlite
 from sqlalchemy.orm import Session
 
-from app.tables import JobRow, MatrixRow, TallyRow, now
+from app.tables import FitRow, JobRow, MatrixRow, TallyRow, now
 
 OPEN = ("queued", "running")
 ENDED = ("succeeded", "failed", "cancelled")
@@ -36,6 +36,11 @@ def find(session: Session, job_id: str) -> JobRow | None:
 def matrix(session: Session, matrix_id: str) -> MatrixRow | None:
     """The matrix that a job is to work on."""
     return session.get(MatrixRow, matrix_id)
+
+
+def fit(session: Session, fit_id: str) -> FitRow | None:
+    """The fit that a job starts from."""
+    return session.get(FitRow, fit_id)
 
 
 def matrix_of(session: Session, job_id: str) -> MatrixRow | None:

@@ -13,7 +13,6 @@ from typing import Any
 from sqlalchemy.orm import Session, sessionmaker
 
 from app.errors import is_full
-from app.fits import repository as fits
 from app.jobs import at_work, repository
 from app.jobs.ending import end
 from app.jobs.lease import AWAY, Lease, Superseded, patiently
@@ -155,7 +154,7 @@ class Run:
         job = self.lease.job
         with self.runs.sessions() as session:
             row, matrix = repository.find(session, job), repository.matrix_of(session, job)
-            parent = fits.fit(session, row.parent) if row is not None and row.parent is not None else None
+            parent = repository.fit(session, row.parent) if row is not None and row.parent is not None else None
         if row is None or matrix is None:
             raise Unusable("no-such-job", "the job is not recorded", job, "start it again")
         if row.parent is not None and parent is None:

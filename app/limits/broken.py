@@ -8,8 +8,7 @@ from contextlib import contextmanager
 from sqlalchemy.orm import Session
 
 from app.limits import repository
-from app.limits.judging import judged_by
-from app.limits.verdict import Judged
+from app.limits.verdict import Judged, judged_by
 from app.tables import LimitRow, SetRow
 from app.webhooks.outbox import announce, is_heard
 from schemas.webhooks import LimitBroken

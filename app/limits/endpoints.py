@@ -1,4 +1,4 @@
-"""/limits, and the verdict on an actuator."""
+"""/limits."""
 
 from __future__ import annotations
 
@@ -8,8 +8,8 @@ from app.access.roles import LAB, READERS
 from app.access.who import Me
 from app.context import Here
 from app.errors import COMMON
-from app.limits import judging, service
-from schemas.limits import LimitsRequest, LimitsView, LineVerdictView
+from app.limits import service
+from schemas.limits import LimitsRequest, LimitsView
 
 router = APIRouter(tags=["limits"], responses=COMMON)
 
@@ -30,9 +30,3 @@ def get_limits(here: Here, model: str) -> LimitsView:
 def put_limits(here: Here, me: Me, model: str, request: LimitsRequest) -> LimitsView:
     """Set the limits of a model for one batch, or for all; they take the place of those before."""
     return service.put(here, model, request, me.name)
-
-
-@router.get("/actuators/{serial:path}/verdict", dependencies=[READERS])
-def get_verdict(here: Here, serial: str) -> LineVerdictView:
-    """Pass, fail or unknown, with the reasons: the set in force against the limits of its model and batch."""
-    return judging.judge(here, serial)

@@ -8,7 +8,7 @@ from itertools import groupby
 from app.context import Context
 from app.limits import repository
 from app.limits.broken import telling_broken
-from app.statistics.repository import ERRORS
+from app.parameters.error import NAMES
 from app.tables import LimitRow
 from ident.custom.definition import preset_with
 from ident.errors import Unusable
@@ -42,7 +42,7 @@ def _row(model: str, batch: str, name: str, limit: Limit, who: str) -> LimitRow:
 
 def unit_of(model: str, name: str) -> str:
     """The SI unit of what has a limit: a parameter of the model or of an effect, or an error. Raises Unusable."""
-    if name in ERRORS:
+    if name in NAMES:
         return "1"
     effect, dot, _ = name.partition(".")
     return preset_with(model, (effect,) if dot else ()).parameter(name).unit

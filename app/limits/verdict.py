@@ -7,9 +7,12 @@ nor that it is broken (ISO 14253-1 judges measured workpieces so).
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Literal
 
+from app.parameters.error import USES, error_of
+from app.tables import LimitRow, SetRow
 from ident.words.engineering import quantity
 from ident.words.error import ErrorOf
 from ident.words.percent import percent
@@ -85,3 +88,19 @@ def verdict(judged: list[Judged]) -> Verdict:
     """Fail where one is outside, pass where every one is inside."""
     outcomes = {one.outcome for one in judged}
     return "fail" if "outside" in outcomes else "pass" if outcomes == {"inside"} else "unknown"
+
+
+def judged_by(row: SetRow, limits: Mapping[str, LimitRow]) -> list[Judged]:
+    """Each value of a set that has a limit, against it."""
+    return [_judged(row, limit) for limit in limits.values()]
+
+
+def _judged(row: SetRow, limit: LimitRow) -> Judged:
+    for use in USES:
+        if limit.name == f"error.{use}":
+            said = error_of(row, use)
+            return Judged(limit.name, said.error, None, "1", limit.lower, limit.upper, said)
+    found = next((value for value in row.values if value.name == limit.name), None)
+    if found is None:
+        return Judged(limit.name, None, None, "", limit.lower, limit.upper)
+    return Judged(limit.name, found.value, found.std_error, found.unit, limit.lower, limit.upper)

@@ -2,12 +2,8 @@
 
 from __future__ import annotations
 
+from app.errors import Removed
 from app.tables import MatrixRow
-from ident.errors import Unusable
-
-
-class Removed(Unusable):
-    """Raw runs that were there and are gone; over HTTP 410."""
 
 
 def check_there(row: MatrixRow) -> None:

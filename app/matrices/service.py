@@ -16,8 +16,8 @@ from app.errors import missing
 from app.matrices import repository
 from app.matrices.removed import check_there
 from app.matrices.stored import load_row, opened, read_stored
-from app.operation.reserve import check_reserve
 from app.paging import cursor, keys_of
+from app.reserve import check_reserve
 from app.storage import Storage
 from app.tables import MatrixRow
 from ident.checks.check import check

@@ -9,7 +9,8 @@ from sqlalchemy import select
 from sqlalchemy.orm import Session
 
 from app.own_effects.kept import Kept
-from app.tables import OwnEffectRow
+from app.tables import DiagnosisRow, OwnEffectRow
+from ident.diagnosis.result import Diagnosis
 
 _FIELDS = tuple(field.name for field in fields(Kept))
 
@@ -38,6 +39,12 @@ def named(session: Session, names: Collection[str]) -> Sequence[OwnEffectRow]:
 def every(session: Session) -> Sequence[OwnEffectRow]:
     """All rows by name."""
     return session.scalars(select(OwnEffectRow).order_by(OwnEffectRow.name)).all()
+
+
+def diagnosis(session: Session, diagnosis_id: str) -> Diagnosis | None:
+    """The diagnosis that proposes a term."""
+    row = session.get(DiagnosisRow, diagnosis_id)
+    return None if row is None else Diagnosis.from_json(row.result)
 
 
 def add(session: Session, effect_id: str, kept: Kept) -> OwnEffectRow:

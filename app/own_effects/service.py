@@ -6,7 +6,6 @@ from sqlalchemy.exc import IntegrityError
 
 from app.access.noting import about
 from app.context import Context
-from app.diagnoses import service as diagnoses
 from app.errors import Failure, missing
 from app.own_effects import repository
 from app.own_effects.kept import Kept, proposed, view, written_down
@@ -69,7 +68,10 @@ def _wanted(context: Context, request: OwnEffectRequest) -> Kept:
     if request.definition is not None:
         return written_down(request.definition, request.name, request.meaning, request.model or "")
     assert request.diagnosis is not None
-    found = diagnoses.stored(context, request.diagnosis).found
+    with context.sessions() as session:
+        found = repository.diagnosis(session, request.diagnosis)
+    if found is None:
+        raise missing("diagnosis", request.diagnosis)
     return proposed(found, request.proposal, request.name, request.meaning, request.diagnosis)
 
 

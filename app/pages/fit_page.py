@@ -9,7 +9,7 @@ from typing import Any
 
 from markupsafe import Markup
 
-from app.approvals.objections import FAR
+from app.fits.objections import FAR
 from app.fits.rows import Determined, ErrorRow, ParameterRow, combination_rows, error_rows, parameter_rows
 from app.fits.service import Stored
 from app.own_effects.kept import Kept, suited

@@ -12,8 +12,7 @@ from starlette.exceptions import HTTPException
 from starlette.routing import Match
 from starlette.types import Scope
 
-from app.errors import Failure
-from app.matrices.removed import Removed
+from app.errors import Failure, Removed
 from app.pages.rendering import page, problem
 from ident.errors import Unusable
 

@@ -9,11 +9,9 @@ from app.approvals import service as approvals
 from app.context import Context
 from app.diagnoses import service as diagnoses
 from app.errors import Failure
-from app.fits import lineage
 from app.fits import service as fits
 from app.fits.rows import parameter_rows
 from app.jobs import service as jobs
-from app.limits.judging import judge
 from app.matrices import service as matrices
 from app.own_effects import service as own_effects
 from app.pages.actuator_view import actuator_row, drifts, fit_rows, followed
@@ -31,6 +29,8 @@ from app.pages.thumbnails import thumbnail
 from app.parameters import service as parameters
 from app.parameters.error import USES, error_of
 from app.parameters.wanted import Wanted
+from app.refits import lineage
+from app.verdicts.service import judge
 from app.workers import service as workers
 from ident.comparison.side_by_side import MOST
 from ident.synthesis.matrix import SIMULATED
@@ -171,5 +171,5 @@ def fit(context: Context, fit_id: str) -> FitPageView | JobPageView:
     others = parameters.page(context, Wanted(serial=stored.serial), None, _ROWS).items
     newer = matrices.newer(context, stored.matrix)
     step = of_fit(context, fit_id)
-    against = approvals.against(context, fit_id)
+    against = fits.against(context, fit_id)
     return fit_page(stored, matrix, lacks, way, step, against, others, newer, own_effects.every(context))

@@ -13,6 +13,8 @@ if TYPE_CHECKING:
 Use = Literal["fit", "verify"]
 USES: tuple[Use, ...] = get_args(Use)
 """The uses of runs on which a set has an error."""
+NAMES = tuple(f"error.{use}" for use in USES)
+"""What is judged like a parameter: those errors, which have no unit."""
 
 
 def error_of(of: ParameterSetView | SetRow | None, use: Use) -> ErrorOf:

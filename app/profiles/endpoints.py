@@ -8,7 +8,8 @@ from app.access.roles import LAB, READERS
 from app.access.who import Me
 from app.context import Here
 from app.errors import COMMON
-from app.idempotency import Key, fingerprint, queued_once
+from app.idempotency import Key, fingerprint
+from app.jobs.queueing import queued_once
 from app.profiles import service
 from schemas.fit import JobView, ProfileRequest, ProfileView
 

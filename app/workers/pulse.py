@@ -18,8 +18,8 @@ from uuid import uuid4
 
 from sqlalchemy.orm import Session, sessionmaker
 
+from app.context import Queue
 from app.jobs import repository as recorded
-from app.jobs.engine import Jobs
 from app.jobs.lease import AWAY
 from app.tables import WorkerRow
 from app.workers import repository
@@ -35,7 +35,7 @@ Seen = tuple[str, int]
 class Pulse:
     """A thread that beats under the name of this process while its engine runs."""
 
-    def __init__(self, sessions: sessionmaker[Session], name: str, jobs: Jobs) -> None:
+    def __init__(self, sessions: sessionmaker[Session], name: str, jobs: Queue) -> None:
         self.sessions, self.name, self.jobs = sessions, name, jobs
         self.begun = uuid4().hex
         self._ended = threading.Event()

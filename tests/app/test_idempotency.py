@@ -13,12 +13,13 @@ from typing import Any, cast
 import pytest
 
 from app.access.who import START
+from app.approvals.endpoints import approve_fit
 from app.context import Context
 from app.database import connect, migrate, sessions
 from app.errors import Failure
-from app.fits.endpoints import approve_fit, start_fit
 from app.idempotency import answers
 from app.processes import Here
+from app.refits.endpoints import start_fit
 from app.settings import Settings
 from app.storage import Storage
 from app.tables import ActuatorRow, AnswerRow, JobRow, MatrixRow

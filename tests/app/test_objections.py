@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 from fastapi.testclient import TestClient
 
-from app.approvals.objections import FAR, Errors, objections
+from app.fits.objections import FAR, Errors, objections
 from app.tables import ActuatorRow, DiagnosisRow, FitRow, MatrixRow, SetRow
 from ident.unstable import UNSTABLE
 from ident.words.error import ErrorOf

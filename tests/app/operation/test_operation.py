@@ -18,7 +18,7 @@ import pytest
 from prometheus_client.parser import text_string_to_metric_families
 from sqlalchemy import event
 
-from app.operation import reserve
+from app import reserve
 from tests.app.conftest import zipped
 from tests.running import Forked, Service, forked, free_port
 

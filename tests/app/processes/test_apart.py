@@ -15,8 +15,8 @@ from pathlib import Path
 
 import pytest
 
+from app.errors import Removed
 from app.jobs.lease import Superseded
-from app.matrices.removed import Removed
 from app.processes import Apart, Here, Place, Stopped
 from app.processes.child import LESS
 from ident.errors import Cancelled, Unusable

@@ -4,7 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 
-from app.parameters.error import Use
+from sqlalchemy.orm import Session
+
+from app.fits.repository import verdicts
+from app.parameters.error import USES, Use, error_of
+from app.tables import FitRow
 from ident.words.error import ErrorOf
 from ident.words.number import plain
 from ident.words.percent import percent_in_print
@@ -19,6 +23,15 @@ by tests/app/test_objections.py.
 
 Errors = Mapping[Use, ErrorOf]
 Floors = Mapping[str, float | None]
+
+
+def of_fit(session: Session, row: FitRow) -> tuple[str, ...]:
+    """What speaks against approving a fit, each a clause: its errors, and what was found on the fit before it."""
+    found = row.result
+    verdict = verdicts(session, [row.parent]).get(row.parent) if row.parent else None
+    contradicted = (verdict or {}).get("contradicted_by", ())
+    error = {use: error_of(row.set, use) for use in USES}
+    return objections(error, found.get("noise_floor") or {}, found.get("effects", ()), contradicted)
 
 
 def objections(

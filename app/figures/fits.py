@@ -9,13 +9,13 @@ from typing import Any
 from app.context import Context
 from app.diagnoses import service as diagnoses
 from app.errors import Failure
-from app.fits import lineage, service
+from app.fits import service
+from app.fits.studied import study
 from app.lru import LRU
-from app.matrices import service as matrices
 from app.profiles import service as profiles
-from ident import workflows
+from app.refits import lineage
 from ident.errors import Unusable
-from ident.figures import MEDIA, Study, figure, ladder, look, profile_likelihood, render, side_by_side
+from ident.figures import MEDIA, figure, ladder, look, profile_likelihood, render, side_by_side
 from ident.figures.ladder import Step
 from ident.figures.selection import number
 from ident.fit.result import FitResult
@@ -25,9 +25,7 @@ from ident.words.titles import title
 from schemas.fit import LadderRung
 
 _MOST = 96  # figures in memory, about 100 kB each: fits and their data never change
-_STUDIED = 2  # fits in memory with what their figures computed
 _figures: LRU[bytes] = LRU(_MOST)
-_studies: LRU[Study] = LRU(_STUDIED)
 
 
 def drawn(context: Context, fit_id: str, name: str, kind: str, options: dict[str, Any]) -> tuple[bytes, str]:
@@ -65,16 +63,6 @@ def _drawn(context: Context, fit_id: str, name: str, kind: str, options: dict[st
     else:
         options.pop("candidate", None)
     return render(figure(name, studied, theme, share, **options), kind, live=live)
-
-
-def study(context: Context, fit_id: str) -> Study:
-    """A fit beside its data, from memory where it was drawn lately; raises Failure 404."""
-
-    def made() -> Study:
-        stored = service.stored(context, fit_id)
-        return workflows.study(matrices.load(context, stored.matrix), stored.found)
-
-    return _studies.get((str(context.storage.folder), fit_id), made)
 
 
 def _candidate(context: Context, fit: FitResult, wanted: str) -> FitResult:

@@ -2,16 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-
 from app.actuators.repository import find
 from app.approvals.repository import in_force
 from app.context import Context
 from app.errors import missing
 from app.limits import repository
-from app.limits.verdict import Judged, verdict
-from app.parameters.error import USES, error_of
-from app.tables import LimitRow, SetRow
+from app.limits.verdict import Judged, judged_by, verdict
+from app.tables import SetRow
 from schemas.limits import JudgedView, LineVerdictView
 
 
@@ -36,22 +33,6 @@ def judge(context: Context, serial: str) -> LineVerdictView:
         serial=serial, verdict=found, reasons=reasons, fit=row.fit, model=row.model, batch=row.batch,
         approved_at=row.approved_at, judged=[_view(one) for one in judged],
     )  # fmt: skip
-
-
-def judged_by(row: SetRow, limits: Mapping[str, LimitRow]) -> list[Judged]:
-    """Each value of a set that has a limit, against it."""
-    return [_judged(row, limit) for limit in limits.values()]
-
-
-def _judged(row: SetRow, limit: LimitRow) -> Judged:
-    for use in USES:
-        if limit.name == f"error.{use}":
-            said = error_of(row, use)
-            return Judged(limit.name, said.error, None, "1", limit.lower, limit.upper, said)
-    found = next((value for value in row.values if value.name == limit.name), None)
-    if found is None:
-        return Judged(limit.name, None, None, "", limit.lower, limit.upper)
-    return Judged(limit.name, found.value, found.std_error, found.unit, limit.lower, limit.upper)
 
 
 def _view(one: Judged) -> JudgedView:

@@ -7,8 +7,9 @@ from dataclasses import replace
 from app.context import Context
 from app.diagnoses import service as diagnoses
 from app.errors import Failure
-from app.fits import repository, service, starting
+from app.fits import repository, service
 from app.own_effects.naming import defined, every
+from app.refits import starting
 from app.tables import FitRow
 from ident.custom.definition import definition_of
 from ident.diagnosis.named import with_named

@@ -1,0 +1,1 @@
+"""Whether an actuator passes: its set in force against the limits of its model and batch."""
