@@ -11,7 +11,7 @@ from sqlalchemy.orm import Session
 from app.diagnoses import repository
 from app.fits import repository as fits
 from app.fits.history import put_apart
-from app.jobs.work import Kind, MadeSoFar, State, Task, Work
+from app.jobs.work import InOnePiece, Kind, MadeSoFar, State, Task
 from app.own_effects.kept import Kept, suited
 from app.tables import JobRow
 from ident.custom.definition import read_effect
@@ -30,7 +30,7 @@ OWN = ("max_effects", "time", "reseed", "propose", "own")
 """What the settings of a diagnosis hold beside those of its fit."""
 
 
-class DiagnosisWork(Work):
+class DiagnosisWork(InOnePiece):
     """A diagnosis, and the fit that is made first where none is given."""
 
     def __init__(self, task: Task) -> None:

@@ -6,7 +6,7 @@ from sqlalchemy.orm import Session
 
 from app.fits import repository
 from app.fits.history import put_apart
-from app.jobs.work import Kind, Search, State, Task
+from app.jobs.work import Kind, State, Task, Work
 from app.tables import JobRow
 from ident.fit.settings import Settings
 from ident.workflows import identification
@@ -14,7 +14,7 @@ from ident.workflows import identification
 GENERATIONS = 5  # in a block: what at most is done again after a kill
 
 
-class FitWork(Search):
+class FitWork(Work):
     """The fit of a matrix, whose runs are prepared once."""
 
     def __init__(self, task: Task) -> None:

@@ -13,7 +13,7 @@ from app.hybrid.acting import acting
 from app.hybrid.asked import AskedCase
 from app.hybrid.records import packed
 from app.hybrid.service import KIND
-from app.jobs.work import Kind, State, Task, Work
+from app.jobs.work import InOnePiece, Kind, State, Task
 from app.tables import JobRow
 from ident.hybrid.controller import SampledController
 from ident.hybrid.followed import followed_in
@@ -23,7 +23,7 @@ from ident.hybrid.share_map import share_map
 WITHOUT = "no controller"
 
 
-class HybridWork(Work):
+class HybridWork(InOnePiece):
     """A simulation, the same without a controller, the map where it is asked for, a feedforward's worth."""
 
     def __init__(self, task: Task) -> None:

@@ -9,10 +9,11 @@ from __future__ import annotations
 import time
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from typing import Any, Literal
 
 from app.jobs.generations import added
 from app.jobs.packed import packed, unpacked
-from app.jobs.work import MadeSoFar, Search, State, Task, Work
+from app.jobs.work import MadeSoFar, State, Task, Work
 from app.lru import LRU
 from ident.progress import Progress, Report
 
@@ -20,6 +21,7 @@ _EVERY = 0.2  # s between two reports
 _MOST = 4  # turns whose work is kept: one that was let go may not have said so
 _HELD = "held"
 Make = Callable[[Task], Work]
+Step = Literal["begin", "advance", "finish"]
 
 
 class Unheld(Exception):
@@ -27,13 +29,27 @@ class Unheld(Exception):
 
 
 @dataclass
-class _Turn:
+class _Turn(Work):
     """What a turn has prepared, and the last state of its search."""
 
     work: Work
     state: State | None = None
 
-    def whole(self, state: State) -> State:
+    def begin(self) -> State:
+        self.state = self.work.begin()
+        return _sent(_made(self.state))
+
+    def advance(self, state: State) -> State:
+        """What a block of the search added. Raises Unheld."""
+        before = self._whole(state)
+        self.state = self.work.advance(before)
+        return _sent(added(before, _made(self.state)))
+
+    def finish(self, state: State) -> State:
+        """The state is the result. Raises Unheld."""
+        return _made(self.work.finish(self._whole(state)))
+
+    def _whole(self, state: State) -> State:
         """The state that a short one stands for. Raises Unheld."""
         if _HELD not in state:
             whole: State = unpacked(state)
@@ -51,26 +67,11 @@ def short(state: State) -> State:
     return {_HELD: len(state["history"])} if "history" in state else state
 
 
-def begin(turn: str, make: Make, task: Task, report: Report) -> State:
-    """Begin; work without a search is done but for its finish."""
-    here = _here(turn, make, task, report)
-    here.state = here.work.begin() if isinstance(here.work, Search) else {"done": True}
-    return _sent(_made(here.state))
-
-
-def advance(turn: str, make: Make, task: Task, state: State, report: Report) -> State:
-    """A block of the search: what it added. Raises Unheld."""
-    here = _here(turn, make, task, report)
-    before = here.whole(state)
-    assert isinstance(here.work, Search)
-    here.state = here.work.advance(before)
-    return _sent(added(before, _made(here.state)))
-
-
-def finish(turn: str, make: Make, task: Task, state: State, report: Report) -> State:
-    """All that follows the search; the state is the result. Raises Unheld."""
-    here = _here(turn, make, task, report)
-    return _made(here.work.finish(here.whole(state)))
+def step(turn: str, make: Make, task: Task, name: Step, *given: Any) -> State:
+    """A step of a turn, `given` its state, where it has one, and the report. Raises Unheld."""
+    *state, report = given
+    made: State = getattr(_here(turn, make, task, report), name)(*state)
+    return made
 
 
 def leave(turn: str) -> None:

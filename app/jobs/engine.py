@@ -19,7 +19,7 @@ from dbos import error as failures
 from app.database import HEEDFUL, connect
 from app.jobs.generations import whole
 from app.jobs.lease import Superseded
-from app.jobs.work import State
+from app.jobs.work import State, Work
 from app.settings import Settings
 
 QUEUE = "fits"
@@ -35,20 +35,8 @@ _AT_A_TIME = 20  # jobs removed in one transaction: one of an earlier version ma
 _log = logging.getLogger("servoident")
 
 
-class Steps(Protocol):
-    """What a turn at a job is cut into; each returns {"outcome": None or how it ended, "state": ...}."""
-
-    def begin(self) -> State:
-        """Start; the state says whether it is `done` but for the finish."""
-        ...
-
-    def advance(self, state: State) -> State:
-        """A block of the search: what it added (see app/jobs/generations.py)."""
-        ...
-
-    def finish(self, state: State) -> State:
-        """All that follows the search; the state is the result."""
-        ...
+class Turn(Work, Protocol):
+    """A turn at a job; each step returns {"outcome": None or how the job ended, "state": ...}, and never raises."""
 
     def store(self, last: State) -> None:
         """Keep what came out, in one transaction; a second call changes nothing."""
@@ -60,7 +48,7 @@ class Runs(Protocol):
 
     stopping: threading.Event
 
-    def take(self, job: str) -> Steps:
+    def take(self, job: str) -> Turn:
         """A turn at a job, each time that this process begins or takes it up."""
         ...
 
@@ -198,24 +186,24 @@ def _listed(status: str, **others: Any) -> list[Any]:
 def _workflow(runs: Runs, under_way: set[str], ended: SimpleQueue[str | None]) -> Any:
     """The durable workflow around the steps; functions, because the engine cannot mark methods.
 
-    `under_way` holds the jobs that run; `ended` is told each job whose last step is done. Steps and their order are
+    `under_way` holds the jobs that run; `ended` is told each job whose last step is done. Turn and their order are
     those of every version before: a job that one of them began is ended by this one.
     """
 
     @DBOS.step(name="begin")
-    def begin(turn: Steps) -> State:
+    def begin(turn: Turn) -> State:
         return turn.begin()
 
     @DBOS.step(name="advance")
-    def advance(turn: Steps, state: State) -> State:
+    def advance(turn: Turn, state: State) -> State:
         return turn.advance(state)
 
     @DBOS.step(name="finish")
-    def finish(turn: Steps, state: State) -> State:
+    def finish(turn: Turn, state: State) -> State:
         return turn.finish(state)
 
     @DBOS.step(name="store")
-    def store(turn: Steps, last: State) -> None:
+    def store(turn: Turn, last: State) -> None:
         turn.store(last)
 
     @DBOS.workflow(name=NAME, max_recovery_attempts=1000)

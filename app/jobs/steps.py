@@ -5,7 +5,6 @@ from __future__ import annotations
 import logging
 import secrets
 import threading
-from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import asdict
 from typing import Any
@@ -16,7 +15,7 @@ from app.errors import is_full
 from app.jobs import at_work, repository
 from app.jobs.ending import end
 from app.jobs.lease import AWAY, Lease, Superseded, patiently
-from app.jobs.work import Kind, MadeSoFar, State, Task
+from app.jobs.work import Kind, MadeSoFar, State, Task, Work
 from app.processes import Here, Place, Stopped
 from app.storage import Storage, Unreachable
 from app.tables import JobRow
@@ -55,7 +54,7 @@ class Runs:
         return number, next(iter(self._kinds.values())) if row is None else self._kinds[row.kind]
 
 
-class Run:
+class Run(Work):
     """A turn at a job: what the queue calls, one after the other. A step never raises: its outcome says how it ended.
 
     But for Superseded, which means that nothing of this turn counts any more.
@@ -72,15 +71,15 @@ class Run:
 
     def begin(self) -> State:
         """Begin; work without a search is done but for its finish."""
-        return self._step(at_work.begin)
+        return self._step("begin")
 
     def advance(self, state: State) -> State:
         """A block of the search: what it added (see app/jobs/generations.py)."""
-        return self._step(at_work.advance, state)
+        return self._step("advance", state)
 
     def finish(self, state: State) -> State:
         """All that follows the search; the state is the result."""
-        return self._step(at_work.finish, state)
+        return self._step("finish", state)
 
     def store(self, last: State) -> None:
         """Record the result, or how the job ended; in one transaction, once."""
@@ -94,10 +93,10 @@ class Run:
             failed = _failed("not-stored", what, self.kind.name, "see the service's log")
             patiently(lambda: self._store(failed), self.runs.stopping)
 
-    def _step(self, act: Callable[..., State], *given: State) -> State:
+    def _step(self, name: at_work.Step, *given: State) -> State:
         """What a step of the job's work returns, or how the job ended in it."""
         try:
-            return patiently(lambda: self._acted(act, *given), self.runs.stopping, _PATIENCE)
+            return patiently(lambda: self._acted(name, *given), self.runs.stopping, _PATIENCE)
         except Stopped:
             raise Superseded from None
         except Cancelled:
@@ -117,14 +116,14 @@ class Run:
             what = f"the {self.kind.name} failed by a defect of the program"
             return _failed("defect", what, self.kind.name, "see the service's log")
 
-    def _acted(self, act: Callable[..., State], *given: State) -> State:
+    def _acted(self, name: at_work.Step, *given: State) -> State:
         self._note({})
         task = self._task = self._task or self._asked()
-        before = self._turn, self.kind.work, task
+        before = self._turn, self.kind.work, task, name
         try:
-            return self.runs.place.call(act, *before, *map(at_work.short, given), report=self._report)
+            return self.runs.place.call(at_work.step, *before, *map(at_work.short, given), report=self._report)
         except at_work.Unheld:  # this turn began elsewhere, or what it began in has ended
-            return self.runs.place.call(act, *before, *given, report=self._report)
+            return self.runs.place.call(at_work.step, *before, *given, report=self._report)
 
     def _store(self, last: State) -> None:
         job = self.lease.job

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from abc import ABC, abstractmethod
+from abc import abstractmethod
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, Protocol
 
 from sqlalchemy.orm import Session
 
@@ -55,24 +55,40 @@ class Task:
         return None if self.parent is None else FitResult.from_json(self.parent)
 
 
-class Work(ABC):
-    """The work of one job. A state is plain JSON data; what is raised is how the job ends."""
+class Work(Protocol):
+    """A job in steps: begin, advance until the state says that it is `done`, finish. What is raised is how it ends.
 
-    @abstractmethod
-    def finish(self, state: State) -> State:
-        """What is made of the last state, as it is to be stored."""
-
-
-class Search(Work):
-    """Work with a search before its end: it is kept after every block, and goes on there after a kill."""
+    A state is plain JSON data, kept after every step: the job goes on there after a kill. The work of a kind is cut so,
+    its turn in the process where it is done (app/jobs/at_work.py), and the turn that the queue calls
+    (app/jobs/steps.py).
+    """
 
     @abstractmethod
     def begin(self) -> State:
-        """The state before the first block; it says whether it is `done`."""
+        """The state before the first block of the search; it says whether it is `done` but for the finish."""
+        ...
 
     @abstractmethod
     def advance(self, state: State) -> State:
         """The state after another block."""
+        ...
+
+    @abstractmethod
+    def finish(self, state: State) -> State:
+        """All that follows the search: what is made of the last state, as it is to be stored."""
+        ...
+
+
+class InOnePiece(Work):
+    """Work without a search: a kill makes it run again from its beginning."""
+
+    def begin(self) -> State:
+        """Nothing comes before the finish."""
+        return {"done": True}
+
+    def advance(self, state: State) -> State:
+        """Nothing to do."""
+        return state
 
 
 @dataclass(frozen=True)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from sqlalchemy.orm import Session
 
-from app.jobs.work import Kind, State, Task, Work
+from app.jobs.work import InOnePiece, Kind, State, Task
 from app.profiles import repository
 from app.profiles.service import KIND
 from app.tables import JobRow
@@ -12,7 +12,7 @@ from ident.comparison.profile import profile
 from ident.plain import written
 
 
-class ProfileWork(Work):
+class ProfileWork(InOnePiece):
     """The profile of the parameter that its settings name."""
 
     def __init__(self, task: Task) -> None:

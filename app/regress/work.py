@@ -8,7 +8,7 @@ from dataclasses import asdict, dataclass
 
 from sqlalchemy.orm import Session
 
-from app.jobs.work import Kind, State, Task, Work
+from app.jobs.work import InOnePiece, Kind, State, Task
 from app.regress import repository
 from app.regress.recheck import Change, found
 from app.tables import JobRow
@@ -17,7 +17,7 @@ KIND = "recheck"
 
 
 @dataclass(frozen=True)
-class RecheckWork(Work):
+class RecheckWork(InOnePiece):
     """The stored error computed again, and the stored runs fitted from scratch."""
 
     task: Task

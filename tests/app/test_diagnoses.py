@@ -15,7 +15,7 @@ from fastapi.testclient import TestClient
 from app.diagnoses.work import DIAGNOSIS
 from app.jobs import repository
 from app.jobs.steps import Runs
-from app.jobs.work import Kind, MadeSoFar, State, Task, Work
+from app.jobs.work import InOnePiece, Kind, MadeSoFar, State, Task
 from ident.diagnosis.result import Diagnosis
 from ident.progress import Progress
 from ident.readers import read_matrix
@@ -282,7 +282,7 @@ def test_the_catalogues_verdict_is_kept_whatever_becomes_of_the_job(service, dia
     seen: list[dict[str, Any]] = []
     name = f"kept-{fails}"
 
-    class Cut(Work):
+    class Cut(InOnePiece):
         def __init__(self, task: Task) -> None:
             self.task = task
 

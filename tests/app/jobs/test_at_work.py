@@ -11,13 +11,13 @@ import pytest
 from app.jobs import at_work
 from app.jobs.generations import whole
 from app.jobs.packed import unpacked
-from app.jobs.work import Search, State, Task
+from app.jobs.work import State, Task, Work
 from app.storage import Storage
 from app.tables import MatrixRow
 from ident.progress import silent
 
 
-class Growing(Search):
+class Growing(Work):
     """Adds two generations a block to its history, and ends after three blocks."""
 
     def __init__(self, task: Task) -> None:
@@ -47,24 +47,24 @@ def searched(task: Task, turn: str, lost_after: int | None = None) -> tuple[Any,
     """What a search ends with as the queue has it done, and how many bytes each step was sent."""
     sent: list[int] = []
 
-    def asked(act: Any, state: State) -> State:
+    def asked(name: at_work.Step, state: State) -> State:
         given = at_work.short(state)
         try:
-            made: State = act(turn, Growing, task, pickle.loads(pickle.dumps(given)), silent)
+            made: State = at_work.step(turn, Growing, task, name, pickle.loads(pickle.dumps(given)), silent)
         except at_work.Unheld:
             given = state
-            made = act(turn, Growing, task, pickle.loads(pickle.dumps(given)), silent)
+            made = at_work.step(turn, Growing, task, name, pickle.loads(pickle.dumps(given)), silent)
         sent.append(len(pickle.dumps(given)))
         return pickle.loads(pickle.dumps(made))
 
-    now = at_work.begin(turn, Growing, task, silent)
+    now = at_work.step(turn, Growing, task, "begin", silent)
     steps = 0
     while not now["state"]["done"]:
         if steps == lost_after:
             at_work.leave(turn)
-        now = whole(now["state"], asked(at_work.advance, now["state"]))
+        now = whole(now["state"], asked("advance", now["state"]))
         steps += 1
-    result = asked(at_work.finish, now["state"])
+    result = asked("finish", now["state"])
     assert numbers_in(now) < 50  # nothing long is kept by who asks
     return (unpacked(now["state"]), result), sent
 
@@ -94,7 +94,7 @@ def test_a_process_that_was_lost_is_told_all_once(task: Task, lost_after: int) -
 
 
 def test_what_is_known_of_another_step_is_not_taken_for_it(task: Task) -> None:
-    first = at_work.begin("d", Growing, task, silent)["state"]
-    at_work.advance("d", Growing, task, at_work.short(first), silent)
+    first = at_work.step("d", Growing, task, "begin", silent)["state"]
+    at_work.step("d", Growing, task, "advance", at_work.short(first), silent)
     with pytest.raises(at_work.Unheld):
-        at_work.advance("d", Growing, task, at_work.short(first), silent)
+        at_work.step("d", Growing, task, "advance", at_work.short(first), silent)

@@ -14,7 +14,7 @@ from app.database import connect, migrate, sessions
 from app.jobs import repository, steps, work
 from app.jobs.lease import Superseded
 from app.jobs.steps import Runs
-from app.jobs.work import Kind, Search, State, Task, Work
+from app.jobs.work import InOnePiece, Kind, State, Task, Work
 from app.settings import Settings
 from app.storage import Storage, Unreachable
 from app.tables import ActuatorRow, JobRow, MatrixRow
@@ -24,7 +24,7 @@ from ident.progress import Progress
 BEGUN = {"outcome": None, "state": {"done": True}}
 
 
-class Piece(Work):
+class Piece(InOnePiece):
     """Work in one piece, which does what the settings of its job say."""
 
     def __init__(self, task: Task) -> None:
@@ -37,7 +37,7 @@ class Piece(Work):
         return {"before": state}
 
 
-class Counting(Search):
+class Counting(Work):
     """A search that counts; `prepared` are the tasks that were prepared."""
 
     prepared: list[Task] = []  # noqa: RUF012  counted over all of them
