@@ -15,6 +15,8 @@ from __future__ import annotations
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
+from ident.words.shown import TABLES as _TABLES
+
 if TYPE_CHECKING:
     from ident.checks.check import check
     from ident.errors import Unusable
@@ -42,6 +44,14 @@ _ROOMS = {
     "plan": "ident.workflows", "propose": "ident.workflows", "read_matrix": "ident.readers", "save": "ident.workflows",
     "simulate": "ident.workflows",
 }  # fmt: skip
+
+_TABLES.update(
+    {
+        "ident.bench.analysis": "ident.bench.tables",
+        "ident.diagnosis.result": "ident.diagnosis.tables",
+        "ident.fit.result": "ident.fit.tables",
+    }
+)
 
 __all__ = [
     "Matrix",

@@ -103,3 +103,11 @@ def test_a_long_table_shows_its_ends_and_counts_what_lies_between():
     assert (lines[:3], lines[-1]) == (["T", "run  error", "r0     0 %"], "r64   64 %")
     assert "… 5 more rows …" in lines
     assert len(lines) == MOST_ROWS + 3
+
+
+def test_a_result_without_tables_is_refused_by_its_name():
+    class Bare(Shown):
+        """Nothing is registered for it."""
+
+    with pytest.raises(NotImplementedError, match="Bare"):
+        print(Bare())

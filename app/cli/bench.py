@@ -22,9 +22,9 @@ def bench(
     from app.cli.tables import show
     from ident.bench.acceptance import passed, read_limits, sheet
     from ident.bench.analysis import analyse
-    from ident.bench.listings import listings
     from ident.bench.records import bench_set
     from ident.bench.report import to_json
+    from ident.bench.tables import with_sheet
     from ident.readers import read_matrix
 
     check_target(json)
@@ -42,7 +42,7 @@ def bench(
 
         write_bytes(render(acceptance_sheet(read, records, analysis, lines), "pdf"), out)
     if json != STANDARD_OUTPUT:
-        show(listings(analysis, lines))
+        show(with_sheet(analysis, lines))
     analysis.complete()
     if not passed(lines):
         raise typer.Exit(1)

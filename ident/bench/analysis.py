@@ -8,16 +8,14 @@ then T, then static values and speeds again; at last every value is moved at onc
 from __future__ import annotations
 
 import time
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import lru_cache, partial
-from importlib import import_module
 
 import numpy as np
 
 from ident.bench.frequency import Response, frequency_response
 from ident.bench.least_squares import BUT_ONE, LAST, ROUGH, Solution, solve
-from ident.bench.listings import listings
 from ident.bench.model import CONSTANTS, Model
 from ident.bench.motion import groups
 from ident.bench.observed import Observed, errors, observe
@@ -31,7 +29,7 @@ from ident.bench.time_constant import DelayCheck, Dynamics, delay_check, dynamic
 from ident.errors import Unusable
 from ident.fit.levenberg_marquardt import Way
 from ident.parallel import each
-from ident.words.shown import Listing, Shown
+from ident.words.shown import Shown
 
 FIRST_T = 0.02  # s, where the search for T begins
 _ROUNDS = 1  # of the refinement, behind each of which the records are weighed anew
@@ -71,11 +69,6 @@ class Analysis(Shown):
     missing: tuple[Missing, ...] = ()
     notes: tuple[str, ...] = ()
     seconds: float = 0.0
-
-    def listings(self) -> Iterator[Listing | str]:
-        """The acceptance sheet without limits, and what is to be known."""
-        acceptance = import_module("ident.bench.acceptance")  # which stands above this file
-        return listings(self, acceptance.sheet(self, {}))
 
     @property
     def model(self) -> Model | None:

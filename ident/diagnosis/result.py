@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
 from ident.diagnosis.discovery.proposal import Proposal, from_json
 from ident.diagnosis.parameter_estimate import ParameterEstimate
-from ident.diagnosis.summary import summary
-from ident.diagnosis.tables import listings
 from ident.diagnosis.verification import Standing
 from ident.errors import Unusable
 from ident.matrix import Matrix, StepOutcome
@@ -17,7 +15,7 @@ from ident.plain import UNWRITTEN, WHERE_KNOWN, Misfit, read, written
 from ident.residuals.budget import Budget
 from ident.run import USES, Specimen
 from ident.words.error import ErrorOf, first_line
-from ident.words.shown import Listing, Shown
+from ident.words.shown import Shown, in_brief
 
 Errors = Mapping[str, float | None]
 """Eq. (17) averaged over the runs of a kind: fit, held_out, verify; None where there are none."""
@@ -237,13 +235,9 @@ class Diagnosis(Shown):
         return first_line(" + ".join((self.model, *self.effects)), of)
 
     @property
-    def summary(self) -> tuple[str, str, str]:
+    def summary(self) -> tuple[str, ...]:
         """The verdict in three lines: what is missing, what it does to the error, what to do next."""
-        return summary(self)
-
-    def listings(self) -> Iterable[Listing | str]:
-        """Errors, ranking, ladder, suspects, proposals, verdict and its three lines."""
-        return listings(self)
+        return in_brief(self)
 
     def records(self) -> list[dict[str, Any]]:
         """A record an effect that was ranked, best first, for a data frame."""

@@ -2,21 +2,19 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
+from ident.diagnosis.result import Diagnosis
 from ident.words.error import error_said
 from ident.words.listed import all_of
 from ident.words.percent import percent
 from ident.words.plus_minus import plus_minus
 from ident.words.probability import probability_said
+from ident.words.shown import in_brief
 from ident.words.titles import title
-
-if TYPE_CHECKING:
-    from ident.diagnosis.result import Diagnosis
 
 _USES = (("verify", "validation data"), ("held_out", "held-out data"), ("fit", "estimation data"))
 
 
+@in_brief.register
 def summary(found: Diagnosis) -> tuple[str, str, str]:
     """A sentence or two each; from what is stored alone, so that a diagnosis of any version has them."""
     return _missing(found), _error(found), f"Next: {_next(found)}"

@@ -3,24 +3,23 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import TYPE_CHECKING
 
 from ident.diagnosis.discovery.term_count_curve import term_count_curve
+from ident.diagnosis.result import Diagnosis, Ranked
+from ident.diagnosis.summary import summary
 from ident.preprocessing.told import told
 from ident.words.error import error_said
 from ident.words.percent import percent
 from ident.words.plus_minus import UNDETERMINED, plus_minus_si
 from ident.words.probability import probability_said
-from ident.words.shown import Listing
-
-if TYPE_CHECKING:
-    from ident.diagnosis.result import Diagnosis, Ranked
+from ident.words.shown import Listing, listings
 
 USES = {"fit": "fit", "held_out": "held out", "verify": "verify"}
 Row = tuple[str, ...]
 
 
-def listings(found: Diagnosis) -> Iterator[Listing | str]:
+@listings.register
+def diagnosis_listings(found: Diagnosis) -> Iterator[Listing | str]:
     """Errors, ranking, ladder, suspects, proposals; sentences between and below them."""
     uses = tuple(USES.values())
     yield found.headline
@@ -44,7 +43,7 @@ def listings(found: Diagnosis) -> Iterator[Listing | str]:
     for said in told(found.preprocessing, found.notes):
         yield f"preprocessing: {said}"
     yield found.verdict.text
-    yield "\n".join(found.summary)
+    yield "\n".join(summary(found))
 
 
 def proposals_listing(found: Diagnosis) -> Listing:

@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any
 
 from ident.errors import Unusable
-from ident.fit.listings import listings
 from ident.matrix import Actuator, Matrix, StepOutcome
 from ident.plain import UNWRITTEN, WHERE_KNOWN, Misfit, read, written
 from ident.presets.description import description
@@ -17,7 +16,7 @@ from ident.run import USES
 from ident.unstable import UNSTABLE
 from ident.words.engineering import quantity
 from ident.words.error import ErrorOf, first_line
-from ident.words.shown import Listing, Shown
+from ident.words.shown import Shown
 
 
 @dataclass(frozen=True)
@@ -193,10 +192,6 @@ class FitResult(Shown):
     actuator: Actuator | None = field(default=None, metadata=WHERE_KNOWN)
     preprocessing: tuple[StepOutcome, ...] = field(default=(), metadata=WHERE_KNOWN)
     matrix: Matrix | None = field(default=None, compare=False, repr=False, metadata=UNWRITTEN)
-
-    def listings(self) -> Iterable[Listing | str]:
-        """Parameters, errors, what the data determine and what they do not, notes."""
-        return listings(self)
 
     def records(self) -> list[dict[str, Any]]:
         """A record a parameter, SI, for a data frame."""

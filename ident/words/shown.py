@@ -1,10 +1,16 @@
-"""Results as tables: one builder, :meth:`Shown.listings`, serves notebooks, ``print`` and the interactive prompt."""
+"""Results as tables: one builder, :meth:`Shown.listings`, serves notebooks, ``print`` and the interactive prompt.
+
+A result is data. Where its tables take a file of their own, that file registers them for its type (:func:`listings`):
+the result knows nothing of how it is shown.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Container, Iterable, Sequence
 from dataclasses import dataclass
+from functools import singledispatch
 from html import escape
+from importlib import import_module
 from typing import Any
 
 MOST_ROWS = 60
@@ -57,22 +63,52 @@ def _row(tag: str, cells: Sequence[str], sides: Sequence[str]) -> str:
     return f"<tr>{''.join(inner)}</tr>"
 
 
-def html(listings: Iterable[Listing | str]) -> str:
+def html(tables: Iterable[Listing | str]) -> str:
     """Tables and lines of text, one below the other."""
-    return "".join(f"<p>{escape(one)}</p>" if isinstance(one, str) else one.html() for one in listings)
+    return "".join(f"<p>{escape(one)}</p>" if isinstance(one, str) else one.html() for one in tables)
 
 
-def text(listings: Iterable[Listing | str]) -> str:
+def text(tables: Iterable[Listing | str]) -> str:
     """The same as plain text: an empty line around each table."""
     parts: list[str] = []
     after_table = False
-    for one in listings:
+    for one in tables:
         table = not isinstance(one, str)
         if parts and (table or after_table):
             parts.append("")
         parts.append(one if isinstance(one, str) else one.text())
         after_table = table
     return "\n".join(parts)
+
+
+TABLES: dict[str, str] = {}
+"""The module that has the tables of the results of a module. `ident` says it, which knows every room; it is imported
+when such a result is shown for the first time."""
+
+
+@singledispatch
+def listings(result: Any) -> Iterable[Listing | str]:
+    """The tables and sentences of a result, in the order in which they are read."""
+    found: Iterable[Listing | str] = _registered(listings, result)(result)
+    return found
+
+
+@singledispatch
+def in_brief(result: Any) -> tuple[str, ...]:
+    """A result in a few lines."""
+    found: tuple[str, ...] = _registered(in_brief, result)(result)
+    return found
+
+
+def _registered(function: Any, result: Any) -> Any:
+    """What is registered for the type of a result. Raises NotImplementedError."""
+    for base in type(result).__mro__:
+        if base.__module__ in TABLES:
+            import_module(TABLES[base.__module__])
+    found = function.dispatch(type(result))
+    if found is function.dispatch(object):
+        raise NotImplementedError(f"no tables are registered for {type(result).__name__}")
+    return found
 
 
 class Shown:
@@ -85,7 +121,7 @@ class Shown:
 
     def listings(self) -> Iterable[Listing | str]:
         """Its tables and sentences, in the order in which they are read."""
-        raise NotImplementedError
+        return listings(self)
 
     def _repr_html_(self) -> str:
         return html(self.listings())

@@ -6,17 +6,14 @@ With Ke P' = Q − L − A v a small change Ke φ of the compressibility takes K
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ident.diagnosis.criteria import CRITERIA
+from ident.diagnosis.discovery.site import Site
 from ident.diagnosis.discovery.term import Shape, Signals, Term
 from ident.equations.equation import Equation
-
-if TYPE_CHECKING:
-    from ident.diagnosis.discovery.term_library import TermLibrary
 
 Array = NDArray[np.float64]
 OIL = "Ke"
@@ -24,18 +21,18 @@ OIL = "Ke"
 _OF = (("P", "abs({a})", "size"), ("P", "{a}", "side"), ("x", "{a}", "side"), ("x", "abs({a})", "size"))
 
 
-def compressibility_terms(library: TermLibrary) -> Iterator[Term]:
+def compressibility_terms(site: Site) -> Iterator[Term]:
     """Terms that the compressibility may have beside its constant."""
-    if OIL not in library.typical or "P" not in library.typical:
+    if OIL not in site.typical or "P" not in site.typical:
         return
     for a, text, kind in _OF:
-        if a in library.typical:
-            powers = library.unit((OIL, 1), (a, 1))
+        if a in site.typical:
+            powers = site.unit((OIL, 1), (a, 1))
             yield _softer(text.format(a=a), f"softer with {kind}", (a,), powers, ())
     for share in CRITERIA.terms.soft:
-        h = Shape("h", float(np.quantile(np.abs(library.typical["P"]), share)), library.units["P"])
+        h = Shape("h", float(np.quantile(np.abs(site.typical["P"]), share)), site.units["P"])
         if h.value > 0:
-            yield _softer("1 / (1 + (P / h)**2)", "softer near rest", ("P",), library.unit((OIL, 1)), (h,))
+            yield _softer("1 / (1 + (P / h)**2)", "softer near rest", ("P",), site.unit((OIL, 1)), (h,))
 
 
 def _softer(share: str, kind: str, of: tuple[str, ...], unit: dict[str, float], shapes: tuple[Shape, ...]) -> Term:

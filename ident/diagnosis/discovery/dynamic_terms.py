@@ -4,18 +4,15 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from typing import TYPE_CHECKING
 
 import numpy as np
 import scipy  # signal, which takes most of a second to load, is loaded where it is first used
 from numpy.typing import NDArray
 
 from ident.diagnosis.criteria import CRITERIA
+from ident.diagnosis.discovery.site import Site
 from ident.diagnosis.discovery.term import STATE, Shape, Signals, Term, multiplied
 from ident.units.grammar import Powers
-
-if TYPE_CHECKING:
-    from ident.diagnosis.discovery.term_library import TermLibrary
 
 Array = NDArray[np.float64]
 SLIP = "v / sqrt(v**2 + vs**2)"
@@ -24,22 +21,22 @@ _REMEMBERED = {("controller", "x"), ("flow", "P"), ("load", "v"), ("load", "x")}
 _ERROR = {"dr", "v_in"}  # what a loop knows the rate of its error by
 
 
-def dynamic_terms(library: TermLibrary, place: str, at: str, a: str) -> Iterator[Term]:
+def dynamic_terms(site: Site, place: str, at: str, a: str) -> Iterator[Term]:
     """Terms that remember a signal `a` where they add to `at`."""
     if a == at or (place, a) in _REMEMBERED:
-        yield from _late(library, place, at, a)
-        yield from _play(library, place, at, a)
-    if (place, a) == ("load", "x") and "v" in library.signals[at]:
-        yield from _yielding(library, place, at)
+        yield from _late(site, place, at, a)
+        yield from _play(site, place, at, a)
+    if (place, a) == ("load", "x") and "v" in site.signals[at]:
+        yield from _yielding(site, place, at)
     if a == at:
-        yield from _after(library, place, at)
+        yield from _after(site, place, at)
     if a == at or (place, a) == ("load", "x"):
-        yield from _resonant(library, place, at, a)
+        yield from _resonant(site, place, at, a)
 
 
-def error_terms(library: TermLibrary, place: str, at: str) -> Iterator[Term]:
+def error_terms(site: Site, place: str, at: str) -> Iterator[Term]:
     """What a controller may make of its error beside a gain: its integral and its rate."""
-    if place != "controller" or not library.units.keys() >= _ERROR:
+    if place != "controller" or not site.units.keys() >= _ERROR:
         return
 
     def summed(signals: Signals, rate: float) -> Array:
@@ -48,16 +45,16 @@ def error_terms(library: TermLibrary, place: str, at: str) -> Iterator[Term]:
     def changing(signals: Signals, rate: float) -> Array:
         return np.asarray(np.gradient(signals[at]) * rate)
 
-    lasting = multiplied(library.unit((at, 1)), {"s": 1.0}, 1)
-    moving = library.unit(("Kp", 1), ("v_in", 1))
+    lasting = multiplied(site.unit((at, 1)), {"s": 1.0}, 1)
+    moving = site.unit(("Kp", 1), ("v_in", 1))
     yield Term(place, at, STATE, "integral", (at,), lasting, worked_out=summed, state=at, in_time=True)
     yield Term(place, at, "Kp * (dr - v_in)", "rate", (at,), moving, worked_out=changing, in_time=True)
 
 
-def _late(library: TermLibrary, place: str, at: str, a: str) -> Iterator[Term]:
-    by, unit = _by(library, place, at, a)
+def _late(site: Site, place: str, at: str, a: str) -> Iterator[Term]:
+    by, unit = _by(site, place, at, a)
     for share in CRITERIA.terms.lags:
-        T = Shape("T", share / library.band * 2 * np.pi, "s")
+        T = Shape("T", share / site.band * 2 * np.pi, "s")
 
         def late(signals: Signals, rate: float, T: float = T.value) -> Array:
             return np.asarray(_factor(by, signals) * (_lagging(signals[a], rate, T) - signals[a]))
@@ -75,12 +72,12 @@ def _late(library: TermLibrary, place: str, at: str, a: str) -> Iterator[Term]:
                 return _lagging(np.sign(signals["v"]), rate, T)
 
             yield Term(place, at, "lag(sgn(v), T)", "late friction", (a,), {}, (T,), (), dragged)
-            yield from _slipping_late(library, place, at, T)
+            yield from _slipping_late(site, place, at, T)
 
 
-def _slipping_late(library: TermLibrary, place: str, at: str, T: Shape) -> Iterator[Term]:
+def _slipping_late(site: Site, place: str, at: str, T: Shape) -> Iterator[Term]:
     """Friction that slips near rest, behind a lag."""
-    vs = library.slow(CRITERIA.terms.slipping)
+    vs = site.slow(CRITERIA.terms.slipping)
     if vs.value > 0:
 
         def slipping(signals: Signals, rate: float) -> Array:
@@ -90,21 +87,21 @@ def _slipping_late(library: TermLibrary, place: str, at: str, T: Shape) -> Itera
         yield Term(place, at, f"lag({SLIP}, T)", "late slip", ("v",), {}, (T, vs), (), slipping)
 
 
-def _after(library: TermLibrary, place: str, at: str) -> Iterator[Term]:
+def _after(site: Site, place: str, at: str) -> Iterator[Term]:
     """A gain that hangs on how much there was before, as that of a supply which gives way under a flow."""
     for share in CRITERIA.terms.recovering:
-        T = Shape("T", share * library.seconds, "s")
+        T = Shape("T", share * site.seconds, "s")
 
         def used(signals: Signals, rate: float, T: float = T.value) -> Array:
             return np.asarray(signals[at] * _lagging(np.abs(signals[at]), rate, T))
 
-        yield Term(place, at, f"{at} * lag(abs({at}), T)", "after", (at,), library.unit((at, 2)), (T,), (), used)
+        yield Term(place, at, f"{at} * lag(abs({at}), T)", "after", (at,), site.unit((at, 2)), (T,), (), used)
 
 
-def _play(library: TermLibrary, place: str, at: str, a: str) -> Iterator[Term]:
-    by, unit = _by(library, place, at, a)
+def _play(site: Site, place: str, at: str, a: str) -> Iterator[Term]:
+    by, unit = _by(site, place, at, a)
     for share in CRITERIA.terms.plays:
-        half = share * float(np.std(library.typical[a]))
+        half = share * float(np.std(site.typical[a]))
 
         def held(signals: Signals, _rate: float, half: float = half) -> Array:
             x, p, out = signals[a], 0.0, np.empty(len(signals[a]))
@@ -113,15 +110,15 @@ def _play(library: TermLibrary, place: str, at: str, a: str) -> Iterator[Term]:
                 out[k] = p - now
             return np.asarray(_factor(by, signals) * out)
 
-        shape = Shape("b", half, library.units[a])
+        shape = Shape("b", half, site.units[a])
         memory = (f"p := clip(p, {a} - b, {a} + b)",)
         yield Term(place, at, _times(by, f"p - {a}"), "play", (a,), unit, (shape,), memory, held)
 
 
-def _yielding(library: TermLibrary, place: str, at: str) -> Iterator[Term]:
+def _yielding(site: Site, place: str, at: str) -> Iterator[Term]:
     """A force that builds up along the way and yields smoothly, z' = v − |v| z / b (Dahl 1968)."""
     for share in CRITERIA.terms.yielding:
-        reach = share * float(np.std(library.typical["x"]))
+        reach = share * float(np.std(site.typical["x"]))
 
         def built(signals: Signals, _rate: float, reach: float = reach) -> Array:
             steps, z, out = np.diff(signals["x"], prepend=signals["x"][0]), 0.0, np.empty(len(signals["x"]))
@@ -130,15 +127,15 @@ def _yielding(library: TermLibrary, place: str, at: str) -> Iterator[Term]:
                 out[k] = z
             return out
 
-        b = Shape("b", reach, library.units["x"])
+        b = Shape("b", reach, site.units["x"])
         rate = f"v - abs(v) * {STATE} / b"
-        yield Term(place, at, STATE, "yields", ("x",), library.unit(("x", 1)), (b,), worked_out=built, state=rate)
+        yield Term(place, at, STATE, "yields", ("x",), site.unit(("x", 1)), (b,), worked_out=built, state=rate)
 
 
-def _resonant(library: TermLibrary, place: str, at: str, a: str) -> Iterator[Term]:
+def _resonant(site: Site, place: str, at: str, a: str) -> Iterator[Term]:
     """A mass on a spring that a signal moves: its motion beside that."""
     for share in CRITERIA.terms.resonances:
-        w = share * library.band
+        w = share * site.band
         a1, a2 = Shape("a1", 2 * CRITERIA.terms.damping / w, "s"), Shape("a2", 1 / w**2, "s^2")
 
         def beside(signals: Signals, rate: float, w: float = w) -> Array:
@@ -146,13 +143,13 @@ def _resonant(library: TermLibrary, place: str, at: str, a: str) -> Iterator[Ter
             over, under = scipy.signal.bilinear([1.0], [1 / w**2, 2 * CRITERIA.terms.damping / w, 1.0], warped)
             return np.asarray(scipy.signal.lfilter(over, under, signals[a]) - signals[a])
 
-        yield Term(place, at, f"lag2({a}, a1, a2) - {a}", "resonance", (a,), library.unit((a, 1)), (a1, a2), (), beside)
+        yield Term(place, at, f"lag2({a}, a1, a2) - {a}", "resonance", (a,), site.unit((a, 1)), (a1, a2), (), beside)
 
 
-def _by(library: TermLibrary, place: str, at: str, a: str) -> tuple[str, Powers]:
+def _by(site: Site, place: str, at: str, a: str) -> tuple[str, Powers]:
     """What multiplies a memory of a signal, as the loop's gain does where it is fed back, and its unit."""
-    by = "Kp" if place == "controller" and a != at and "Kp" in library.typical else ""
-    return by, library.unit((a, 1), *[(by, 1)] * bool(by))
+    by = "Kp" if place == "controller" and a != at and "Kp" in site.typical else ""
+    return by, site.unit((a, 1), *[(by, 1)] * bool(by))
 
 
 def _lagging(x: Array, rate: float, T: float) -> Array:

@@ -7,7 +7,7 @@ its own, ``at = at + s term``, whose strength s has the unit of the signal that 
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from itertools import product
 
@@ -16,30 +16,17 @@ import numpy as np
 from ident.diagnosis.criteria import CRITERIA
 from ident.diagnosis.discovery.compressibility_terms import compressibility_terms
 from ident.diagnosis.discovery.dynamic_terms import SLIP, dynamic_terms, error_terms
-from ident.diagnosis.discovery.term import LIMIT, Shape, Signals, Term, multiplied
-from ident.units.grammar import Powers, powers_of
+from ident.diagnosis.discovery.site import Site
+from ident.diagnosis.discovery.term import LIMIT, Shape, Term, multiplied
+from ident.units.grammar import powers_of
 
 ALONE = "valve"
 """A place whose own signal alone terms are of."""
 
 
 @dataclass(frozen=True)
-class TermLibrary:
-    """All terms for the places of a chain: `places` maps a signal that is added to to the place where it is.
-
-    `signals` are by it those that terms there may be of, `typical` all their samples, `units` as the chain has them;
-    `band` is the end of the command's, rad/s, `seconds` the length of the shortest run, `varied` the conditions that
-    differ, `recorded` the channels beside the machine.
-    """
-
-    places: Mapping[str, str]
-    signals: Mapping[str, Sequence[str]]
-    typical: Signals
-    units: Mapping[str, str]
-    band: float
-    seconds: float
-    varied: Sequence[str] = ()
-    recorded: Sequence[str] = ()
+class TermLibrary(Site):
+    """All terms for the places of a chain."""
 
     def terms(self) -> Iterator[Term]:
         """Every term, the simplest forms first."""
@@ -181,14 +168,3 @@ class TermLibrary:
                 turn = Shape("g", phase, "1", lower=-0.5, upper=0.5)
                 text = f"{at} * sin(2 * pi * (fp * t + g))"
                 yield Term(place, at, text, "periodic", (at, "t"), self.unit((at, 1)), (f, turn))
-
-    def slow(self, share: float) -> Shape:
-        """A speed that is slow: below it is the machine in that share of the samples."""
-        return Shape("vs", float(np.quantile(np.abs(self.typical["v"]), share)), self.units["v"])
-
-    def unit(self, *of: tuple[str, int]) -> Powers:
-        """That of a product of powers of signals."""
-        found: Powers = {}
-        for name, power in of:
-            found = multiplied(found, powers_of(self.units[name]) or {}, power)
-        return found

@@ -3,22 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from typing import TYPE_CHECKING
 
+from ident.fit.result import Estimate, FitResult
 from ident.preprocessing.told import told
 from ident.words.error import error_said
 from ident.words.percent import percent
 from ident.words.plus_minus import UNDETERMINED, determined, plus_minus_si
-from ident.words.shown import Listing
+from ident.words.shown import Listing, listings
 from ident.words.uses import DATA
-
-if TYPE_CHECKING:
-    from ident.fit.result import Estimate, FitResult
 
 USES = tuple(DATA.values())
 
 
-def listings(result: FitResult) -> Iterator[Listing | str]:
+@listings.register
+def fit_listings(result: FitResult) -> Iterator[Listing | str]:
     """Parameters, errors, what the data determine and what they do not, notes."""
     header = ("parameter", "value", "std error", "unit", "")
     title = " + ".join((result.model, *result.effects))

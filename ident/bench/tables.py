@@ -3,16 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from typing import TYPE_CHECKING
 
-from ident.words.shown import Listing
-
-if TYPE_CHECKING:
-    from ident.bench.acceptance import Line
-    from ident.bench.analysis import Analysis
+from ident.bench.acceptance import Line, sheet
+from ident.bench.analysis import Analysis
+from ident.words.shown import Listing, listings
 
 
-def listings(analysis: Analysis, lines: Iterable[Line]) -> Iterator[Listing | str]:
+@listings.register
+def analysis_listings(analysis: Analysis) -> Iterator[Listing | str]:
+    """The acceptance sheet without limits, and what is to be known."""
+    return with_sheet(analysis, sheet(analysis, {}))
+
+
+def with_sheet(analysis: Analysis, lines: Iterable[Line]) -> Iterator[Listing | str]:
     """The sheet, the delay's correlations, and what is to be known."""
     numbers = ("value", "std error", "min", "max")
     header = ("quantity", "value", "std error", "unit", "min", "max", "")
