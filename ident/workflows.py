@@ -43,7 +43,7 @@ from ident.matrix import Matrix
 from ident.planning import plan as planning
 from ident.planning.plan import LEAST, Plan
 from ident.preprocessing import screen
-from ident.presets.preset import Kind
+from ident.presets.model import Kind
 from ident.progress import Report, silent
 from ident.readers.rig import read_rig, rig_of
 from ident.rig.limits import RigLimits

@@ -137,7 +137,8 @@ def units(name: str, model: str) -> dict[str, str]:
     matrix = recorded(name)
     if KINDS[name].output in ("force", "load_pressure"):
         matrix = replace(matrix, runs=tuple(replace(run, output="force") for run in matrix.runs))
-    model_ = replace(preset(model), recorded=RecordUnits.of(matrix.runs))
+    known = preset(model)
+    model_ = replace(known, display=replace(known.display, recorded=RecordUnits.of(matrix.runs)))
     return {parameter.name: model_.unit(parameter) for parameter in model_.parameters}
 
 

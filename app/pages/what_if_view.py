@@ -152,7 +152,7 @@ class WhatIfView:
 def what_if_form(fit: FitResult, given: Mapping[str, str]) -> WhatIfForm:
     """The form for a fit, filled with what was given."""
     model = preset(fit.model)
-    known = model.gains.get("Kp")
+    known = model.data.gains.get("Kp")
     usual = USUAL_GAINS if known is None else (known, known)
     return WhatIfForm(
         sizes=tuple(SizeField(name, _size(fit, name), _EXAMPLES[name]) for name in SIZES),

@@ -204,14 +204,14 @@ def uncertain_machine(fit: FitResult, spread: Spread, like: Run, actuator: Actua
     Raises Unusable where its model answers no command, or a value is missing.
     """
     named = preset_with(fit.model, fit.effects, fit.settings.get("custom", ()))
-    if named.kind != "chain" or named.driven_by != "command":
+    if named.kind != "chain" or named.data.driven_by != "command":
         raise Unusable("no-answer", f"the model {fit.model} answers no command", "fit", "give the fit of an actuator")
     ratios = {name for name, _ in (named.without_area or {}).values()} & set(fit.parameters)
     stated = fit.actuator or actuator or Actuator("")
-    area = None if ratios else stated.piston_area or named.bounds_hold_for
+    area = None if ratios else stated.piston_area or named.search.bounds_hold_for
     stated = replace(stated, piston_area=area)
     preset, _ = named.for_matrix(Matrix(stated, (like,)))
-    values = dict(preset.gains) | usual_shapes(named.effects)
+    values = dict(preset.data.gains) | usual_shapes(named.effects)
     values |= {preset.parameter(name).in_equations: value for name, value in fit.values.items()}
     if missing := [p.name for p in preset.parameters if p.in_equations not in values]:
         raise Unusable("bad-fit", f"no value of {', '.join(missing)}", "fit", f"give a fit of model {fit.model}")

@@ -69,7 +69,7 @@ class CandidateModels:
     ) -> CandidateModels:  # fmt: skip
         """The models of the settings' preset with every effect that it has a place for."""
         preset, matrix = prepare(preset_named(given.model), matrix, given.load, given.preprocessing)
-        there = preset.driven_by in MOTIONS or any(run.specimen or "force" in run.channels for run in matrix.runs)
+        there = preset.data.driven_by in MOTIONS or any(run.specimen or "force" in run.channels for run in matrix.runs)
         listed = (*(effect for effect in CATALOGUE if there or not effect.of_specimen), *custom)
         known = {
             effect.name: about(effect, preset.middle)

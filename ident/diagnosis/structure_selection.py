@@ -73,7 +73,7 @@ def _compared(
     models = in_question(matrix.runs, matrix.machine)
     if len(models) == 1:
         only = models[0]
-        shown = f"{only.name} is driven by {only.driven_by} and shows what was recorded"
+        shown = f"{only.name} is driven by {only.data.driven_by} and shows what was recorded"
         if told_by_following(only, matrix.runs):
             shown = f"{only.name}, a loop that compares both, since what was recorded is where the command is"
         why = "the matrix describes it" if matrix.machine else shown

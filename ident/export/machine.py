@@ -45,7 +45,7 @@ class ExportedMachine:
     @property
     def driven_by(self) -> str:
         """The channel that is the input."""
-        return self.preset.driven_by
+        return self.preset.data.driven_by
 
     @property
     def outputs(self) -> tuple[str, ...]:
@@ -92,8 +92,10 @@ def exported(
     if any(name in fit.parameters for name, _ in (preset.without_area or {}).values()):
         actuator = replace(actuator, piston_area=None)  # the values are ratios to it
     elif "A" in preset.chain.symbols and actuator.piston_area is None:
-        actuator = replace(actuator, piston_area=preset.bounds_hold_for)
-    run = Run("export", "", sample_rate, {}, specimen=specimen, gain=preset.gains.get("Kp") if gain is None else gain)
+        actuator = replace(actuator, piston_area=preset.search.bounds_hold_for)
+    run = Run(
+        "export", "", sample_rate, {}, specimen=specimen, gain=preset.data.gains.get("Kp") if gain is None else gain
+    )
     known = conditions(run, actuator)
     known |= off_values(preset.effects)
     known |= {preset.parameter(name).in_equations: value for name, value in fit.values.items()}
@@ -112,8 +114,8 @@ def _check_driven(fit: FitResult, preset: Preset, specimen: Specimen) -> None:
     if fit.settings.get("load") == "force" and specimen == Specimen():
         raise Unusable("not-stated", "the load of this fit was the measured force, which its machine has not elsewhere",
                        "export", "state the specimen that it is to move")  # fmt: skip
-    if preset.driven_by in MOTIONS and INPUT_RATE in read:
-        what = f"the {preset.driven_by} is drawn through its samples, and an exported machine holds its input"
+    if preset.data.driven_by in MOTIONS and INPUT_RATE in read:
+        what = f"the {preset.data.driven_by} is drawn through its samples, and an exported machine holds its input"
         raise Unusable("no-export", what, "fit", "export a machine that a command or a force drives")
 
 

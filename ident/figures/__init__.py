@@ -101,4 +101,4 @@ def figures_of(fit: FitResult) -> tuple[str, ...]:
 
 def figures_for(model: Preset) -> tuple[str, ...]:
     """Names of the figures of a model: those that its preset names, else all of its kind."""
-    return model.figures or tuple(name for name, drawing in FIGURES.items() if drawing.of == model.kind)
+    return model.display.figures or tuple(name for name, drawing in FIGURES.items() if drawing.of == model.kind)

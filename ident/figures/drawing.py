@@ -9,7 +9,7 @@ from typing import Any
 from ident.figures.look import Look
 from ident.figures.render import Chart
 from ident.figures.study import Study
-from ident.presets.preset import Kind
+from ident.presets.model import Kind
 
 Options = Mapping[str, Any]
 

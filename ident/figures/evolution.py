@@ -76,7 +76,7 @@ def _pair(fit: FitResult, x: str | None, y: str | None) -> tuple[str, str] | Non
                 "not-searched", f"{name!r} was not searched", "figure option", f"use {', '.join(fit.searched)}"
             )
     usual = [
-        name for wanted in preset_with(fit.model).shown for name in fit.searched if name.split("/")[0] == wanted
+        name for wanted in preset_with(fit.model).display.shown for name in fit.searched if name.split("/")[0] == wanted
     ]  # Z0, Z0/A^2
     preferred = [*usual, *fit.searched]
     first = x or next((name for name in preferred if name != y), None)

@@ -177,7 +177,7 @@ class Identification:
         given = {self.preset.parameter(name).in_equations for name in of_model(self.settings, self.preset).bounds}
         found = beyond_bounds(found, self.searched, objective, given, self.report, drawn)
         # A measured motion that a specimen integrates is known; only what a command drives is disturbed on its way.
-        if self._integrates and self.preset.driven_by == "command":
+        if self._integrates and self.preset.data.driven_by == "command":
             if not state.get("horizon"):
                 return in_windows(found, self.report, whole=not self._fed_back)
             if not self._fed_back:
@@ -217,7 +217,7 @@ def check_settings(settings: Settings) -> None:
         return
     preset = preset_with(settings.model, settings.effects, settings.custom)
     _refuse_circle(preset)
-    if settings.method not in (*GENERAL, *preset.methods):
+    if settings.method not in (*GENERAL, *preset.search.methods):
         raise _not_a_method(settings)
     if settings.load not in ("none", "force"):
         remedy = did_you_mean(settings.load, ("none", "force"))
@@ -265,9 +265,9 @@ def _check_without_model(settings: Settings) -> None:
 
 def _not_a_method(settings: Settings) -> Unusable:
     """What is said of a method that a model cannot be fitted by."""
-    others = [known.name for known in PRESETS.values() if settings.method in known.methods]
+    others = [known.name for known in PRESETS.values() if settings.method in known.search.methods]
     if not others:
-        methods = (*GENERAL, *preset_with(settings.model).methods)
+        methods = (*GENERAL, *preset_with(settings.model).search.methods)
         remedy = did_you_mean(settings.method, methods)
         return Unusable("unknown-method", f"no method {settings.method!r}", "method", remedy)
     what = f"{settings.method} is a method of the model {' and '.join(others)}"
@@ -278,8 +278,8 @@ def _refuse_undriven(preset: Preset, matrix: Matrix) -> None:
     """Raise Unusable where a run lacks the channel that drives the model, with the models that its channels drive."""
     for run in matrix.runs:
         if "command" not in run.channels:
-            others = [known.name for known in PRESETS.values() if known.driven_by in run.channels]
-            what = f"no {preset.driven_by} channel, which drives the model {preset.name}"
+            others = [known.name for known in PRESETS.values() if known.data.driven_by in run.channels]
+            what = f"no {preset.data.driven_by} channel, which drives the model {preset.name}"
             remedy = f"name its column, or use the model {' or '.join(others)}" if others else "name its column"
             raise Unusable("missing-channel", what, f"run {run.id}", remedy)
 
@@ -289,7 +289,7 @@ def _fed_back(preset: Preset, runs: Sequence[Run]) -> tuple[str, ...]:
 
     Of many runs of which nobody said so every so-manieth is judged: one rig records them all alike.
     """
-    if preset.driven_by != "command":
+    if preset.data.driven_by != "command":
         return ()
     apart = -(-len(runs) // _JUDGED)
     judged = (run for at, run in enumerate(runs) if run.closed_loop is not None or at % apart == 0)

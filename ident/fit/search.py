@@ -96,7 +96,7 @@ class Search:
 def options_of(settings: Settings, preset: Preset) -> dict[str, float]:
     """The method's options, those of the user over the model's over the usual. Raises Unusable for an unknown one."""
     near = bool(preset.effects) or settings.load == "force"  # to what was found without them, or with the specimen
-    default = {**(genetic.WITH_EFFECTS if near else genetic.DEFAULT), **preset.search}
+    default = {**(genetic.WITH_EFFECTS if near else genetic.DEFAULT), **preset.search.options}
     known = {"ga": default, "paper-ga": genetic.PAPER}.get(settings.method, {})
     for name, value in settings.options.items():
         if name not in known:

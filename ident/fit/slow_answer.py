@@ -39,7 +39,7 @@ def slow_lag(objective: Fitness, found: Covariance) -> Iterator[Combination]:
     """
     runs = objective.matrix.of_use("fit")
     alike = len({(run.gain, run.specimen, run.output) for run in runs}) == 1
-    if objective.preset.driven_by != "command" or not alike or runs[0].output not in MOTIONS:
+    if objective.preset.data.driven_by != "command" or not alike or runs[0].output not in MOTIONS:
         return
 
     def lag(points: Array) -> Array:
@@ -48,7 +48,7 @@ def slow_lag(objective: Fitness, found: Covariance) -> Iterator[Combination]:
     here = float(lag(found.point[None])[0])
     error = found.deviation(lag) if np.isfinite(here) and here > 0 else np.inf
     if error < DETERMINED * here:
-        yield Combination(NAME, here, objective.preset.recorded.clock, error)
+        yield Combination(NAME, here, objective.preset.display.recorded.clock, error)
 
 
 def lags(objective: Fitness, run: Run, points: Array) -> Array:

@@ -126,28 +126,28 @@ def search_space(preset: Preset, matrix: Matrix, settings: Settings, band: float
     runs = matrix.of_use("fit")
     given = {preset.parameter(name).in_equations: bounds for name, bounds in settings.bounds.items()}
     fixed = {preset.parameter(name).in_equations: value for name, value in settings.fixed.items()}
-    area, known_for = matrix.actuator.piston_area, preset.bounds_hold_for
+    area, known_for = matrix.actuator.piston_area, preset.search.bounds_hold_for
     same = known_for is not None and area is not None and abs(area / known_for - 1) < _SAME_AREA
     same = same and _stated(preset, runs)
     if all(run.stepped for run in runs):
         band /= _OF_STEPS
     typical = sizes_of(matrix, runs, band)
-    if preset.driven_by == "velocity":
+    if preset.data.driven_by == "velocity":
         typical["V"] = typical["U"]  # the speed is prescribed, whether it was recorded or not
     force = _acting(runs, "force" if settings.load == "force" else "load_disturbance")
     if force:  # a mass that would need it
         typical["mL"] = force / (typical["V"] * band)
     of_effects = [p for effect in preset.effects for p in effect.added]
-    known = _shapes(preset, typical) | {name: value for name, value in preset.gains.items() if name != "Kp"}
+    known = _shapes(preset, typical) | {name: value for name, value in preset.data.gains.items() if name != "Kp"}
     fixed = {name: value for name, value in known.items() if name not in given} | fixed
     convention = None
-    forced = force or preset.driven_by != "command"
+    forced = force or preset.data.driven_by != "command"
     scales = preset.scales_by_position if measured_by(runs) == "displacement" else preset.scales
     free = {scale.name for scale in scales} - fixed.keys() - given.keys()
-    if free & set(preset.share_force[:1]) and not (same or forced or _loaded(runs)):
-        convention = preset.share_force[0]
+    if free & set(preset.data.share_force[:1]) and not (same or forced or _loaded(runs)):
+        convention = preset.data.share_force[0]
         fixed[convention] = typical["mL"]
-    held = tuple(one for one in of_runs(preset.conventions, runs) if not {*one.held} & {*fixed, *given})
+    held = tuple(one for one in of_runs(preset.data.conventions, runs) if not {*one.held} & {*fixed, *given})
     fixed = {name: value for one in held for name, value in one.held.items()} | fixed
     axes, fastest = [], FASTEST * min(run.sample_rate for run in runs)
     for scale in scales:
@@ -170,7 +170,7 @@ def search_space(preset: Preset, matrix: Matrix, settings: Settings, band: float
 def _shapes(preset: Preset, typical: Mapping[str, float]) -> dict[str, float]:
     """What effects' shapes are held at where nobody says otherwise."""
     return {
-        p.in_equations: p.relative * typical["L"] if p.relative and preset.relative_ways else p.value
+        p.in_equations: p.relative * typical["L"] if p.relative and preset.search.relative_ways else p.value
         for effect in preset.effects
         for p in effect.added[1:]
         if not p.searched
@@ -179,7 +179,7 @@ def _shapes(preset: Preset, typical: Mapping[str, float]) -> dict[str, float]:
 
 def _stated(preset: Preset, runs: tuple[Run, ...]) -> bool:
     """Whether of every run all is stated that its model reads: the gain of a loop, and what the machine moves."""
-    loop, load = preset.chain.reads("Kp"), not preset.alone
+    loop, load = preset.chain.reads("Kp"), not preset.data.alone
     return all(not (loop and run.gain is None) and not (load and run.specimen is None) for run in runs)
 
 

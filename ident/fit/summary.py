@@ -88,7 +88,7 @@ def summarise(
     if space.convention:
         weak = [
             *weak,
-            *(name for name in preset.share_force if name in relative and name not in weak),
+            *(name for name in preset.data.share_force if name in relative and name not in weak),
             space.convention,
         ]
     for one in space.conventions:
@@ -181,7 +181,7 @@ def _window(fitness: Fitness, point: Array, known: Covariance, left_out: tuple[s
             )
             if np.all(np.isfinite(free)):  # a free run that goes astray has no interval
                 free_run[use] = tuple(float(end) for end in np.quantile(free, (0.025, 0.975)))
-    clock = fitness.preset.recorded.clock
+    clock = fitness.preset.display.recorded.clock
     return Window(fitness.horizon, error, free_run, fitness.memory, clock if clock == SAMPLE else "")
 
 
@@ -189,7 +189,7 @@ def _labels(objective: Fitness) -> dict[str, tuple[str, str]]:
     """Name and unit under which a parameter is reported: a ratio to the area where the area is unknown."""
     plain = {p.in_equations: (p.name, objective.preset.unit(p)) for p in objective.preset.parameters}
     known = objective.matrix.actuator.piston_area is not None
-    shown = objective.preset.recorded.shown
+    shown = objective.preset.display.recorded.shown
     ratios = {name: (label, shown(unit)) for name, (label, unit) in (objective.preset.without_area or {}).items()}
     return plain if known else plain | ratios
 
@@ -235,7 +235,7 @@ def _determined(
         if (
             error <= DETERMINED
             and name not in (*shared, *bounded)
-            and not (space.convention and name in objective.preset.share_force)
+            and not (space.convention and name in objective.preset.data.share_force)
         ):
             yield Combination(label[name][0], values[name], label[name][1], values[name] * error)
     for combined in objective.preset.combinations:
@@ -249,7 +249,7 @@ def _determined(
         open_ = any(one.held.keys() & combined.equation.names for one in space.conventions)
         if error <= (DETERMINED if open_ else COMBINED):  # all that is known of what a convention holds
             value = float(quantity(found.point[None])[0])
-            unit = objective.preset.recorded.shown(combined.unit)
+            unit = objective.preset.display.recorded.shown(combined.unit)
             yield Combination(combined.text.replace("**", "^"), value, unit, value * error)
     yield from slow_lag(objective, found)
 
@@ -257,7 +257,7 @@ def _determined(
 def _reason(objective: Fitness, name: str, relative: Mapping[str, float], point: Array) -> str:
     if name == objective.space.convention:
         return "fixed by convention: no specimen of known mass, stiffness or damping gives the forces a scale"
-    if objective.space.convention and name in objective.preset.share_force:
+    if objective.space.convention and name in objective.preset.data.share_force:
         return "only the ratio to the moving mass is identifiable: the mass is fixed by convention"
     for one in objective.space.conventions:
         if name in one.held:

@@ -63,7 +63,7 @@ def linear_plant(
     the model has no displacement that a command drives, and where the fit needs an area that is not given.
     """
     preset = preset_with(fit.model, fit.effects, fit.settings.get("custom", ()))
-    if preset.kind != "chain" or preset.driven_by != "command" or OUTPUT not in preset.chain.outputs:
+    if preset.kind != "chain" or preset.data.driven_by != "command" or OUTPUT not in preset.chain.outputs:
         raise Unusable("no-answer", f"the model {fit.model} has no command that moves a displacement", "fit",
                        "give the fit of an actuator")  # fmt: skip
     names = {name: preset.parameter(name).in_equations for name in fit.parameters}
@@ -75,7 +75,7 @@ def linear_plant(
     )  # fmt: skip
     chain = preset.core.with_effects(kept)
     known = {
-        "Kp": preset.gains.get("Kp", 1.0) if gain is None else gain,
+        "Kp": preset.data.gains.get("Kp", 1.0) if gain is None else gain,
         "mL": specimen.mass, "k": specimen.stiffness, "cL": specimen.damping,
         "A": _area(preset, fit, piston_area), "Ir": 1.0, "Ps": supply_pressure or NEVER,
     }  # fmt: skip

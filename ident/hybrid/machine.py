@@ -88,7 +88,7 @@ def machine(fit: FitResult, case: Case, effects: Mapping[str, float] | None = No
     added = tuple(name.partition(".")[0] for name in effects or {})
     preset = preset_with(fit.model, tuple({**dict.fromkeys(fit.effects), **dict.fromkeys(added)}),
                          fit.settings.get("custom", ()))  # fmt: skip
-    if preset.kind != "chain" or preset.driven_by != "command" or DISPLACEMENT not in preset.chain.outputs:
+    if preset.kind != "chain" or preset.data.driven_by != "command" or DISPLACEMENT not in preset.chain.outputs:
         raise Unusable("no-answer", f"the model {fit.model} has no command that moves a displacement", "fit",
                        "give the fit of an actuator")  # fmt: skip
     if "Ps" in preset.core.symbols and case.supply_pressure is None:
@@ -116,10 +116,10 @@ def _conditions(case: Case) -> dict[str, float]:
 
 def _stated(preset: Preset, fit: FitResult, case: Case) -> dict[str, float]:
     """What the fit knew beforehand and does not hold: its piston area, and gains that its model states."""
-    found = dict(preset.gains)
+    found = dict(preset.data.gains)
     ratios = {name for name, _ in (preset.without_area or {}).values()}
     if "A" in preset.chain.symbols:
-        known = case.piston_area or preset.bounds_hold_for
+        known = case.piston_area or preset.search.bounds_hold_for
         if not ratios & set(fit.parameters) and known is None:
             raise Unusable("missing-area", "the fit stands on a piston area", "case piston_area", "state it")
         found["A"] = 1.0 if ratios & set(fit.parameters) or known is None else known

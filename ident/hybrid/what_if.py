@@ -154,7 +154,7 @@ def _gains(machine: ChangedMachine, gains: tuple[float, float] | None) -> tuple[
         if gains is not None:
             raise Unusable("no-gain", "the model has no loop with a gain", "gain", "leave the gain out")
         return (None,)
-    known = machine.preset.gains.get("Kp")
+    known = machine.preset.data.gains.get("Kp")
     lower, upper = gains or (USUAL_GAINS if known is None else (known, known))
     if not (0 < lower <= upper < np.inf):
         raise Unusable("bad-gain", f"{lower:g} to {upper:g} is no range of gains above 0", "gain", "write it as 2:3")

@@ -25,7 +25,7 @@ def _act(prepared: Prepared) -> tuple[Prepared, tuple[str, ...]]:
     the model run away. One machine has one neutral: the middle one of the runs to fit that show it.
     """
     matrix, preset = prepared.matrix, prepared.model
-    if preset.kind != "chain" or preset.driven_by != "command":
+    if preset.kind != "chain" or preset.data.driven_by != "command":
         return prepared, ()
     shown = [run.command[0] for run in matrix.of_use("fit") or matrix.runs if run.stands]
     neutral = float(np.median(shown)) if shown else 0.0

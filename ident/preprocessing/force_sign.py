@@ -35,7 +35,7 @@ def gives_work_back(run: Run) -> bool:
 def _act(prepared: Prepared) -> tuple[Prepared, tuple[str, ...]]:
     """Turn the sign of the force in every run in which the specimen would give work back."""
     matrix = prepared.matrix
-    wrong = [run for run in matrix.runs if gives_work_back(run)] if prepared.model.driven_by in MOTIONS else []
+    wrong = [run for run in matrix.runs if gives_work_back(run)] if prepared.model.data.driven_by in MOTIONS else []
     if not wrong:
         return prepared, ()
     ids = ", ".join(run.id for run in wrong)

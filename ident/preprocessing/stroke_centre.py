@@ -71,7 +71,7 @@ def _driven_against_both(runs: Sequence[Run], low: float, high: float) -> bool:
 def _act(prepared: Prepared) -> tuple[Prepared, tuple[str, ...]]:
     """Put the effects of the model about the centre of the stroke."""
     preset, matrix = prepared.model, prepared.matrix
-    if preset.kind != "chain" or preset.driven_by != "command":
+    if preset.kind != "chain" or preset.data.driven_by != "command":
         return prepared, ()
     middle = middle_of(matrix, preset.core)
     # The effects that the model has are put about the new middle with it.

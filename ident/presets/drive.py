@@ -1,7 +1,7 @@
 """A drive: force → mass, spring and damper, open loop or under a position loop."""
 
 from ident.chain.chain import Chain
-from ident.presets.preset import Combined, Preset
+from ident.presets.preset import Combined, Preset, RequiredData, SearchPlan
 from ident.stages import CASCADE, DIRECT_FORCE, DRIVEN_MASS, IDEAL_DRIVE, IDEAL_SENSOR, Scale
 
 OUTPUTS = {"displacement": "y", "force": "F"}
@@ -17,13 +17,17 @@ UNDER_CONTROL = Preset(
     citation=CITATION,
     chain=Chain(stages=(CASCADE, IDEAL_DRIVE, DRIVEN_MASS, IDEAL_SENSOR), outputs=OUTPUTS),
     listed=("m0", "c0", "k0"),
-    searched=("m0", "kp", "kv"),
-    force_scale=FORCE_SCALE,
-    share_force=("m0", "c0", "k0", "kv"),
     combinations=(
         Combined("kp*kv / m0", "1/s^2", "stiffness of the position loop over the mass"),
         Combined("(kv + c0) / m0", "1/s", "damping of the loop over the mass"),
         Combined("c0 / m0", "1/s", "friction over the mass"),
+    ),
+    search=SearchPlan(
+        order=("m0", "kp", "kv"),
+        force_scale=FORCE_SCALE,
+    ),
+    data=RequiredData(
+        share_force=("m0", "c0", "k0", "kv"),
     ),
 )
 
@@ -32,13 +36,17 @@ DRIVE = Preset(
     title="Drive",
     citation=CITATION,
     chain=Chain(stages=(DIRECT_FORCE, DRIVEN_MASS, IDEAL_SENSOR), outputs=OUTPUTS),
-    rescaled=(
-        Scale("m0", "U / (X * W**2)", 1e-3, 1e7),
-        Scale("c0", "U / (X * W)", 1e-4, 1e5),
-        Scale("k0", "U / X", 1e-6, 1e2),
+    search=SearchPlan(
+        rescaled=(
+            Scale("m0", "U / (X * W**2)", 1e-3, 1e7),
+            Scale("c0", "U / (X * W)", 1e-4, 1e5),
+            Scale("k0", "U / X", 1e-6, 1e2),
+        ),
+        force_scale=FORCE_SCALE,
+        methods=("inverse-dynamics",),
     ),
-    driven_by="drive_force",
-    force_scale=FORCE_SCALE,
-    methods=("inverse-dynamics",),
+    data=RequiredData(
+        driven_by="drive_force",
+    ),
     under_control=UNDER_CONTROL,
 )

@@ -2,7 +2,7 @@
 
 from ident.chain.chain import Chain
 from ident.parameter import Parameter, Starts
-from ident.presets.preset import Preset
+from ident.presets.preset import Preset, SearchPlan
 from ident.stages import IDEAL_SENSOR, INSTANT_VALVE, OPENED_BY_COMMAND, RIGID_SPOOL, Quantity, Scale
 from ident.stages.stage import stage
 
@@ -34,7 +34,9 @@ FIRST_ORDER = Preset(
         stages=(OPENED_BY_COMMAND, INSTANT_VALVE, RIGID_SPOOL, TRACKING_LAG, IDEAL_SENSOR),
         outputs={"displacement": "y", "velocity": "y", "load_pressure": "y", "force": "y"},
     ),
-    drive_scale="U",
     static_gains=("gain",),
-    methods=("ekf",),
+    search=SearchPlan(
+        drive_scale="U",
+        methods=("ekf",),
+    ),
 )

@@ -12,7 +12,7 @@ from functools import lru_cache
 from ident.chain.chain import Chain
 from ident.errors import Unusable
 from ident.presets.description import CHOICES, GAINS, Description, described, description
-from ident.presets.preset import Preset
+from ident.presets.preset import Display, Preset, RequiredData, SearchPlan
 from ident.presets.specimen import SPECIMEN
 from ident.stages import (
     BLOCKED,
@@ -74,15 +74,21 @@ def composed(of: Description, name: str = "", title: str = "") -> Preset:
         title=title or _title(of),
         citation="Put together from stages: H. E. Merritt, Hydraulic Control Systems. Wiley (1967), chapters 6 to 8.",
         chain=chain,
-        rescaled=tuple(_rescaled(of)),
-        force_scale=_force_scale(of),
-        relative_ways=of.sensor[0] in ("displacement", "velocity"),
-        drive_scale="Kp*U" if of.closed else "U",
-        of_drive=("Kv", "Kt"),
-        share_force=_share_force(of),
         without_area=_WITHOUT_AREA if of.hydraulic else None,
-        gains=_gains(of),
-        compares=of.compares,
+        search=SearchPlan(
+            rescaled=tuple(_rescaled(of)),
+            force_scale=_force_scale(of),
+            relative_ways=of.sensor[0] in ("displacement", "velocity"),
+            drive_scale="Kp*U" if of.closed else "U",
+        ),
+        data=RequiredData(
+            share_force=_share_force(of),
+            gains=_gains(of),
+            compares=of.compares,
+        ),
+        display=Display(
+            of_drive=("Kv", "Kt"),
+        ),
     )
 
 

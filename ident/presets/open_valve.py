@@ -1,7 +1,7 @@
 """A valve-controlled cylinder in open loop: valve opening → load pressure."""
 
 from ident.chain.chain import Chain
-from ident.presets.preset import Combined, Preset
+from ident.presets.preset import Combined, Preset, RequiredData, SearchPlan
 from ident.stages import (
     COMPRESSIBLE,
     FIRST_ORDER_VALVE,
@@ -33,23 +33,31 @@ OPEN_VALVE = Preset(
         outputs={"load_pressure": "P", "displacement": "y", "velocity": "v", "force": "F"},
     ),
     listed=("m0", "tau", "c0", "Ka", "Cl", "Z0"),
-    rescaled=(
-        Scale("m0", "1", 1e-2, 1e6),
-        Scale("c0", "m0 * W", 1e-4, 1e2),
-        Scale("Ka", "A**2 / (m0 * W**2)", 1e-3, 1e3),
-        Scale("Z0", "A**3 * X / (m0 * W * U)", -3e1, 3e1, logarithmic=False),
-    ),
-    # V, where no speed is recorded, is the largest that the band allows.
-    rescaled_by_position=(Scale("Z0", "A**2 * V / U", -1.0, 1.0, logarithmic=False),),
-    force_scale="(c0 + m0*W)*W*L",
-    share_force=("m0", "c0", "Ka", "Cl"),
-    drive_scale="U",
-    without_area={"Z0": ("Z0/A^3", "1/(m^2*s)"), "Ka": ("Ka/A^2", "m/N"), "Cl": ("Cl/A^2", "m/(N*s)"),
-                  "m0": ("m0/A^2", "kg/m^4")},
+    without_area={
+        "Z0": ("Z0/A^3", "1/(m^2*s)"),
+        "Ka": ("Ka/A^2", "m/N"),
+        "Cl": ("Cl/A^2", "m/(N*s)"),
+        "m0": ("m0/A^2", "kg/m^4"),
+    },
     combinations=(
         Combined("A**2 / (Ka*m0)", "1/s^2", "ωh², the oil column against the moving mass"),
         Combined("Z0 / (A*Ka)", "Pa/(m*s)", "rate of pressure for each unit of opening"),
         Combined("c0 / m0", "1/s", "damping of the moving mass"),
         Combined("Cl / Ka", "1/s", "decay of a pressure by leakage"),
     ),
-)  # fmt: skip
+    search=SearchPlan(
+        rescaled=(
+            Scale("m0", "1", 1e-2, 1e6),
+            Scale("c0", "m0 * W", 1e-4, 1e2),
+            Scale("Ka", "A**2 / (m0 * W**2)", 1e-3, 1e3),
+            Scale("Z0", "A**3 * X / (m0 * W * U)", -3e1, 3e1, logarithmic=False),
+        ),
+        # V, where no speed is recorded, is the largest that the band allows.
+        rescaled_by_position=(Scale("Z0", "A**2 * V / U", -1.0, 1.0, logarithmic=False),),
+        force_scale="(c0 + m0*W)*W*L",
+        drive_scale="U",
+    ),
+    data=RequiredData(
+        share_force=("m0", "c0", "Ka", "Cl"),
+    ),
+)

@@ -2,7 +2,7 @@
 
 from ident.chain.chain import Chain
 from ident.parameter import Parameter, Starts
-from ident.presets.preset import Combined, Preset
+from ident.presets.preset import Combined, Display, Preset, RequiredData, SearchPlan
 from ident.stages import (
     COMPRESSIBLE,
     FIRST_ORDER_VALVE,
@@ -43,12 +43,6 @@ QIAN2014 = Preset(
         Parameter("m0", "m₀", "kg", 1.0, 10.0, 4.25, "mass of rod, piston and what moves with them", TABLE_2),
         Parameter("Ka", "Kₐ", "m^3/Pa", 2e-15, 2e-13, 1.39e-13, "compressibility of the oil, Vt/(4 βe)", TABLE_2),
     ),
-    rescaled=(Scale("Cl", "A**2 / c0", 1e-5, 1e1),),
-    searched=("Z0", "tau", "m0", "c0", "Ka", "Cl"),
-    bounds_hold_for=4.97e-4,
-    force_scale="(c0 + m0*W)*W*L",
-    share_force=("m0", "c0", "Ka", "Cl"),
-    shown=("Z0", "c0"),
     without_area={"Z0": ("Z0/A^2", "1/s"), "Ka": ("Ka/A^2", "m/N"), "Cl": ("Cl/A^2", "m/(N*s)")},
     combinations=(
         Combined("Z0 / (A**2 + Cl*c0)", "1/s", "speed gain of the loop, for Kp = 1 and no specimen"),
@@ -65,5 +59,17 @@ QIAN2014 = Preset(
     notes=(
         "Z0 is printed in m^3/(s*kPa), which is not its unit: p5 = Z0 Kp + Cl k has the unit m^4/s. The printed "
         "number was converted from in^4/s with the factor of in^3/(s*psi); 1.48e-5 as printed is 2.592e-6 m^4/s.",
+    ),
+    search=SearchPlan(
+        rescaled=(Scale("Cl", "A**2 / c0", 1e-5, 1e1),),
+        order=("Z0", "tau", "m0", "c0", "Ka", "Cl"),
+        bounds_hold_for=4.97e-4,
+        force_scale="(c0 + m0*W)*W*L",
+    ),
+    data=RequiredData(
+        share_force=("m0", "c0", "Ka", "Cl"),
+    ),
+    display=Display(
+        shown=("Z0", "c0"),
     ),
 )

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 from ident.chain.chain import Chain
 from ident.presets.convention import Convention
-from ident.presets.preset import Combined, Preset
+from ident.presets.preset import Combined, Display, Preset, RequiredData, SearchPlan
 from ident.stages import (
     DRIVEN_VALVE,
     IDEAL_SENSOR,
@@ -33,38 +33,9 @@ _IN_LOOP = Preset(
     ),
     chain=Chain((PROPORTIONAL, *_BEHIND), _OUTPUTS, about=_OPEN),
     listed=("ve0", "kep", "ken", "wn", "xi", "ven", "vep", "kqn", "kqp", "C", "m", "sigma", "Fc", "mu"),
-    searched=("kep", "ken", "wn", "xi", "kqp", "kqn", "vep", "ven", "ve0", "m", "C", "sigma", "Fc", "mu"),
-    bounds_hold_for=AREA,
-    alone=True,
-    needs=("piston_area", "supply_pressure"),
     steps=8,
     absolute=("spool",),
-    conventions=(
-        Convention(
-            "spool",
-            "not shown",
-            {"kep": 0.5, "ve0": 0.0},
-            "without the spool as an output a common scale of kep, ken, ve0, ven, vep against kqp, kqn and a common "
-            "shift of ve0, ven, vep change nothing",
-            ("ken", "kqp", "kqn", "ven", "vep"),
-        ),
-        Convention(
-            "vertical_load", "not measured", {"mu": 0.0}, "no vertical load was measured: Fc is all dry friction"
-        ),
-        Convention(
-            "vertical_load",
-            "steady",
-            {"mu": 0.0},
-            "the vertical load does not vary: Fc + mu*Nv is one quantity, and all of it is given as Fc",
-            ("Fc",),
-        ),
-    ),
     crossing=("ve0", "ven", "vep"),
-    search={"population": 64.0, "generations": 8.0, "elite": 6.0},
-    force_scale="A * Ps",
-    of_drive=("ve0", "ven", "vep"),
-    drive_unit="V",
-    shown=("kqp", "C"),
     combinations=(
         Combined("kep*kqp", "m^3/(s*V*Pa^0.5)", "flow for each volt of a positive command"),
         Combined("ken*kqn", "m^3/(s*V*Pa^0.5)", "flow for each volt of a negative command"),
@@ -83,16 +54,54 @@ _IN_LOOP = Preset(
         "channel supply_pressure, sample by sample, or the one stated of the actuator; the vertical load that of the "
         "channel vertical_load, none where there is no such channel.",
     ),
+    search=SearchPlan(
+        order=("kep", "ken", "wn", "xi", "kqp", "kqn", "vep", "ven", "ve0", "m", "C", "sigma", "Fc", "mu"),
+        bounds_hold_for=AREA,
+        options={"population": 64.0, "generations": 8.0, "elite": 6.0},
+        force_scale="A * Ps",
+    ),
+    data=RequiredData(
+        alone=True,
+        needs=("piston_area", "supply_pressure"),
+        conventions=(
+            Convention(
+                "spool",
+                "not shown",
+                {"kep": 0.5, "ve0": 0.0},
+                "without the spool as an output a common scale of kep, ken, ve0, ven, vep against kqp, kqn and a "
+                "common shift of ve0, ven, vep change nothing",
+                ("ken", "kqp", "kqn", "ven", "vep"),
+            ),
+            Convention(
+                "vertical_load", "not measured", {"mu": 0.0}, "no vertical load was measured: Fc is all dry friction"
+            ),
+            Convention(
+                "vertical_load",
+                "steady",
+                {"mu": 0.0},
+                "the vertical load does not vary: Fc + mu*Nv is one quantity, and all of it is given as Fc",
+                ("Fc",),
+            ),
+        ),
+    ),
+    display=Display(
+        of_drive=("ve0", "ven", "vep"),
+        drive_unit="V",
+        shown=("kqp", "C"),
+    ),
 )
 
 OPEN_LOOP = replace(
     _IN_LOOP,
     chain=Chain((OPENED_BY_COMMAND, *_BEHIND), _OUTPUTS, about=_OPEN),
-    rescaled=(
-        *(Scale(name, "0.5 * kep * U", -1.0, 1.0, logarithmic=False) for name in ("ve0", "ven", "vep")),
-        Scale("kqp", "A * V / (kep * U * sqrt(Ps))", 1e-2, 1e2),
+    search=replace(
+        _IN_LOOP.search,
+        rescaled=(
+            *(Scale(name, "0.5 * kep * U", -1.0, 1.0, logarithmic=False) for name in ("ve0", "ven", "vep")),
+            Scale("kqp", "A * V / (kep * U * sqrt(Ps))", 1e-2, 1e2),
+        ),
+        drive_scale="U",
     ),
-    drive_scale="U",
 )
 
 STRANO = replace(_IN_LOOP, opened=OPEN_LOOP)

@@ -81,7 +81,7 @@ def told_by_following(model: Preset, runs: Sequence[Described]) -> bool:
 
 def _compared(model: Preset) -> str:
     """The channel that a loop compares with its command."""
-    return model.compares or "displacement"
+    return model.data.compares or "displacement"
 
 
 def _follows(run: Described, channel: str) -> bool:
@@ -107,7 +107,7 @@ def _follows(run: Described, channel: str) -> bool:
 def unusual(model: Preset, runs: Sequence[Described]) -> bool:
     """Whether a machine of this kind moves otherwise as a rule: a motor turns, a cylinder goes along a way."""
     units = {run.units.get(run.output, "1") for run in runs}
-    return bool(units <= {"m", "m/s"} and model.turns)
+    return bool(units <= {"m", "m/s"} and model.data.turns)
 
 
 def _allows(model: Preset, run: Described) -> bool:
@@ -116,7 +116,7 @@ def _allows(model: Preset, run: Described) -> bool:
     disturbed = [DISTURBANCES[name] for name in run.channels if name in DISTURBANCES]
     if not all(can_be_disturbed(model.chain, place) for place in disturbed):
         return False
-    drives = {model.driven_by} | ({"displacement"} if model.driven_by == "velocity" else set())
+    drives = {model.data.driven_by} | ({"displacement"} if model.data.driven_by == "velocity" else set())
     drives |= {"command"} if _by_force(model, run) else set()
     return bool(drives & set(run.channels)) and run.output in model.chain.outputs and run.output not in drives
 
@@ -124,10 +124,10 @@ def _allows(model: Preset, run: Described) -> bool:
 def _rank(model: Preset, runs: Sequence[Described]) -> int:
     if any(_by_force(model, run) for run in runs):
         return _OPEN  # or what follows a force
-    if model.driven_by != "command":
+    if model.data.driven_by != "command":
         bare = not any("command" in run.channels for run in runs)
-        return 0 if bare or model.driven_by not in MOTIONS else _UNLIKELY
-    if model.compares or model.chain.reads("Kp"):
+        return 0 if bare or model.data.driven_by not in MOTIONS else _UNLIKELY
+    if model.data.compares or model.chain.reads("Kp"):
         compared = _compared(model)
         looped = any(run.gain is not None for run in runs) and compared in {run.output for run in runs}
         looped = looped or all(_comparable(run, compared) for run in runs)
@@ -139,7 +139,7 @@ def _rank(model: Preset, runs: Sequence[Described]) -> int:
 def _by_force(model: Preset, run: Described) -> bool:
     """Whether a drive's force may be what was recorded as the command."""
     is_force = run.units.get("command") in ("N", "N*m")
-    return model.driven_by == "drive_force" and is_force and "drive_force" not in run.channels
+    return model.data.driven_by == "drive_force" and is_force and "drive_force" not in run.channels
 
 
 def _comparable(run: Described, channel: str) -> bool:

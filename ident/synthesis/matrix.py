@@ -101,8 +101,8 @@ class Simulation:
 
     def __post_init__(self) -> None:
         model = self.model
-        if model.bounds_hold_for != AREA and model.kind != "bench":
-            able = [name for name, p in PRESETS.items() if p.bounds_hold_for == AREA or p.kind == "bench"]
+        if model.search.bounds_hold_for != AREA and model.kind != "bench":
+            able = [name for name, p in PRESETS.items() if p.search.bounds_hold_for == AREA or p.kind == "bench"]
             remedy = f"use {' or '.join(able)}"
             raise Unusable("cannot-simulate", f"model {model.name} has no test matrix of its own", "simulate", remedy)
         if not (1 / 16 <= self.seconds <= 600 and 0 <= self.noise < 1):

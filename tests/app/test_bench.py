@@ -52,7 +52,7 @@ def test_the_values_and_the_procedures_beside_them(service, fit):
     assert any("Step by step" in note for note in result["notes"])
 
 
-@pytest.mark.parametrize("name", [name for name in PRESETS["kononykhin"].figures if name != "evolution"])
+@pytest.mark.parametrize("name", [name for name in PRESETS["kononykhin"].display.figures if name != "evolution"])
 def test_every_figure_is_served(service, fit, name):
     """As SVG for the page and PDF for the file; the sheet says whether the limits of the set are kept."""
     drawn = service.get(f"{API}/fits/{fit}/figures/{name}.svg")

@@ -92,7 +92,7 @@ def test_the_data_are_as_recorded_where_a_step_is_switched_off_and_that_is_told(
     assert f"The step {name} of preprocessing is switched off: " in outcome(prepared, name).told
     assert outcome(prepared, name).told in prepared.notices
     suited, prepared = prepare(preset(model), recorded, switches=dict.fromkeys(NAMES, False))
-    drives = suited.driven_by
+    drives = suited.data.driven_by
     for before, after in zip(recorded.runs, prepared.runs, strict=True):
         assert np.array_equal(after.command, before.channels[drives])
         assert np.array_equal(after.measured, before.measured)

@@ -94,8 +94,8 @@ def test_a_machine_has_its_description_for_a_name():
     name = described(data).name
     assert machine(name).name == name
     assert described(yaml.safe_load(yaml.safe_dump(data))).name == name
-    assert preset(name).gains == {"cal": 1.0, "Kp": 2.0, "KI": 10.0}
-    assert preset(name).compares == "force"
+    assert preset(name).data.gains == {"cal": 1.0, "Kp": 2.0, "KI": 10.0}
+    assert preset(name).data.compares == "force"
 
 
 @pytest.mark.parametrize(

@@ -14,6 +14,7 @@ from ident.errors import Unusable
 from ident.fit.settings import Settings
 from ident.parameter import Parameter
 from ident.presets import PRESETS, Preset
+from ident.presets.search_plan import SearchPlan
 from ident.stages import (
     COMPRESSIBLE,
     FIRST_ORDER_VALVE,
@@ -41,6 +42,11 @@ STOCK = (
 def put_together(*stages, **stated) -> Preset:
     """A preset of stages, with nothing stated but what is given."""
     return Preset("stock", "Stock", "none", Chain(stages or STOCK, {"displacement": "y"}), **stated)
+
+
+def searched(scale: Scale) -> dict[str, SearchPlan]:
+    """What a preset states whose search rescales one parameter."""
+    return {"search": SearchPlan(rescaled=(scale,))}
 
 
 @pytest.fixture(scope="module")
@@ -73,7 +79,9 @@ def test_stages_alone_are_searched_over_the_ranges_that_they_bring(data, monkeyp
 
 def test_what_a_preset_states_takes_the_place_of_what_its_stages_bring():
     other = Parameter("Ka", "K", "m^3/Pa", 1e-14, 1e-12, 1e-13, "as the paper has it", "paper")
-    model = put_together(stated=(other,), rescaled=(Scale("Z0", "A**2", 1.0, 2.0),), listed=("m0",), searched=("c0",))
+    model = put_together(
+        stated=(other,), listed=("m0",), search=SearchPlan(order=("c0",), rescaled=(Scale("Z0", "A**2", 1.0, 2.0),))
+    )
     assert [p.name for p in model.parameters] == ["m0", "Ka", "tau", "Z0", "Cl", "c0"]
     assert model.parameter("Ka") == other
     scales = {scale.name: scale for scale in model.scales}
@@ -84,16 +92,20 @@ def test_what_a_preset_states_takes_the_place_of_what_its_stages_bring():
 def test_scales_that_a_preset_measures_in_a_circle_are_refused():
     """The stages measure c0 by m0."""
     with pytest.raises(Unusable, match="m0 → c0 → m0: each is measured by the next"):
-        put_together(rescaled=(Scale("m0", "c0 / W", 0.1, 10.0),))
+        put_together(search=SearchPlan(rescaled=(Scale("m0", "c0 / W", 0.1, 10.0),)))
 
 
 @pytest.mark.parametrize(
     ("stages", "stated", "what"),
     [
         (STOCK[:-2] + STOCK[-1:], {}, "no stage brings X, v, read at pressure, sensor"),
-        (STOCK, {"rescaled": (Scale("Ka", "A**2 / k0", 0.1, 10.0),)}, "no stage brings k0, read by a scale"),
+        (
+            STOCK,
+            searched(Scale("Ka", "A**2 / k0", 0.1, 10.0)),
+            "no stage brings k0, read by a scale",
+        ),
         (STOCK, {"listed": ("Z9",)}, "no stage brings Z9, which it states"),
-        (STOCK, {"rescaled": (Scale("Z9", "1", 0.1, 10.0),)}, "no stage brings Z9, which it states"),
+        (STOCK, searched(Scale("Z9", "1", 0.1, 10.0)), "no stage brings Z9, which it states"),
     ],
 )
 def test_what_no_stage_brings_is_refused(stages, stated, what):

@@ -22,7 +22,7 @@ _FORCES = ("force", "drive_force")
 
 def auxiliary_channels(models: CandidateModels) -> tuple[str, ...]:
     """The channels that every run has, beside what drives the model and what it shows, and that are not the same."""
-    moved, runs = models.preset.driven_by in MOTIONS, models.matrix.runs
+    moved, runs = models.preset.data.driven_by in MOTIONS, models.matrix.runs
     free = [name for name in READABLE if name not in _FORCES] if moved else _SURROUNDS
     return tuple(name for name in free if unmeasured({name}, runs) is None and _varies(name, models.runs))
 

@@ -229,7 +229,7 @@ class TermSearch:
             effect=own,
             strength=self.base.values[self.models.strength(name)],
             std_error=self.base.deviation(self.models.strength(name)),
-            unit=self.models.preset.recorded.shown(self.models.effects[name].strength.unit),
+            unit=self.models.preset.display.recorded.shown(self.models.effects[name].strength.unit),
             parameters=self.base.parameters,
             view=characteristic_view(candidate.terms[0], self.models.preset, seen.typical),
             beside=self.beside,

@@ -1,0 +1,30 @@
+"""What a model needs of a matrix: what drives it, what must be stated, what runs may leave open."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+from ident.presets.convention import Convention
+
+
+@dataclass(frozen=True)
+class RequiredData:
+    """What must be measured or stated, and what holds where it is not."""
+
+    driven_by: str = "command"
+    """Channel that drives the model; the command where a run has none of that name."""
+    compares: str = ""
+    """Channel that its controller compares with the command; "" where there is no controller."""
+    gains: Mapping[str, float] = field(default_factory=dict)
+    """Gains of the controller that are known; Kp is that of runs that state none."""
+    alone: bool = False
+    """Whether a run that states no specimen moves none."""
+    turns: bool = False
+    """Whether the motion of such a machine is an angle as a rule."""
+    needs: tuple[str, ...] = ()
+    """What must be stated of the actuator, or measured."""
+    conventions: tuple[Convention, ...] = ()
+    """What runs may leave open, and the values that are then held."""
+    share_force: tuple[str, ...] = ()
+    """Parameters that one factor for all leaves without a trace while no force is known: the first is then held."""
