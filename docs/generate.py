@@ -23,6 +23,7 @@ from ident.equations.equation import Equation
 from ident.fit.levenberg_marquardt import Way
 from ident.parameter import Parameter
 from ident.presets import PRESETS, Preset
+from ident.presets.signal_table import signal_table
 
 DOCS = Path(__file__).resolve().parent
 SOURCES = ("ident", "app", "schemas")
@@ -126,9 +127,15 @@ EFFECTS_HEAD = (
 )
 
 
+SIGNALS_HEAD = (
+    "An effect at a place may change the signals that arise there and at the places before it. It reads every signal.",
+    "The last column of a table of signals has the effects of the library that change one.",
+)
+
+
 def models() -> str:
     """The models and the effects, with equations, units and bounds."""
-    lines = ["# Models and effects", NOTE, "", "All quantities are SI.", ""]
+    lines = ["# Models and effects", NOTE, "", "All quantities are SI.", *SIGNALS_HEAD, ""]
     for preset in PRESETS.values():
         lines += model(preset)
     lines += ["# Effects", "", *EFFECTS_HEAD, ""]
@@ -144,13 +151,29 @@ def models() -> str:
 def model(preset: Preset) -> list[str]:
     """One model: citation, equations, parameters, notes."""
     lines = [f"## {preset.name}: {preset.title}", "", preset.citation, "", *equations(preset.equations)]
-    return [*lines, *parameters(preset.parameters), *(f"{note}\n" for note in preset.notes)]
+    return [*lines, *signals(preset), *parameters(preset.parameters), *(f"{note}\n" for note in preset.notes)]
 
 
 def equations(of: Iterable[Equation]) -> list[str]:
     """Equations as a table."""
     rows = [(e.place, f"`{e.text}`", e.meaning) for e in of]
     return [*table(("place", "equation", "what it says"), rows), ""]
+
+
+def signals(of: Preset) -> list[str]:
+    """What an equation of an effect may read, where it arises, and which effects change it."""
+    rows = [
+        (
+            f"`{one.name}`",
+            one.symbol,
+            one.unit,
+            one.place,
+            one.meaning,
+            ", ".join(f"`{name}`" for name in one.changed_by),
+        )
+        for one in signal_table(of)
+    ]
+    return [*table(("signal", "symbol", "unit", "arises at", "meaning", "changed by"), rows), ""]
 
 
 def parameters(of: Iterable[Parameter]) -> list[str]:

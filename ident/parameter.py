@@ -36,30 +36,37 @@ class Starts(Enum):
 class Parameter:
     """A model parameter in SI.
 
-    `name` is what the user calls it, in results and requests; `symbol` how it is written in the literature; `of` the
-    effect that it belongs to, none for a model's own. `lower` and `upper` are the physical bounds of the search;
-    `value` is the default (for a strength: 0, off), `relative` that of a way on a machine of unknown size, in standard
-    deviations of its motion. `searched`: of a shape without which the effect could not be found, free wherever the
-    effect is; other shapes are held at their default. `start` is from where its search begins. `of_motion`: a way,
-    the inverse of one, or a speed of the machine's motion, by which it is measured, and not by the drive signal.
-    `sets_steps`: a way that has to be long against what is covered in a step of a simulation about a reversal. A range
-    of more than two decades is searched on a logarithmic scale, any other on a linear one.
+    A range of more than two decades is searched on a logarithmic scale, any other on a linear one.
     """
 
     name: str
+    """What the user calls it, in results and requests; of an effect's "effect.parameter" once a model has it."""
     symbol: str
+    """How it is written in the literature."""
     unit: str
+    """SI, in the grammar of units: "m^3/(s*Pa)"."""
     lower: float
+    """Physical bounds of the search: the lower,"""
     upper: float
+    """and the upper."""
     value: float
+    """Default; of a strength 0, off."""
     meaning: str
+    """What it is, as a clause."""
     source: str = ""
+    """Where its bounds are from."""
     of: str = ""
+    """Effect that it belongs to; "" for a model's own."""
     relative: float = 0.0
+    """Default of a way on a machine of unknown size, in standard deviations of its motion; 0 is `value`."""
     searched: bool = False
+    """Of a shape: whether it is free wherever the effect is, since without it the effect could not be found."""
     start: Starts = Starts.ALONG_RANGE
+    """From where its search begins."""
     of_motion: bool = False
+    """Whether it is a way, the inverse of one, or a speed of the motion, which measures it in place of the command."""
     sets_steps: bool = False
+    """Whether it is a way that has to be long against what a step of the simulation covers about a reversal."""
 
     def __post_init__(self) -> None:
         if not self.lower < self.upper:

@@ -27,6 +27,22 @@ class EquationView(BaseModel):
     meaning: str
 
 
+class ChainSignalView(BaseModel):
+    """A signal that an equation of one's own may read: unit (SI), where it arises, what it is without effects.
+
+    Effects at the places `changed_at` may redefine it; those of the library in `changed_by` do.
+    """
+
+    name: str
+    symbol: str
+    unit: str
+    meaning: str
+    place: str
+    equation: str
+    changed_at: list[str]
+    changed_by: list[str]
+
+
 class ModelView(BaseModel):
     """A model that can be fitted."""
 
@@ -35,6 +51,7 @@ class ModelView(BaseModel):
     citation: str
     parameters: list[ParameterView]
     equations: list[EquationView]
+    signals: list[ChainSignalView]
     notes: list[str]
 
 

@@ -12,8 +12,11 @@ from ident.effects.effect import Effect
 from ident.equations.equation import Equation
 from ident.equations.mathml import mathml
 from ident.parameter import Parameter
+from ident.plain import written
 from ident.presets import PRESETS
-from schemas.catalogue import EffectView, EquationView, ModelView, ParameterView
+from ident.presets.model import Model
+from ident.presets.signal_table import signal_table
+from schemas.catalogue import ChainSignalView, EffectView, EquationView, ModelView, ParameterView
 
 
 def models() -> list[ModelView]:
@@ -21,10 +24,15 @@ def models() -> list[ModelView]:
     return [
         ModelView(
             name=preset.name, title=preset.title, citation=preset.citation, notes=list(preset.notes),
-            parameters=_parameters(preset.parameters), equations=_equations(preset.equations),
+            parameters=_parameters(preset.parameters), equations=_equations(preset.equations), signals=signals(preset),
         )
         for preset in PRESETS.values()
     ]  # fmt: skip
+
+
+def signals(model: Model) -> list[ChainSignalView]:
+    """The signals of a model that an equation may name."""
+    return [ChainSignalView(**written(one), symbol=one.symbol) for one in signal_table(model)]
 
 
 def effects() -> list[EffectView]:

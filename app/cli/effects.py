@@ -21,6 +21,9 @@ def effects(
     context: typer.Context,
     server: Where = "",
     token: Token = "",
+    signals: Annotated[
+        str, typer.Option("--signals", metavar="MODEL", help="List the signals that an equation can use instead.")
+    ] = "",
     json: Annotated[Path | None, typer.Option(metavar="FILE", help="Write the lists as JSON; - is stdout.")] = None,
 ) -> None:
     """List your own effects and those of the library.
@@ -28,11 +31,14 @@ def effects(
     Own effects are in the folder `effects` of your data folder (SERVOIDENT_DATA), or on a service.
     """
     if context.invoked_subcommand is not None:
-        if server or json is not None:
+        if server or signals or json is not None:
             raise Unusable("bad-option", f"an option is before the command {context.invoked_subcommand}", "effects",
                            "write options after it")  # fmt: skip
         return
     check_target(json)
+    if signals:
+        list_signals(signals, json)
+        return
     found = _of_service(server, token) if server else _here()
     if json is not None:
         write_json(found, json)
@@ -66,6 +72,21 @@ def show(found: dict[str, Any]) -> None:
         console.print("no own effects yet; save one by: servoident effects keep EFFECT.yaml", markup=False)
     rows = ((one["name"], one["place"], equations(one), one["meaning"]) for one in found["catalogue"])
     console.print(table(("effect library", "place", "equation", "meaning"), rows, numbers=()))
+
+
+def list_signals(model: str, json: Path | None) -> None:
+    """Print the signals of a model as a table, or write them. Raises Unusable for an unknown model."""
+    from app.catalogue.service import signals
+    from app.cli.tables import output, table
+    from ident.presets import preset
+
+    found = signals(preset(model))
+    if json is not None:
+        write_json([one.model_dump() for one in found], json)
+    if json != STANDARD_OUTPUT:
+        header = ("signal", "unit", "place", "meaning", "without effects", "changed by")
+        rows = ((one.name, one.unit, one.place, one.meaning, one.equation, ", ".join(one.changed_by)) for one in found)
+        output().print(table(header, rows, numbers=()))
 
 
 def own_rows(own: list[dict[str, Any]]) -> Iterator[tuple[str, ...]]:

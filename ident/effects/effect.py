@@ -14,37 +14,44 @@ from ident.stages import PLACES
 
 @dataclass(frozen=True)
 class Effect:
-    """What is added to the chain at `place`.
-
-    `strength` is the parameter with which the effect is off at 0: the chain is then exactly unchanged. `shape` are its
-    other parameters, held at their defaults unless a fit is told to free them, or `searched` as the strength is.
-    `equations` redefine signals of the chain and give the rates and memories of the effect's own states. An equation
-    reads a signal that its effect redefines as it was left by what stands before, every other name in its final value,
-    and a memory of the effect in the equation of a memory as it was at the start of the step. `units` are those of the
-    signals of the chain that it redefines, for which its strength is made ("": for any): a chain that has such a signal
-    in another unit refuses it. `looks` says what the effect looks like in data, `steps` into how many a sample has to
-    be divided so that its kinks are met closely enough, `stride` by which share of its range its strength is moved for
-    a sensitivity: far where it acts in jumps. `does` says in a few words what it does where its name is of a part that
-    a machine need not have. `of_specimen`: it is a specimen's, and no diagnosis names it where nothing is known of one.
-    `own`: its bounds were stated for this machine by who wrote it, of whatever size that is.
-
-    Raises Unusable where place or strength are not of that form.
-    """
+    """What is added to the chain at `place`. Raises Unusable where place or strength are not of the form below."""
 
     name: str
+    """An identifier without two underscores; the file of the effect has it, in capitals its value."""
     place: str
+    """One of :data:`ident.stages.PLACES`: its equations stand behind those of the stage there."""
     meaning: str
+    """What it is, as a clause."""
     strength: Parameter
+    """Off at 0, its default: the chain is then exactly unchanged. The first of its parameters."""
     texts: tuple[str, ...]
+    """Equations: they redefine signals of the chain and give the rates and memories of its own states.
+
+    An equation reads a signal that the effect redefines as it was left by what stands before, every other name in its
+    final value, and a memory of the effect in the equation of a memory as it was at the start of the step.
+    `servoident effects --signals MODEL` lists the signals (:mod:`ident.presets.signal_table`).
+    """
     shape: tuple[Parameter, ...] = ()
+    """Its other parameters: held at their defaults unless a fit frees them, or `searched` with the strength."""
     looks: str = ""
+    """What it looks like in data, as a clause."""
     source: str = ""
+    """Where its equation is from."""
     steps: int = 1
+    """Into how many steps a sample has to be divided so that its kinks are met closely enough."""
     stride: float = 1e-5
+    """Share of its range by which its strength is moved for a sensitivity: far where it acts in jumps."""
     units: Mapping[str, str] = field(default_factory=dict, hash=False)
+    """Unit of each signal that it redefines, for which its strength is made; "" is any.
+
+    A chain that has such a signal in another unit refuses it.
+    """
     does: str = ""
+    """What it does in a few words, where its name is of a part that a machine need not have."""
     of_specimen: bool = False
+    """Whether it is a specimen's: no diagnosis names it where nothing is known of a specimen."""
     own: bool = False
+    """Whether its bounds were stated for this machine by who wrote it; then they hold for a machine of any size."""
 
     def __post_init__(self) -> None:
         _ = self.equations

@@ -42,13 +42,18 @@ class _Curves(ast.NodeTransformer):
         return ast.Call(node, [ast.Name(self.of[node.id])], []) if node.id in self.of else node
 
 
-def _symbol(name: str) -> str:
-    """``m0`` → m with subscript 0, ``tau`` → τ, ``y_fb`` → y with subscript fb; a word, such as ``flow``, is one."""
+def letter_and_index(name: str) -> tuple[str, str]:
+    """``m0`` → m and 0, ``tau`` → τ and nothing, ``y_fb`` → y and fb; a word, such as ``flow``, has no index."""
     head, _, tail = name.partition("_")
     word = len(head) >= _WORD and head.isalpha() and head.islower()
     if not tail and len(name) > 1 and name not in _GREEK and not word:
         head, tail = name[0], name[1:]
-    letter = f"<mi>{_GREEK.get(head, head)}</mi>"
+    return _GREEK.get(head, head), tail
+
+
+def _symbol(name: str) -> str:
+    head, tail = letter_and_index(name)
+    letter = f"<mi>{head}</mi>"
     return f"<msub>{letter}<mi>{tail}</mi></msub>" if tail else letter
 
 

@@ -26,18 +26,20 @@ class Quantity:
 class Stage:
     """One place of the chain.
 
-    `publishes` names the states and signals that its equations define; other places read them by name. A stage that
-    is exchanged for another must publish what the rest of the chain reads. `parameters` are those that it brings,
-    with bounds for a machine of unknown size, `scales` how they are searched there; a preset may state others. Raises
-    Unusable where an equation has no published left-hand side, a published quantity no equation, or a parameter no
-    scale.
+    A stage that is exchanged for another must publish what the rest of the chain reads. Raises Unusable where an
+    equation has no published left-hand side, a published quantity no equation, or a parameter no scale.
     """
 
     place: str
+    """One of :data:`PLACES`."""
     publishes: tuple[Quantity, ...]
+    """States and signals that its equations define, one equation each; other places and effects read them by name."""
     equations: tuple[Equation, ...]
+    """What the place does without effects."""
     parameters: tuple[Parameter, ...] = ()
+    """Parameters that it brings, with bounds for a machine of unknown size; a preset may state others."""
     scales: tuple[Scale, ...] = ()
+    """How each of them is searched there; a preset may state others."""
 
     def __post_init__(self) -> None:
         published, defined = {q.name for q in self.publishes}, {e.target for e in self.equations}

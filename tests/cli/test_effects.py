@@ -200,3 +200,11 @@ def test_a_service_keeps_what_this_machine_has(servoident, service, lapped, diag
     assert servoident("effects", "drop", "lapped", *service.options).returncode == 0
     assert listed(servoident, *service.options).keys() == {"leak"}
     refused(servoident("effects", "drop", "lapped", *service.options), "there is no own-effect 'lapped'")
+
+
+def test_the_signals_of_a_model_are_listed(servoident):
+    """With what an equation of one's own may change, and as JSON."""
+    assert "valve_second_order" in servoident("effects", "--signals", "qian2014").stdout
+    listed = json.loads(servoident("effects", "--signals", "kononykhin", "--json", "-").stdout)
+    assert {one["name"]: one["place"] for one in listed}["P"] == "load"
+    assert "did you mean qian2014" in servoident("effects", "--signals", "qian201").stderr
