@@ -8,6 +8,14 @@ Across a jump of the second derivative that is wrong by a part of the jump, what
 brakes at once the acceleration, which drives a mass, would be the mean of before and after. There the parabola through
 three samples on one side is taken, of the two sides the one along which the next difference is less: the smoothest
 stencil of essentially non-oscillatory schemes (Harten, Engquist, Osher and Chakravarthy 1987).
+
+At the first and the last sample there is but one side. The difference to the neighbour is the slope half a sample
+away: an acceleration that is derived from a position by two of them is half of what it is. A parabola through the
+slopes within leads to the end,
+
+    y'[0] = 3 y'[1] − 3 y'[2] + y'[3]
+
+which errs as these do. Where the signal jumps so near, the parabola of the one side serves.
 """
 
 from __future__ import annotations
@@ -18,6 +26,7 @@ from numpy.typing import NDArray
 Array = NDArray[np.float64]
 _JUMPS = 10.0  # medians of the differences that one has to have to be a jump: white noise has seven in 1e5 samples
 _SMOOTH = 0.1  # of the difference across a sample, above which that along a side is no smoother
+_NEAR_END = 5  # samples from which the slope at an end is told
 
 
 def slopes(signal: Array, order: int) -> Array:
@@ -30,13 +39,19 @@ def slopes(signal: Array, order: int) -> Array:
     differences = np.abs(np.diff(signal, order + 1))
     if len(differences) < order + 1:
         return central
+    smallest_jump = _JUMPS * float(np.median(differences))
     left, right = _by_side(signal, order)
     # Those with their last, their first and any other sample at each sample.
     spans = [_shifted(differences, len(signal), back) for back in range(order + 2)]
     rough_right, *middle, rough_left = spans
     across = np.max(np.where(np.isfinite(middle), middle, 0.0), axis=0)
-    jumps = (across > _JUMPS * np.median(differences)) & (np.minimum(rough_left, rough_right) < _SMOOTH * across)
-    return np.where(jumps, np.where(rough_left < rough_right, left, right), central)
+    jumps = (across > smallest_jump) & (np.minimum(rough_left, rough_right) < _SMOOTH * across)
+    found = np.where(jumps, np.where(rough_left < rough_right, left, right), central)
+    if len(signal) >= _NEAR_END:
+        near = _NEAR_END - order - 1
+        found[0] = _at_end(found, right, differences[:near], smallest_jump)
+        found[-1] = _at_end(found[::-1], left[::-1], differences[: -near - 1 : -1], smallest_jump)
+    return found
 
 
 def bends(signal: Array) -> Array:
@@ -59,9 +74,19 @@ def bends(signal: Array) -> Array:
 
 def bends_of_way(way: Array, speed: Array) -> Array:
     """The same of a speed that was derived from a way (n,), where that bends: so it leads from sample to sample."""
-    if np.array_equal(speed, np.gradient(way)):
+    if np.array_equal(speed[1:-1], np.gradient(way)[1:-1]):
         return np.zeros(len(way))
     return np.append(np.diff(way) - 0.5 * (speed[1:] + speed[:-1]), 0.0)
+
+
+def _at_end(slope: Array, sided: Array, near: Array, smallest_jump: float) -> float:
+    """The first of the slopes: as those within lead to it, or as the side does where the signal jumps behind it.
+
+    `near` (j,) are the differences among the samples that it is told from.
+    """
+    if near.max() <= smallest_jump:
+        return float(3.0 * (slope[1] - slope[2]) + slope[3])
+    return float(sided[0] if near[0] < _SMOOTH * near.max() else slope[0])
 
 
 def _by_side(signal: Array, order: int) -> tuple[Array, Array]:

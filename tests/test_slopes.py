@@ -28,7 +28,28 @@ def test_of_noise_and_of_a_sine_the_slope_is_that_over_two_samples():
     """One side would add noise."""
     for signal in (np.random.default_rng(1).standard_normal(2000), np.sin(0.3 * np.arange(200.0))):
         for order in (1, 2):
-            assert np.array_equal(slopes(signal, order), np.gradient(signal))
+            assert np.array_equal(slopes(signal, order)[1:-1], np.gradient(signal)[1:-1])
+
+
+@pytest.mark.parametrize("samples", [20, 150])
+def test_a_sine_has_its_acceleration_at_the_first_and_the_last_sample(samples):
+    """Derived from its position twice; the differences to the neighbours would give half of it, or less."""
+    w = 2 * np.pi / samples
+    phase = w * np.arange(0.2 * samples, 3.3 * samples)
+    speed = slopes(np.sin(phase), 2)
+    assert speed[[0, -1]] == pytest.approx(w * np.cos(phase)[[0, -1]], abs=0.05 * w)
+    assert slopes(speed, 1)[[0, -1]] == pytest.approx(-(w**2) * np.sin(phase)[[0, -1]], abs=0.15 * w**2)
+
+
+@pytest.mark.parametrize("first", [3, 4, 5])
+def test_a_motion_that_brakes_near_the_end_has_the_slopes_of_the_end(first):
+    """Behind the bend three samples or more are left, from which their speed and acceleration are told."""
+    x, v, a = braking(np.arange(AT - first + 0.4, 20.0))
+    for at, signal in ((0, x), (-1, x[::-1])):
+        speed = slopes(signal, 2)
+        sign = 1.0 if at == 0 else -1.0
+        assert speed[at] == pytest.approx(sign * v[0], abs=1e-12)
+        assert slopes(speed, 1)[at] == pytest.approx(a[0], abs=1e-12)
 
 
 def test_a_record_of_two_samples_has_a_slope():
@@ -49,7 +70,7 @@ def test_what_a_motion_covers_between_two_samples_is_known_where_it_brakes_there
     assert np.count_nonzero(bends(v)) == 1
     speed = slopes(x, 2)
     assert (0.5 * (speed[1:] + speed[:-1]) + bends_of_way(x, speed)[:-1]) == pytest.approx(np.diff(x))
-    assert not np.any(bends_of_way(x**2, np.gradient(x**2)))
+    assert not np.any(bends_of_way(x**2, slopes(x**2, 2)))
 
 
 def test_of_noise_no_mean_is_beyond_that_of_the_samples():
