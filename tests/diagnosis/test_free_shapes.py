@@ -23,6 +23,7 @@ from ident.diagnosis.free_shapes import (
 from ident.diagnosis.screening import predict
 from ident.effects import CATALOGUE
 from ident.fit.settings import Settings
+from ident.fit.space import search_space
 from ident.presets import preset
 from ident.workflows import diagnose, identify
 from tests.diagnosis.damper import Damper
@@ -141,6 +142,18 @@ def test_a_width_is_searched_over_decades():
         model = preset("drive").with_effects((effect,))
         (scale,) = (s for s in model.scales if s.name == effect.added[1].in_equations)
         assert scale.logarithmic
+
+
+@pytest.mark.parametrize("name", [
+    "presliding_friction__displacement", "specimen_hysteresis__yield_displacement", "specimen_free_play__half_width",
+])  # fmt: skip
+def test_a_way_may_be_as_long_as_the_motion(name):
+    """A specimen that yields near the end of a sine was searched up to a third of it, and other effects were named."""
+    effect = freed(next(effect for effect in CATALOGUE if effect.name == name.partition("__")[0]))
+    models = CandidateModels.of(Damper().matrix(), Settings("specimen"))
+    space = search_space(model := models.preset.with_effects((effect,)), models.matrix, models.given, models.band)
+    known = {p.in_equations: p.value for p in model.parameters}
+    assert space.bounds(known)[name][1] > Damper().amplitude
 
 
 def test_a_width_has_one_sign():
