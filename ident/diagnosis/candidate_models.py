@@ -328,7 +328,7 @@ class CandidateModels:
 
     def continued(self, refit: FittedModel, way: Way, samples: int = 0) -> FittedModel:
         """First steps that are gone on with; as they are, where they came to an end too far off."""
-        if way.leads_nowhere(refit.point, refit.local):
+        if way.leads_nowhere(refit.point, refit.local, refit.space.spans):
             return refit
         return self.refit(refit.effects, refit.values, samples, way)
 

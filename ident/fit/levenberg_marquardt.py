@@ -10,6 +10,8 @@ from typing import Protocol, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
+from ident.fit.straight_steps import led
+
 Array = NDArray[np.float64]
 STEPS = 200  # at most: along a curved valley it takes more than 60
 _LEAST, _DAMPING, _MOST = 1e-12, 1e-4, 1e6  # least, at first, most
@@ -61,19 +63,20 @@ class Way:
         """Whether what is missing is many times what the next step promises, and what the last ones `gained`."""
         return error - self.aim > _HOPE * max((promised, *gained))
 
-    def leads_nowhere(self, point: Array, here: Shape) -> bool:
+    def leads_nowhere(self, point: Array, here: Shape, spans: Array | None = None) -> bool:
         """Whether from a point that steps have led to the next one promises nothing near what is missing.
 
         Of a step that is cut at a bound nobody knows: a shorter one may promise more.
         """
-        trial, cut = _trial(point, here, _DAMPING, self)
-        return not cut and self.is_lost(here.error, promise(here, trial - point))
+        step, _, cut = _trial(point, here, _DAMPING, self, _spans(point, spans))
+        return not cut and self.is_lost(here.error, promise(here, step))
 
 
 def levenberg_marquardt(
     evaluate: Callable[[Array], S], start: Array, way: Way | None = None,
     report: Callable[[int, float], None] = lambda _count, _error: None,
     accept: Callable[[S], None] = lambda _here: None, better: Callable[[Array, float], S | None] | None = None,
+    spans: Array | None = None,
 ) -> tuple[Array, S]:  # fmt: skip
     """The point with the least error near `start`, and the objective there.
 
@@ -82,16 +85,18 @@ def levenberg_marquardt(
     did not help, fourfold after the next, and so on (Nielsen 1999): along a curved valley, where one λ serves for many
     steps, every other step failed that was a fixed factor longer. `report` is told the number of steps and the error,
     `accept` of each point that is gone on from; `better` is the objective at a point where it is less than so far,
-    where it costs less to tell that it is not.
+    where it costs less to tell that it is not. `spans` (p,) are ln(upper/lower) of the axes that are logarithmic, 0 of
+    others: steps along these are straight in the parameter, see :mod:`ident.fit.straight_steps`.
     """
+    spans = _spans(start, spans)
     way, better = way or Way(), better or partial(_better, evaluate)
     point, here, damping, rise = start.copy(), evaluate(start), _DAMPING, 2.0
     gained: list[float] = []
     accept(here)
     for count in range(way.most):
         report(count, here.error)
-        trial, cut = _trial(point, here, damping, way)
-        promised = promise(here, trial - point)
+        step, trial, cut = _trial(point, here, damping, way, spans)
+        promised = promise(here, step)
         # A step cut at a bound may promise nothing where a shorter one does.
         if not promised > way.converged * here.error and not cut:
             break
@@ -126,11 +131,16 @@ def _better(evaluate: Callable[[Array], S], trial: Array, least: float) -> S | N
     return there if there.error < least else None
 
 
-def _trial(point: Array, here: Shape, damping: float, way: Way) -> tuple[Array, bool]:
-    """Where a step leads within the bounds, and whether it was cut at one."""
+def _spans(point: Array, spans: Array | None) -> Array:
+    """Those of linear axes, where none are given."""
+    return np.zeros(len(point)) if spans is None else spans
+
+
+def _trial(point: Array, here: Shape, damping: float, way: Way, spans: Array) -> tuple[Array, Array, bool]:
+    """A step within the bounds, where it leads, and whether it was cut at one."""
     free_step = np.clip(_step(point, here, damping, way.within), -way.longest, way.longest)
-    trial = np.clip(point + free_step, *way.within)
-    return trial, bool(np.any(trial != point + free_step))
+    step, trial = led(point, free_step, *way.within, spans)
+    return step, trial, bool(np.any(step != free_step))
 
 
 def _step(point: Array, here: Shape, damping: float, within: tuple[float | Array, float | Array]) -> Array:

@@ -190,7 +190,8 @@ class LinearFitness:
         self, start: Array, way: Way | None = None, report: Steps = lambda _count, _error: None, roughly: bool = False
     ) -> tuple[Array, Local]:
         """The optimum near a start; `roughly` of the reduced runs."""
-        return levenberg_marquardt(self.approximate if roughly else self.exact, start, way, report)
+        evaluate = self.approximate if roughly else self.exact
+        return levenberg_marquardt(evaluate, start, way, report, spans=self.space.spans)
 
     @property
     def band(self) -> float:

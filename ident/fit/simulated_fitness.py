@@ -83,7 +83,8 @@ class SimulatedFitness(SimulatedRuns):
         roughly: bool = False,  # noqa: ARG002  a chain with effects has no rougher one
     ) -> tuple[Array, Local]:  # fmt: skip
         """The optimum near a start, from first states that are followed."""
-        return levenberg_marquardt(self.exact, start, way, report, accept=self._accept, better=self._better)
+        spans = self.space.spans
+        return levenberg_marquardt(self.exact, start, way, report, self._accept, self._better, spans)
 
     def _better(self, point: Array, least: float) -> Local | None:
         there = self.exact(point, worth=lambda promised: not self.trusting or promised.error < least)

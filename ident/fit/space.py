@@ -9,6 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from ident.cached import cached_property
 from ident.equations.equation import Equation
 from ident.errors import Unusable
 from ident.fit.given import of_model
@@ -61,6 +62,11 @@ class Space:
     def names(self) -> tuple[str, ...]:
         """Names of the searched parameters, one an axis."""
         return tuple(axis.name for axis in self.axes)
+
+    @cached_property
+    def spans(self) -> Array:
+        """ln(upper/lower) of each logarithmic axis, 0 of a linear one, (p,)."""
+        return np.array([float(np.log(axis.upper / axis.lower)) if axis.logarithmic else 0.0 for axis in self.axes])
 
     def values(self, points: Array) -> dict[str, Array]:
         """SI values of every parameter at points of the unit cube: (v, p) → name: (v,)."""

@@ -86,7 +86,8 @@ def test_of_first_steps_the_eight_that_leave_least_go_on():
 def test_first_steps_that_ended_far_from_what_they_have_to_reach_are_not_begun_again(aim):
     """They are gone on with where the next step promises anything near what is missing."""
     here = SimpleNamespace(error=0.1, gradient=np.array([0.02]), curvature=np.array([[0.1]]))  # promises 0.002
-    first = SimpleNamespace(effects=("e",), values={"s": 1.0}, point=np.array([0.5]), local=here)
+    space = SimpleNamespace(spans=np.zeros(1))
+    first = SimpleNamespace(effects=("e",), values={"s": 1.0}, point=np.array([0.5]), local=here, space=space)
     family = SimpleNamespace(refit=lambda *told: told)
     way = Way(aim=aim)
     assert CandidateModels.continued(family, first, way, 7) == (first if aim == 0.05 else (("e",), {"s": 1.0}, 7, way))
