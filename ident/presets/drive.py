@@ -42,7 +42,7 @@ DRIVE = Preset(
             Scale("c0", "U / (X * W)", 1e-4, 1e5),
             Scale("k0", "U / X", 1e-6, 1e2),
         ),
-        force_scale=FORCE_SCALE,
+        force_scale="M",  # the largest drive force: what holds more stands still
         methods=("inverse-dynamics",),
     ),
     data=RequiredData(

@@ -224,7 +224,10 @@ def _motion_known(of: Description) -> bool:
 def _force_scale(of: Description) -> str:
     if of["flow"] == "to_speed":
         return ""
-    return "A*Ka*U" if of["load"] == "none" else "(c0 + m0*W)*W*L"
+    if of["load"] == "none":
+        return "A*Ka*U"
+    # In open loop the largest force that drives it: what holds more stands still.
+    return "abs(Kt)*M" if not of.hydraulic and not of.closed else "(c0 + m0*W)*W*L"
 
 
 def _share_force(of: Description) -> tuple[str, ...]:

@@ -19,7 +19,7 @@ MOTOR = Preset(
     ),
     search=SearchPlan(
         rescaled=(Scale("m0", "1", 1e-2, 1e6), Scale("c0", "m0 * W", 1e-4, 1e2)),
-        force_scale="max(m0*W, c0)*W*L",
+        force_scale="Kt*M",  # the largest torque: what holds more stands still
         drive_scale="U",
     ),
     data=RequiredData(
