@@ -34,6 +34,7 @@ from ident.presets import Preset
 from ident.presets import preset as preset_named
 from ident.presets.middle import about
 from ident.run import MOTIONS, Run
+from ident.simulation.steps import MOST
 from ident.words.titles import title
 
 Array = NDArray[np.float64]
@@ -218,13 +219,16 @@ class CandidateModels:
         return self._steps(fitted) < CRITERIA.ranking.quick_steps
 
     def is_short(self, fitted: FittedModel) -> bool:
-        """Whether records are so short that each refit may begin from many places."""
-        return self._steps(fitted) < CRITERIA.free_widths.short_steps
+        """Whether records are so short that each refit may begin from many places.
 
-    def _steps(self, fitted: FittedModel) -> int:
-        """The simulation steps of all runs."""
+        A mass that ended next to nothing asks for more steps than the records do.
+        """
+        return self._steps(fitted, CRITERIA.free_widths.counted_steps) < CRITERIA.free_widths.short_steps
+
+    def _steps(self, fitted: FittedModel, most: int = MOST) -> int:
+        """The simulation steps of all runs, of which at most so many a sample count."""
         steps = int(fitted.fitness.steps(fitted.fitness.space.values(fitted.point[None])).max())
-        return steps * sum(run.length for run in self.runs)
+        return min(steps, most) * sum(run.length for run in self.runs)
 
     def at_floor(self, refit: FittedModel) -> bool:
         """Whether the error of a refit is noise alone, as far as the floor is known; never where it cannot be told."""
@@ -340,6 +344,16 @@ class CandidateModels:
                 break
             refit = further
         return refit
+
+    def gone_on_with(self, trial: FittedModel, aim: float = np.inf) -> FittedModel:
+        """A first refit, gone on with until its error stays, as long as it may come below `aim`."""
+        way = replace(CRITERIA.estimation.trial, aim=aim)
+        for _ in range(CRITERIA.estimation.convergence_rounds if trial.finite else 0):
+            further = self.refit(trial.effects, trial.values, CRITERIA.estimation.trial_samples, way)
+            if not further.finite or further.local.error > CRITERIA.estimation.new_optimum * trial.local.error:
+                break
+            trial = further
+        return trial
 
     def best_optimum(self, refit: FittedModel) -> FittedModel:
         """The refit, or a better one from where else in the whole search space the error is least.

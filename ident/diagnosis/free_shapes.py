@@ -92,7 +92,8 @@ def trial_from_everywhere(
 ) -> FittedModel:
     """The first refit with a predicted effect, begun again from other places of its shapes until two ends agree.
 
-    And from the strengths that were simulated, as long as it does not come to what was predicted.
+    And from the strengths that were simulated, as long as it does not come to what was predicted. The best end is gone
+    on with until it stays: a trial's few steps may end far from there.
     """
     effects = (*base.effects, prediction.effect)
     ends = [models.trial(effects, prediction.starts, aim)]
@@ -104,7 +105,7 @@ def trial_from_everywhere(
         if keeps(ends, prediction):
             break
         ends.append(models.trial(effects, [start], aim))
-    return stable_minimum(ends, lambda end: end.local.error)
+    return models.gone_on_with(stable_minimum(ends, lambda end: end.local.error), aim)
 
 
 def determined(refit: FittedModel, effect: Effect) -> bool:

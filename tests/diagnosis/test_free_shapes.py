@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from types import SimpleNamespace
 
+import numpy as np
 import pytest
 
 from ident.diagnosis import candidate_models
@@ -22,9 +23,11 @@ from ident.diagnosis.free_shapes import (
 )
 from ident.diagnosis.screening import predict
 from ident.effects import CATALOGUE
+from ident.fit.levenberg_marquardt import Way
 from ident.fit.settings import Settings
 from ident.fit.space import search_space
 from ident.presets import preset
+from ident.simulation.steps import MOST
 from ident.workflows import diagnose, identify
 from tests.diagnosis.damper import Damper
 
@@ -119,6 +122,27 @@ def test_where_records_are_long_widths_keep_their_usual_values_at_first(monkeypa
     assert from_the_start(models, base).effects["presliding_friction"].has_searched_shapes
     monkeypatch.setattr(CandidateModels, "is_short", lambda *_: False)
     assert from_the_start(models, base) is models
+
+
+def test_a_mass_next_to_nothing_makes_no_record_long():
+    """Its model asks for the most steps there are; no model that explains the record does."""
+    models = CandidateModels.of(Damper(rate=400.0).matrix(), Settings("specimen"))
+    base = models.refit((), {})
+    assert models.is_short(base)
+    stiff = SimpleNamespace(fitness=SimpleNamespace(space=base.space, steps=lambda _values: np.array([MOST])))
+    stiff.point = base.point
+    assert MOST * sum(run.length for run in models.runs) > CRITERIA.free_widths.short_steps
+    assert models.is_short(stiff)
+
+
+def test_a_trial_that_was_stopped_on_its_way_is_gone_on_with():
+    """After one step from a friction of half the strength."""
+    free, base, prediction = refitted(Damper())
+    begun = {**prediction.starts[0], "presliding_friction__force": 20.0, "presliding_friction__displacement": 2e-3}
+    first = free.refit(("presliding_friction",), begun, CRITERIA.estimation.trial_samples, Way(most=1))
+    assert free.gone_on_with(first).local.error < 0.7 * first.local.error
+    assert free.gone_on_with(first).local.error == pytest.approx(Damper().noise, rel=0.05)
+    assert base.local.error > first.local.error
 
 
 def test_a_floor_that_a_fitted_model_comes_below_is_none():
