@@ -271,18 +271,16 @@ class CandidateModels:
     def multistart(self, refit: FittedModel, starts: Sequence[Mapping[str, float]], aim: float = np.inf) -> FittedModel:
         """The best first refit of the same model from other starts, far off: on the beginnings of the records.
 
-        All set out, and the one that is ahead goes on, as long as it may come below `aim`.
+        All set out on a part of these, and the one that is ahead goes on, as long as it may come below `aim`.
         """
-        setting_out = replace(CRITERIA.estimation.trial, aim=aim)
-        tried = each(
-            lambda start: self.refit(refit.effects, start, CRITERIA.estimation.trial_samples, setting_out), starts
-        )
+        effort = CRITERIA.estimation
+        shorter = aim * self.trial_error(refit, effort.global_samples) / self.trial_error(refit)
+        setting_out = replace(effort.trial, aim=shorter)
+        tried = each(lambda start: self.refit(refit.effects, start, effort.global_samples, setting_out), starts)
         ahead = stable_minimum(tried, lambda one: one.local.error)
-        return (
-            self.continued(ahead, replace(CRITERIA.estimation.far_trial, aim=aim), CRITERIA.estimation.trial_samples)
-            if ahead.finite
-            else ahead
-        )
+        if not ahead.finite:
+            return ahead
+        return self.refit(refit.effects, ahead.values, effort.trial_samples, replace(effort.far_trial, aim=aim))
 
     def global_starts(self, effects: tuple[str, ...]) -> list[FittedModel]:
         """First steps of a model from where in its whole search space the error is least, on the records' beginnings.
@@ -370,11 +368,9 @@ class CandidateModels:
         found = self.converged(self.refit(refit.effects, best.values))
         return found if found.finite and found.local.error < refit.local.error else refit
 
-    def trial_error(self, refit: FittedModel) -> float:
+    def trial_error(self, refit: FittedModel, samples: int = CRITERIA.estimation.trial_samples) -> float:
         """What a first refit has to beat: the error of a refit on the beginnings of the records."""
-        return (
-            self.fitness(refit.effects, CRITERIA.estimation.trial_samples).exact(refit.point, sensitivities=False).error
-        )
+        return self.fitness(refit.effects, samples).exact(refit.point, sensitivities=False).error
 
     def trial(
         self, effects: tuple[str, ...], starts: Sequence[Mapping[str, float]], aim: float = np.inf

@@ -34,8 +34,8 @@ class Estimation:
     trial_samples: int = 131_072
     """[samples] Of all runs in a trial. Why: enough for a ranking; the finalists take every sample."""
     global_samples: int = 32_768
-    """[samples] Of all runs by which points of the whole space are judged. Why: 128 points are to cost about as
-    much as one trial."""
+    """[samples] Of all runs by which points of the whole space are judged, and on which refits from far away set out.
+    Why: 128 points are to cost about as much as one trial, and one of many starts is gone on with."""
     global_points: int = 128
     """[points] Of a Sobol sample of the whole search space. Why: a model has up to about ten parameters."""
     global_starts: int = 4
