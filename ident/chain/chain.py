@@ -275,15 +275,17 @@ class Chain:
         evaluate, n = self.evaluator(output), len(self.states)
         shape = np.broadcast_shapes(*(np.shape(value) for value in values.values()))
         system = np.zeros((n + 1, n + 1, *shape))
-        for j, rates, shown in self._columns(lambda x: evaluate(x[n], x[:n], values), about or self._point(values)):
+        for j, rates, shown in self._columns(
+            lambda x: evaluate(x[n], x[:n], values), about or self.operating_point(values)
+        ):
             for i, rate in enumerate(rates):
                 system[i, j] = rate
             system[n, j] = shown
         return LinearModel(system)
 
-    def _point(self, values: Mapping[str, Any]) -> list[Any]:
-        """States and command where small signals are taken."""
-        at = {name: Equation(f"{name} = {text}").value(values) for name, text in self.about}
+    def operating_point(self, values: Mapping[str, Any], moved: Mapping[str, float] | None = None) -> list[Any]:
+        """States and command where small signals are taken; those of the states that are `moved` as given."""
+        at = {name: Equation(f"{name} = {text}").value(values) for name, text in self.about} | dict(moved or {})
         return [at.get(name, 0.0) for name in (*self.states, INPUT)]
 
     def _columns(

@@ -28,8 +28,14 @@ def extreme(runs: Iterable[Run]) -> tuple[Run, ...]:
     return tuple(chosen.values())
 
 
-def fastest(chain: Chain, runs: Iterable[Run], actuator: Actuator, values: Mapping[str, Array]) -> Modes:
-    """Each vector's fastest mode at small signals on any of the runs, its eigenvalue in radians a sample, (v,)."""
+def fastest(
+    chain: Chain, runs: Iterable[Run], actuator: Actuator, values: Mapping[str, Array],
+    motion: Mapping[str, float] | None = None,
+) -> Modes:  # fmt: skip
+    """Each vector's fastest mode at small signals on any of the runs, its eigenvalue in radians a sample, (v,).
+
+    At rest, and about the `motion` of states as far as it goes: see :func:`ident.simulation.steps.fastest_mode`.
+    """
     by_output: dict[str, list[Run]] = {}
     for run in runs:
         by_output.setdefault(run.output, []).append(run)
@@ -37,7 +43,29 @@ def fastest(chain: Chain, runs: Iterable[Run], actuator: Actuator, values: Mappi
     for output, alike in by_output.items():
         known = [conditions(run, actuator) for run in alike]
         stacked = {name: np.array([entry[name] for entry in known])[:, None] for name in known[0]}
-        modes = fastest_mode(chain, stacked | {name: value[None] for name, value in values.items()}, output)
+        modes = fastest_mode(chain, stacked | {name: value[None] for name, value in values.items()}, output, motion)
         modes = np.concatenate([found, modes / np.array([[run.sample_rate] for run in alike])])
         found = np.take_along_axis(modes, np.abs(modes).argmax(axis=0)[None], axis=0)
     return np.asarray(found[0])
+
+
+def motion(runs: Iterable[Run], band: float) -> dict[str, float]:
+    """How far position and speed of the moving mass go, SI: a sine of the largest power of any run within the `band`.
+
+    `band` is in rad/s. What no run tells of is left out.
+    """
+    far: dict[str, list[float]] = {"x": [], "v": []}
+    for run in runs:
+        if (x := run.channels.get("displacement")) is not None:
+            far["x"].append(float(np.std(x)))
+            far["v"].append(_speed(x, run.sample_rate, band))
+        if (v := run.channels.get("velocity")) is not None:
+            far["v"].append(float(np.std(v)))
+    return {name: float(np.sqrt(2.0)) * max(sizes) for name, sizes in far.items() if sizes}
+
+
+def _speed(x: Array, sample_rate: float, band: float) -> float:
+    """The root mean square of the rate of a position within a band, rad/s."""
+    lines = np.abs(np.fft.rfft(x - x.mean())) / len(x)
+    omega = 2.0 * np.pi * np.fft.rfftfreq(len(x), 1.0 / sample_rate)
+    return float(np.sqrt(2.0 * np.sum((omega * lines)[omega <= band] ** 2)))

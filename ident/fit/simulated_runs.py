@@ -20,7 +20,7 @@ from ident.chain.chain import Chain, integrates, linear_model
 from ident.chain.conditions import conditions
 from ident.effects.effect import Effect
 from ident.fit.anchoring import Anchoring
-from ident.fit.modes import extreme, fastest
+from ident.fit.modes import extreme, fastest, motion
 from ident.fit.normal_matrices import NormalMatrices, first_state, normal_matrices_of
 from ident.fit.products import add_block_products, completed
 from ident.fit.reduction import excited_band
@@ -339,9 +339,15 @@ class SimulatedRuns:
     def fastest(self, values: Mapping[str, Array], of: Chain | None = None) -> Modes:
         """Each vector's fastest mode in radians a sample, of the linear core and the effects at small signals.
 
+        At rest and in motion.
         Beyond :data:`ident.simulation.steps.FASTEST` it is followed only roughly.
         """
-        return fastest(of or self.chain, self._extreme, self.matrix.actuator, values)
+        return fastest(of or self.chain, self._extreme, self.matrix.actuator, values, self._motion)
+
+    @cached_property
+    def _motion(self) -> dict[str, float]:
+        """How far the moving mass goes, and how fast."""
+        return motion(self.matrix.runs, self.band)
 
     def _is_on(self, effect: Effect, values: Mapping[str, Array]) -> bool:
         """Whether an effect has a strength that is not zero."""

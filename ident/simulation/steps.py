@@ -30,6 +30,9 @@ _SHARE = 0.1
 motion turned is not known. Five times as much puts the way off by 2 %."""
 _AT_REVERSALS = 8
 """Steps a sample at most for reversals: of a way so short that it asks for more the samples hardly tell the length."""
+_FASTER = 1.5
+"""Times as fast as at rest is a mode that motion makes faster. Why: less asks for no more steps, which are powers of
+two, and slopes by differences are off by a hundredth where forces are large."""
 FASTEST = FINE * MOST  # radians a sample of the fastest mode that is followed closely; one beyond is said
 
 
@@ -43,13 +46,27 @@ def steps_at_reversals(turned: float, ways: Array) -> NDArray[np.int64]:
     return np.asarray(2 ** np.ceil(np.log2(np.clip(needed, 1.0, _AT_REVERSALS))), dtype=np.int64)
 
 
-def fastest_mode(chain: Chain, values: Mapping[str, Any], output: str) -> Modes:
+def fastest_mode(
+    chain: Chain, values: Mapping[str, Any], output: str, motion: Mapping[str, float] | None = None
+) -> Modes:  # fmt: skip
     """The eigenvalue of the chain's small-signal behaviour that is largest, 1/s, for a batch of values.
 
-    Lags that are advanced exactly ask for no steps: they count as if they followed at once.
+    About where small signals are taken, and about each state of the `motion` as far as that goes: damping that grows
+    with the speed makes a mode faster than it is at rest, and so does a spring that hardens. Lags that are advanced
+    exactly ask for no steps: they count as if they followed at once.
     """
     followed = with_exact_lags(chain)
-    jacobian = followed.linearise({name: values[name] for name in followed.symbols}, output).A
+    known = {name: values[name] for name in followed.symbols}
+    moved = {} if followed.is_linear else {name: far for name, far in (motion or {}).items() if name in followed.states}
+    points = [followed.operating_point(known, at) for at in ({}, *({name: far} for name, far in moved.items()))]
+    rest, *others = (_fastest(followed.linearise(known, output, point).A) for point in points)
+    for other in others:
+        rest = np.where(np.abs(other) > _FASTER * np.abs(rest), other, rest)
+    return rest
+
+
+def _fastest(jacobian: Array) -> Modes:
+    """The eigenvalue of each of a batch that is largest."""
     found = np.linalg.eigvals(np.where(np.isfinite(jacobian), jacobian, 0.0)).astype(np.complex128)
     return np.asarray(np.take_along_axis(found, np.abs(found).argmax(axis=-1)[..., None], axis=-1)[..., 0])
 
