@@ -26,6 +26,7 @@ from ident.fit.settings import Settings
 from ident.fit.simulated_fitness import SimulatedFitness, shortened
 from ident.fit.simulated_runs import SimulatedRuns
 from ident.fit.space import search_space
+from ident.fit.wider_bounds import wider_at
 from ident.matrix import Matrix
 from ident.noise.floor import Floors, noise_floors
 from ident.parallel import each
@@ -170,6 +171,13 @@ class CandidateModels:
         if strength in {preset.parameter(name).in_equations for name in own}:
             return False
         return refit.values[strength] != 0 and refit.space.at_bound(strength, refit.point)
+
+    def _asks_farther(self, refit: FittedModel, effect: str) -> bool:
+        """Whether a strength ended at a bound that is but an order of magnitude: no part of a whole, nobody's own."""
+        if not refit.stable or not self.at_bound(refit, effect):
+            return False
+        axis = next(axis for axis in refit.space.axes if axis.name == self.strength(effect))
+        return axis.scale is not None and axis.scale.names != frozenset()
 
     def fitness(self, effects: tuple[str, ...], samples: int = 0) -> SimulatedFitness:
         """The objective of the model with these effects, on records of at most `samples` in all where that is given."""
@@ -323,7 +331,25 @@ class CandidateModels:
         known = {p.in_equations: p.value for p in fitness.preset.parameters} | dict(start)
         point = fitness.space.point({**known, **fitness.space.fixed})
         way = way or (CRITERIA.estimation.trial if samples else CRITERIA.estimation.full)
-        point, here = fitness.optimum(point, way)
+        found = self._optimum(effects, fitness, point, way, samples)
+        for _ in range(CRITERIA.estimation.widened):
+            ended = [
+                self.strength(name) for name in effects if name in self.effects and self._asks_farther(found, name)
+            ]
+            if not ended:
+                break
+            wider = replace(self.fitness(effects, samples), space=wider_at(found.space, found.point, ended))
+            farther = self._optimum(effects, wider, wider.space.point(found.values), way, samples)
+            if not farther.local.error < CRITERIA.estimation.new_optimum * found.local.error:
+                break
+            found = farther
+        return found
+
+    def _optimum(
+        self, effects: tuple[str, ...], fitness: SimulatedFitness, start: Array, way: Way, samples: int
+    ) -> FittedModel:  # fmt: skip
+        """The optimum near a point of the objective's unit cube."""
+        point, here = fitness.optimum(start, way)
         off = {p.in_equations for name, e in self.effects.items() if name not in effects for p in e.added}
         values = {n: float(v[0]) for n, v in fitness.space.values(point[None]).items() if n not in off}
         return FittedModel(effects, values, fitness.space, point, here, fitness, self.compared_records(samples))

@@ -24,6 +24,7 @@ from ident.diagnosis.selection import Selection
 from ident.diagnosis.selection_loop import select
 from ident.diagnosis.sentences import alternative_sentences, dispensable_sentence, horizon_sentence
 from ident.diagnosis.stages import EFFECTS, ERROR_BUDGET, FURTHER, LABELS, LATER, NEXT_RUN, TERMS, Stages, not_looked_at
+from ident.diagnosis.undetermined import rested
 from ident.diagnosis.unfitted import unranked
 from ident.diagnosis.verdict import Findings, conclude
 from ident.effects.effect import Effect
@@ -116,6 +117,7 @@ class Diagnoser:
         preset = models.model(self.fit.effects)
         start = {preset.parameter(name).in_equations: value for name, value in self.fit.values.items()}
         base = models.best_optimum(models.converged(models.refit(tuple(self.fit.effects), start)))
+        base = rested(models, base)
         if not base.stable:
             raise Unusable("bad-fit", "the fitted model is unstable on a run", "fit", "fit the model to this matrix")
         if (models := models.doubting(base)).contradicted:

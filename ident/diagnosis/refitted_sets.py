@@ -8,6 +8,8 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import dataclass, field
 
+import numpy as np
+
 from ident.diagnosis.evidence.comparison import common_disturbance, gain, most
 from ident.diagnosis.evidence.probability import NOTHING, SetGains
 from ident.diagnosis.fitted_model import FittedModel
@@ -21,11 +23,12 @@ class RefittedSets:
     best: dict[frozenset[str], FittedModel] = field(default_factory=dict)
 
     def met(self, models: Iterable[FittedModel]) -> None:
-        """Keep what leaves less of held-out data than was known of the same effects."""
+        """Keep what leaves less of held-out data than was known of the same effects; not what goes astray there."""
         for model in models:
             added = frozenset(model.effects) - frozenset(self.base.effects)
             best = self.best.get(added)
-            if added and model.finite and (best is None or model.held_out.score < best.held_out.score):
+            known = model.finite and np.isfinite(model.held_out.score)
+            if added and known and (best is None or model.held_out.score < best.held_out.score):
                 self.best[added] = model
 
     def gains(self) -> SetGains:

@@ -45,7 +45,7 @@ def beyond_bounds(
         if not names or not space.scale_free:
             break
         values = {name: float(value[0]) for name, value in space.values(best.point[None]).items()}
-        wider = replace(space, axes=tuple(_wider(axis, best) if axis.name in names else axis for axis in space.axes))
+        wider = wider_at(space, best.point, names)
         over = _over(objective, wider, count)
         trial = multistart(_over(searched, wider, 0), over, list(_starts(best, wider, values, names)), report, drawn)
         if not trial.here.error < best.here.error * (1.0 - AGREE):
@@ -55,6 +55,12 @@ def beyond_bounds(
         left = tuple(Beyond(name, bounds[name][_upper(best, name)], best.here.error) for name in names)
         best = replace(trial, beyond=(*best.beyond, *left), searched=found.fitness.space)
     return best
+
+
+def wider_at(space: Space, point: Array, names: Collection[str]) -> Space:
+    """The space, with the axes of these parameters reaching ten times as far on the side at which a point lies."""
+    pairs = zip(space.axes, point, strict=True)
+    return replace(space, axes=tuple(_wider(one, bool(at > 0.5)) if one.name in names else one for one, at in pairs))
 
 
 def _starts(best: Optimum, wider: Space, values: Mapping[str, float], names: Iterable[str]) -> Iterator[Array]:
@@ -89,10 +95,10 @@ def _upper(best: Optimum, name: str) -> bool:
     return bool(best.point[best.fitness.space.names.index(name)] > 0.5)
 
 
-def _wider(axis: Axis, best: Optimum) -> Axis:
-    if _upper(best, axis.name):
+def _wider(axis: Axis, upwards: bool) -> Axis:
+    if upwards:
         return replace(axis, upper=axis.upper * FURTHER)
-    return replace(axis, lower=axis.lower / FURTHER)
+    return replace(axis, lower=axis.lower * FURTHER if axis.lower < 0 else axis.lower / FURTHER)
 
 
 def _over(fitness: Fitness, space: Space, evaluations: int) -> Fitness:

@@ -1,0 +1,64 @@
+"""Where a parameter rests that the data do not determine: where the fewest steps a sample follow the model.
+
+A mode that is over within a small part of a sample shows in no record. A search leaves it anywhere, often at a bound:
+there every simulation takes as many steps as there are, and the error is so flat that no later search, with an effect
+that changes what the data determine, leaves it again.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from ident.diagnosis.candidate_models import CandidateModels
+from ident.diagnosis.criteria import CRITERIA
+from ident.diagnosis.fitted_model import FittedModel
+from ident.fit.uncertainty import DETERMINED
+
+
+def rested(models: CandidateModels, refit: FittedModel) -> FittedModel:
+    """The refit with what the data do not determine where fewer steps follow it, as far as the error stays.
+
+    The other parameters are fitted again with it held there. What a user bounds or holds stays where it is.
+    """
+    if not refit.stable:
+        return refit
+    for number, axis in enumerate(refit.space.axes):
+        if axis.logarithmic and axis.scale is not None and not _determined(refit, axis.name):
+            refit = _slowed(models, refit, number)
+    return refit
+
+
+def _slowed(models: CandidateModels, refit: FittedModel, number: int) -> FittedModel:
+    """The refit with one parameter moved, by half of the steps at a time, until the error changes."""
+    most = (1.0 + CRITERIA.estimation.no_change) * refit.local.error
+    while (place := _with_fewer_steps(models, refit, number)) is not None:
+        point = refit.point.copy()
+        point[number] = place
+        lower, upper = np.zeros(len(point)), np.ones(len(point))
+        lower[number] = upper[number] = place
+        values = {name: float(value[0]) for name, value in refit.space.values(point[None]).items()}
+        way = replace(CRITERIA.estimation.full, within=(lower, upper))
+        slower = models.refit(refit.effects, {**refit.values, **values}, way=way)
+        if not (slower.stable and slower.local.error <= most):
+            break
+        refit = slower
+    return refit
+
+
+def _with_fewer_steps(models: CandidateModels, refit: FittedModel, number: int) -> float | None:
+    """The nearest place on an axis at which at most half of the steps follow the model; None where there is none."""
+    fitness = models.fitness(refit.effects)
+    places = np.linspace(0.0, 1.0, CRITERIA.estimation.places_of_rest)
+    points = np.repeat(refit.point[None], len(places) + 1, axis=0)
+    points[:-1, number] = places
+    steps = fitness.steps(fitness.space.values(points))
+    fewer = places[2 * steps[:-1] <= steps[-1]]
+    return float(fewer[np.argmin(np.abs(fewer - refit.point[number]))]) if len(fewer) else None
+
+
+def _determined(refit: FittedModel, name: str) -> bool:
+    """Whether the data tell a parameter apart from next to nothing."""
+    error = refit.deviation(name)
+    return error is not None and error < DETERMINED * abs(refit.values[name])
