@@ -5,6 +5,8 @@ from ident.presets.preset import Combined, Preset, RequiredData, SearchPlan
 from ident.stages import CASCADE, DIRECT_FORCE, DRIVEN_MASS, IDEAL_DRIVE, IDEAL_SENSOR, Scale
 
 OUTPUTS = {"displacement": "y", "force": "F"}
+OPEN_OUTPUTS = {**OUTPUTS, "velocity": "v"}
+"""Of the mass alone; no loop of a position is closed over a speed."""
 FORCE_SCALE = "(c0 + m0*W)*W*L"
 CITATION = (
     "A. Janot, M. Gautier, M. Brunot: data set and reference models of EMPS. "
@@ -35,12 +37,12 @@ DRIVE = Preset(
     name="drive",
     title="Drive",
     citation=CITATION,
-    chain=Chain(stages=(DIRECT_FORCE, DRIVEN_MASS, IDEAL_SENSOR), outputs=OUTPUTS),
+    chain=Chain(stages=(DIRECT_FORCE, DRIVEN_MASS, IDEAL_SENSOR), outputs=OPEN_OUTPUTS),
     search=SearchPlan(
         rescaled=(
-            Scale("m0", "U / (X * W**2)", 1e-3, 1e7),
-            Scale("c0", "U / (X * W)", 1e-4, 1e5),
-            Scale("k0", "U / X", 1e-6, 1e2),
+            Scale("m0", "U / (L * W**2)", 1e-3, 1e7),
+            Scale("c0", "U / (L * W)", 1e-4, 1e5),
+            Scale("k0", "U / L", 1e-6, 1e2),
         ),
         force_scale="M",  # the largest drive force: what holds more stands still
         methods=("inverse-dynamics",),

@@ -13,7 +13,11 @@ from ident.presets import PRESETS, Preset, preset
 from ident.run import BENCH, DISTURBANCES, MOTIONS, Run
 from ident.stages import OPENED_BY_COMMAND
 
-_OPEN, _UNLIKELY = 2, 5  # ranks: a command in open loop; a motion that something else may drive
+_STATED, _OPEN, _UNLIKELY = (
+    0,
+    2,
+    5,
+)  # ranks: a force, in its unit; a command in open loop; a motion that something else may drive
 _STRETCHES, _NEAR = 20, 0.1  # of a record whose means are compared; how near they are, a share of the command's
 
 
@@ -123,7 +127,7 @@ def _allows(model: Preset, run: Described) -> bool:
 
 def _rank(model: Preset, runs: Sequence[Described]) -> int:
     if any(_by_force(model, run) for run in runs):
-        return _OPEN  # or what follows a force
+        return _STATED if all(run.output in MOTIONS for run in runs) else _OPEN  # or what follows a force
     if model.data.driven_by != "command":
         bare = not any("command" in run.channels for run in runs)
         return 0 if bare or model.data.driven_by not in MOTIONS else _UNLIKELY

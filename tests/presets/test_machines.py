@@ -153,6 +153,18 @@ def test_where_no_model_is_driven_by_what_was_recorded_the_channels_are_named():
 
 
 @pytest.mark.parametrize(
+    ("unit", "models"), [("N*m", ["drive"]), ("N", ["drive"]), ("V", ["motor", "first_order"])],
+)  # fmt: skip
+def test_a_torque_or_a_force_drives_a_mass_and_nothing_else_is_in_question(unit, models):
+    """It needs no constant from the command to the force, whether position or speed is recorded."""
+    for channel, of in (("velocity", "rad/s"), ("displacement", "rad")):
+        run = Run("r", "", RATE, {"command": TIME, channel: TIME}, units={"command": unit, channel: of})
+        found = [model.name for model in in_question([run])]
+        assert found[0] == models[0]
+        assert (found == ["drive"]) == (models == ["drive"])
+
+
+@pytest.mark.parametrize(
     ("name", "model"),
     [("mr_damper", "specimen"), ("dc_motor", "motor"), ("crane_actuator", "open_valve"), ("emps", "drive"),
      ("mts_actuator", "qian2014")],
