@@ -154,7 +154,7 @@ def _fits(stem: str, unit: str) -> bool:
         return channel in MEASURED or may_measure(channel, unit)
     if "/" in unit:
         return si_scale(unit, "unit").unit in _SPEEDS
-    return unit not in _LETTERS
+    return unit not in _LETTERS and not unit[-1].isdigit()  # Sensor A-1 is not measured in 1/A
 
 
 def measures_time(unit: str) -> bool:

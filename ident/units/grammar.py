@@ -1,29 +1,46 @@
-"""The grammar of a unit: names and ``1`` joined by ``*``, ``/`` or a space, with whole powers and brackets."""
+"""The grammar of a unit: names and ``1`` joined by ``*``, ``/`` or a space, with whole powers and brackets.
+
+Between two names ``.``, ``-`` and ``·`` multiply, too: ``N.m``, ``lbf-ft``, ``m.s-1``.
+"""
 
 from __future__ import annotations
 
 import re
 
-from ident.units.names import SPELLINGS
+from ident.units.names import COMPOUNDS, SPELLINGS
 
 Powers = dict[str, float]
 
 TOKEN = re.compile(r"\s*(\*\*|[*/^()·⋅×]|[+-]?[0-9]+|[^\W\d]+(?:_[^\W\d]+)*|[%°″\"][CF]?)")
 SIGNS = {"·": "*", "⋅": "*", "×": "*", "**": "^"}
-SUPERSCRIPTS = str.maketrans({"²": "^2", "³": "^3", "⁴": "^4", "⁻": "^-", "¹": "1", "−": "-"})
-ADJACENT = re.compile(r"(?<![^\W\d])([^\W\d]+)([234])(?![\w.])")
-"""A power written right behind its name: mm2, m/s2, in3."""
+ALIKE = str.maketrans({"−": "-", "‐": "-", "‑": "-", "μ": "µ", "º": "°"})
+"""Signs that look like others: minus and hyphens, the Greek letter for the micro sign, the ordinal for the degree."""
+RAISED = re.compile(r"[⁺⁻]?[¹²³⁴]")
+LOWERED = str.maketrans("⁺⁻¹²³⁴", "+-1234")
+BETWEEN = re.compile(r"(?<=[^\W_])[.·⋅×-](?=[^\W\d_]|°)")
+"""What multiplies between two names: N.m, lbf-ft, kg.m2.s-1."""
+SHORTENED = re.compile(r"(?<=[^\W\d_])\.(?=$|[\s*/])")
+"""The full stop of an abbreviation: in., sec./rev."""
+ADJACENT = re.compile(r"(?<![^\W\d])([^\W\d]+)(-[1-4]|[234])(?![\w.])")
+"""A power written right behind its name: mm2, m/s2, in3, s-1."""
 POWER = re.compile(r"[+-]?[0-9]{1,2}")
 DEEPEST = 5
 
 
 def powers_of(unit: str) -> Powers | None:
     """The power of each name: ``N*s/m`` → {N: 1, s: 1, m: -1}, ``cm2`` → {cm: 2}, "1" → {}; None for no unit."""
-    tokens = tokens_of(ADJACENT.sub(r"\1^\2", unit.translate(SUPERSCRIPTS)).strip())
+    tokens = tokens_of(ADJACENT.sub(r"\1^\2", plain(unit)))
     if not tokens:
         return None
     powers, after = product(tokens, 0, DEEPEST)
     return {name: power for name, power in powers.items() if power} if after == len(tokens) else None
+
+
+def plain(unit: str) -> str:
+    """The unit in signs of a keyboard, ``*`` between names; a usual compound as what it means."""
+    text = RAISED.sub(lambda found: f"^{found[0].translate(LOWERED)}", unit.translate(ALIKE)).strip()
+    text = SHORTENED.sub("", BETWEEN.sub("*", text))
+    return COMPOUNDS.get(text.replace(" ", "*"), text)
 
 
 def tokens_of(text: str) -> list[str]:

@@ -36,10 +36,11 @@ pound = 0.45359237 * kilogram = lb = lbs = lbm
 standard_gravity = 9.80665 * meter / second ** 2 = g_0 = g_n = gn
 newton = kilogram * meter / second ** 2 = N = newtons
 pound_force = pound * standard_gravity = lbf
+ounce_force = pound_force / 16 = ozf
 slug = pound_force * second ** 2 / foot
 kip = 1000 * pound_force = kips
 gram_force = gram * standard_gravity = gf
-kilogram_force = kilogram * standard_gravity = kgf = kilopond
+kilogram_force = kilogram * standard_gravity = kgf = kilopond = kp
 tonne_force = tonne * standard_gravity = tf = tonf
 inch = 0.0254 * meter = in = inches
 foot = 12 * inch = ft = feet
@@ -63,6 +64,10 @@ joule = newton * meter = J
 watt = joule / second = W
 volt = watt / ampere = V = volts
 newton_meter = newton * meter = Nm
+newton_millimeter = 1e-3 * newton_meter = Nmm
+newton_centimeter = 1e-2 * newton_meter = Ncm
+newton_second = newton * second = Ns
+newton_meter_second = newton_meter * second = Nms
 lpm = liter / minute
 gpm = gallon / minute
 percent = 0.01
@@ -70,18 +75,28 @@ radian = 1 = rad
 degree = 0.017453292519943295 = deg
 revolution = 6.283185307179586 = rev
 rpm = revolution / minute
+rps = revolution / second
+dps = degree / second
 """
 
-ANGLES = frozenset({"radian", "rad", "degree", "deg", "revolution", "rev", "rpm"})
+ANGLES = frozenset({"radian", "rad", "degree", "deg", "revolution", "rev", "rpm", "rps", "dps", "mrad"})
 """Dimensionless for pint, so that rad/s would pass for Hz and be wrong by 2π."""
 
 SPELLINGS = {
-    "%": "percent", "°C": "degC", "°F": "degF", '"': "inch", "hz": "Hz", "HZ": "Hz", "KHz": "kHz", "Khz": "kHz",
-    "khz": "kHz", "KN": "kN", "Kn": "kN", "MPA": "MPa", "Mpa": "MPa", "KPa": "kPa", "kpa": "kPa",
+    "%": "percent", "°": "deg", "°C": "degC", "°F": "degF", '"': "inch", "hz": "Hz", "HZ": "Hz", "KHz": "kHz",
+    "Khz": "kHz", "khz": "kHz", "KN": "kN", "Kn": "kN", "MPA": "MPa", "Mpa": "MPa", "KPa": "kPa", "kpa": "kPa",
     "KPA": "kPa", "PSI": "psi", "Psi": "psi", "KSI": "ksi", "KG": "kg", "IN": "in", "″": "inch", "μm": "µm",
-    "rot": "rev", "turn": "rev", "turns": "rev", "tr": "rev", "U": "rev", "Umdr": "rev", "RPM": "rpm", "Rpm": "rpm",
-    "Sec": "s", "SEC": "s", "Seconds": "s", "Sekunden": "s", "Meter": "m", "Meters": "m", "Degrees": "deg",
-    "degrees": "deg", "Newtons": "N", "Hertz": "Hz",
-    "MM": "mm", "CM": "cm", "Bar": "bar", "BAR": "bar", "Volt": "V", "Volts": "V", "Newton": "N", "Pascal": "Pa",
+    "rot": "rev", "turn": "rev", "turns": "rev", "tr": "rev", "upm": "rpm", "Upm": "rpm", "U": "rev", "Umdr": "rev",
+    "RPM": "rpm", "Rpm": "rpm", "Sec": "s", "SEC": "s", "Second": "s", "Seconds": "s", "Sekunden": "s", "Meter": "m",
+    "Meters": "m", "Degrees": "deg", "degrees": "deg", "Newtons": "N", "Hertz": "Hz", "MM": "mm", "CM": "cm",
+    "Bar": "bar", "BAR": "bar", "mBar": "mbar", "LPM": "lpm", "GPM": "gpm", "Amps": "A", "Ampere": "A", "Volt": "V",
+    "Volts": "V", "Newton": "N", "Pascal": "Pa",
 }  # fmt: skip
 """Ways of writing that leave no doubt about what is meant."""
+
+COMPOUNDS = {
+    **{f"{pound}*{length}": f"lbf*{length}" for pound in ("lb", "lbs") for length in ("ft", "in")},
+    **{f"{length}*{pound}": f"lbf*{length}" for pound in ("lb", "lbs") for length in ("ft", "in")},
+    "oz*in": "ozf*in", "in*oz": "ozf*in", "r/min": "rev/min", "r/s": "rev/s", "kgm2": "kg*m^2", "kgm^2": "kg*m^2",
+}  # fmt: skip
+"""Compounds whose names by themselves are another unit: the pound of a torque is a force, the r of r/min a turn."""

@@ -128,6 +128,8 @@ def unit_scale(unit: str, dimension: str, where: str) -> Scale:
     if dimension == "acceleration" and unit in ("g", "G"):
         unit = "g_n"  # gram has no business here
     powers = known_powers(unit, where, target)
+    if target == "rad/s" and powers == {"min": -1.0}:
+        powers = {"rev": 1.0, "min": -1.0}  # of a speed of rotation 1/min counts turns
     # pint calls an angle a plain number; so may a user who writes a phase, but no channel does
     apart = target in ("1/s", "rad/s", "rad") or dimension == "dimensionless"
     turns = apart and bool(ANGLES & set(powers)) != target.startswith("rad")

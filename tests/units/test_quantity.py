@@ -60,6 +60,22 @@ READ = [
     ("3 turns", "angle", 18.84955592153876),
 ]
 
+WRITTEN = {
+    1.0: ("N*m", ["N.m", "N-m", "N·m", "N⋅m", "Nm", "kg.m2/s2", "kg·m²·s⁻²", "Nms.s-1"]),
+    1e3: ("N*m", ["kN.m", "kN-m", "kNm", "kN m"]),
+    1.3558179483314003: ("N*m", ["lbf.ft", "lbf-ft", "ft-lbf", "ft-lb", "lb-ft", "ft.lbs"]),
+    0.11298482902761668: ("N*m", ["in-lb", "lbf-in", "in.lbf"]),
+    0.017453292519943295: ("rad/s", ["°/s", "º/s", "deg/s", "deg.s-1", "deg/sec", "° s⁻¹", "dps", "degrees/second"]),
+    0.10471975511965977: ("rad/s", ["rpm", "RPM", "rev/min", "r/min", "U/min", "tr/min", "1/min", "min-1", "min⁻¹",
+                                    "rev.min^-1", "upm"]),
+    1e-3: ("m/s", ["mm/s", "mm.s-1", "mm·s⁻¹", "mm s-1", "mm/sec."]),
+    0.0254: ("m/s", ["in/s", "in./s", "in.s-1"]),
+    98066.5: ("pressure", ["kgf/cm2", "kgf.cm-2", "kp/cm²"]),
+    175.12683524647636: ("damping", ["lbf-s/in", "lbf.s/in", "lbf·s·in⁻¹"]),
+    1e-6: ("time", ["us", "µs", "μs"]),
+}  # fmt: skip
+"""A factor to SI: the kind, and the ways of writing units that have it."""
+
 REFUSED = [
     ("7", "length", "missing-unit"),
     (7, "length", "missing-unit"),
@@ -92,6 +108,24 @@ REFUSED = [
 @pytest.mark.parametrize(("text", "dimension", "value"), READ)
 def test_units_of_a_bench_are_read_as_a_bench_means_them(text, dimension, value):
     assert quantity(text, dimension, "field") == pytest.approx(value, rel=1e-14)
+
+
+def test_a_compound_unit_is_read_however_it_is_written():
+    for factor, (dimension, ways) in WRITTEN.items():
+        for way in ways:
+            assert unit_scale(way, dimension, way).factor == pytest.approx(factor, rel=1e-12), way
+
+
+def test_turns_are_read_of_one_over_minutes_in_a_speed_of_rotation_alone():
+    assert unit_scale("1/min", "frequency", "field").factor == pytest.approx(1 / 60)
+    with pytest.raises(Unusable):
+        unit_scale("1/s", "rad/s", "field")
+
+
+@pytest.mark.parametrize("text", ["N.", ".N", "N..m", "N--m", "N.5m", "-N", "N-", "m.s-", "a.b", "run-A"])
+def test_what_only_looks_like_a_compound_is_no_unit_of_one(text):
+    with pytest.raises(Unusable):
+        unit_scale(text, "torque", "field")
 
 
 @pytest.mark.parametrize(("text", "dimension", "code"), REFUSED)
@@ -158,7 +192,7 @@ def test_any_text_is_a_quantity_or_is_refused(text):
         assert refused.code  # noqa: PT017
 
 
-@given(st.text(alphabet="mNskPa1023 */^()-·.²%°", max_size=25))
+@given(st.text(alphabet="mNskPa1023 */^()-·.²⁻%°", max_size=25))
 def test_any_unit_is_a_unit_or_is_refused(unit):
     try:
         assert unit_scale(unit, "force", "field").unit == "N"
