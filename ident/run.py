@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 from ident.beginning import ROUNDING, Beginning, beginning, standing_for
 from ident.cached import cached_property
 from ident.slopes import slopes
+from ident.words.run_name import run_name
 from ident.words.shown import Listing, Shown
 
 Samples = NDArray[np.float64]
@@ -126,7 +127,8 @@ class Run(Shown):
             for name, samples in self.channels.items()
         ]
         numbers = ("least", "largest", "std")
-        title = f"Run {self.id}: {self.use}, {self.kind}, {self.duration:.4g} {self.time_unit}, {self.length} samples"
+        long = f"{self.duration:.4g} {self.time_unit}, {self.length} samples"
+        title = f"{run_name(self.id, begins=True)}: {self.use}, {self.kind}, {long}"
         return [Listing(title, ("channel", *numbers, "unit"), rows, numbers)]
 
     def of_outputs(self, outputs: Sequence[str]) -> tuple[Run, ...]:

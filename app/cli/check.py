@@ -11,6 +11,7 @@ from app.cli.output import STANDARD_OUTPUT, check_target, write_json
 from app.cli.preprocessing_options import NoRunExclusion, switches
 from app.cli.rig_option import RigFile, on_rig
 from ident.words.number import count
+from ident.words.run_name import run_name, without_name
 from ident.words.severity import level, levels
 from ident.words.uses import data
 
@@ -51,9 +52,12 @@ def check(
 
 
 def line(finding: Finding) -> str:
-    """ "warning: run r1: … [gaps]": the form in which editors and build servers read the lines of a compiler."""
-    run = f"run {finding.run}: " if finding.run else ""
-    return f"{level(finding.severity)}: {run}{finding.text} [{finding.code}]"
+    """ "warning: run r1: … [gaps]": the form in which editors and build servers read the lines of a compiler.
+
+    The run is named once, in front.
+    """
+    text = f"{run_name(finding.run)}: {without_name(finding.text, finding.run)}" if finding.run else finding.text
+    return f"{level(finding.severity)}: {text} [{finding.code}]"
 
 
 def description(matrix: Matrix) -> list[str]:

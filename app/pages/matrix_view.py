@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 from app.pages.run_view import Conditions, conditions
 from ident.words.number import plain
+from ident.words.run_name import without_name
 from ident.words.severity import levels
 from ident.words.titles import title
 from schemas.matrix import FindingView, MatrixView
@@ -94,12 +95,8 @@ def _flags(runs: tuple[RunRow, ...]) -> tuple[Flag, ...]:
 def _row(run: Conditions, findings: list[FindingView]) -> RunRow:
     """The words of a finding stand beside the run, which they need not name again."""
     ordered = sorted(findings, key=lambda entry: _WORST.index(entry.severity))
-    beside = tuple(entry.model_copy(update={"text": _beside(entry.text, run.id)}) for entry in ordered)
+    beside = tuple(entry.model_copy(update={"text": without_name(entry.text, run.id)}) for entry in ordered)
     return RunRow(run, ordered[0].severity if ordered else "", beside)
-
-
-def _beside(text: str, run: str) -> str:
-    return text.replace(f" of run {run}", "").removeprefix(f"run {run} ")
 
 
 def _summary(matrix: MatrixView) -> str:

@@ -22,6 +22,7 @@ from ident.run import USES
 from ident.words.engineering import printed_unit, quantity
 from ident.words.error import error_in_print, errors_line
 from ident.words.percent import percent_in_print
+from ident.words.run_name import run_name
 from ident.words.severity import level
 from ident.words.titles import with_effects
 from ident.workflows import compare, study
@@ -136,7 +137,7 @@ def _missing(diagnosis: Diagnosis, matrix: Matrix) -> Iterator[Block]:
     for group in verdict.indistinguishable:
         yield Text(f"These data {cannot_distinguish(group, verdict.effects)}.")
     for suspect in verdict.suspects:
-        yield Text(f"Label looks wrong: run {suspect.run}: {suspect.what}")
+        yield Text(f"Label looks wrong: {run_name(suspect.run)}: {suspect.what}")
     if command := next_command(diagnosis):
         yield Text(command)
     if steps := ladder_steps(diagnosis):

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from ident.bench.records import Record
 from ident.bench.sine_fit import as_printed, dominant, fit_sine
 from ident.errors import Unusable
+from ident.words.run_name import run_name
 
 Array = NDArray[np.float64]
 _PER_PERIOD = 200  # samples that are enough of a period
@@ -54,7 +55,7 @@ def point(measured: Record) -> Response:
     drive = fit_sine(alpha, record.current, drift=True)
     count = int(np.floor(alpha[-1] / (2 * np.pi) + 0.01))
     if count < 1 or drive.a2 <= 0:
-        raise Unusable("no-period", f"the record holds no whole period of {frequency:g} Hz", f"run {record.id}",
+        raise Unusable("no-period", f"the record holds no whole period of {frequency:g} Hz", f"{run_name(record.id)}",
                        "record at least two periods, or correct frequency")  # fmt: skip
     first = 1 if count > 1 else 0  # the first period holds the start
     edges = [round(i * record.rate / frequency) for i in range(first, count + 1)]

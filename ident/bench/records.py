@@ -13,6 +13,7 @@ from ident.cached import cached_property
 from ident.errors import Unusable
 from ident.matrix import Matrix
 from ident.run import BENCH, Run
+from ident.words.run_name import run_name
 
 Array = NDArray[np.float64]
 _END = 0.02  # s at the same extreme reading: the actuator or its transducer is at its end
@@ -144,15 +145,17 @@ def _current(run: Run) -> Array:
     """The current; a command where a bench has nothing else."""
     found = run.channels.get("current", run.channels.get("command"))
     if found is None:
-        raise Unusable("missing-channel", "no current channel", f"run {run.id}", "name the column of the current")
+        raise Unusable("missing-channel", "no current channel", f"{run_name(run.id)}", "name the column of the current")
     return found
 
 
 def _record(run: Run, rated: float) -> Record:
     if run.time_unit != "s":
-        raise Unusable("clock", "the sample rate is unknown", f"run {run.id}", "state sample_rate in Hz")
+        raise Unusable("clock", "the sample rate is unknown", f"{run_name(run.id)}", "state sample_rate in Hz")
     if "displacement" not in run.channels:
-        raise Unusable("missing-channel", "no displacement channel", f"run {run.id}", "name the column of the position")
+        raise Unusable(
+            "missing-channel", "no displacement channel", f"{run_name(run.id)}", "name the column of the position"
+        )
     pressure = None
     if {"pressure_a", "pressure_b"} <= run.channels.keys():
         pressure = run.channels["pressure_a"] - run.channels["pressure_b"]

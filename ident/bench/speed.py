@@ -24,6 +24,7 @@ from ident.bench.speed_table import SpeedTable
 from ident.bench.straightness import Straightness, of_table
 from ident.errors import Unusable
 from ident.words.nearest import did_you_mean
+from ident.words.run_name import run_name
 
 Array = NDArray[np.float64]
 _EVEN = 2e-3 + 1e-9  # of rated current: within it, rounding apart, a level is one
@@ -74,7 +75,7 @@ def speed(model: Model, records: Sequence[Record], observed: Sequence[Observed],
     points = _points(found, curves)
     if not len(points):
         raise Unusable("no-movement", "the speed characteristic cannot be found: the link did not move at any level",
-                       f"run {records[0].id}", "record levels beyond the dead space")  # fmt: skip
+                       f"{run_name(records[0].id)}", "record levels beyond the dead space")  # fmt: skip
     solution = fit_table(replace(model, table=through(points - [model.I0, 0.0], model.table)), observed)
     table = solution.model.table
     heights, ends = bezier(points[:, 0], points[:, 1], min(degree, max(1, len(points) - 1)), model.I0)

@@ -11,6 +11,7 @@ import numpy as np
 from ident.equations.equation import Equation
 from ident.errors import Unusable
 from ident.run import CHANNELS, Run
+from ident.words.run_name import run_name
 
 _MOTION = ("command", "displacement", "velocity")  # a model has its own
 READABLE = tuple(channel for channel in CHANNELS if channel not in _MOTION)
@@ -52,4 +53,4 @@ def refuse_unmeasured(symbols: Iterable[str], runs: Iterable[Run]) -> None:
     if found := unmeasured(symbols, runs):
         channel, run, what = found
         remedy = f"give the run its {channel}, leave the run out, or fit without the effect"
-        raise Unusable("missing-channel", what, f"run {run}", remedy)
+        raise Unusable("missing-channel", what, f"{run_name(run)}", remedy)

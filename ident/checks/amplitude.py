@@ -10,6 +10,7 @@ import numpy as np
 from ident.checks.finding import Finding
 from ident.checks.gain import FACTORS
 from ident.run import Run
+from ident.words.run_name import run_name
 
 TOLERANCE = 0.1  # 2 s of noise of 0-80 Hz scatter by 4 %, 30 s by 1 %
 NEAR = 1.12  # either way, for a factor to be named
@@ -29,8 +30,8 @@ def amplitude(run: Run) -> Iterator[Finding]:
     ratio = found / run.amplitude
     code, why = explanation(ratio, run)
     text = (
-        f"command of run {run.id} has an RMS of {found:.4g} {unit} where amplitude states {run.amplitude:.4g} {unit} "
-        f"({ratio:.3g} times){why}; correct amplitude, or the unit or scale of the command"
+        f"command of {run_name(run.id)} has an RMS of {found:.4g} {unit} where amplitude states {run.amplitude:.4g} "
+        f"{unit} ({ratio:.3g} times){why}; correct amplitude, or the unit or scale of the command"
     )
     yield Finding(run.id, "doubt", code, text)
 

@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from ident.checks.finding import Finding
 from ident.checks.response import Response
 from ident.run import Run
+from ident.words.run_name import run_name
 
 POWER = 0.95
 LOWEST, HIGHEST = 60.0, 100.0  # Hz; white noise of 0-80 Hz has 95 % of its power below 76 Hz, filtered or not
@@ -23,7 +24,7 @@ def band(run: Run, response: Response | None) -> Iterator[Finding]:
         "higher frequencies are not excited and not identifiable" if edge < LOWEST else "the model is made for 0-80 Hz"
     )
     text = (
-        f"the command of run {run.id} is called blwn, but {POWER:.0%} of its power lies below {edge:.3g} Hz instead of "
-        f"about 76 Hz; {follows}: check the generator, the sample rate and kind"
+        f"the command of {run_name(run.id)} is called blwn, but {POWER:.0%} of its power lies below {edge:.3g} Hz "
+        f"instead of about 76 Hz; {follows}: check the generator, the sample rate and kind"
     )
     yield Finding(run.id, "doubt", "band", text)

@@ -8,6 +8,7 @@ import numpy as np
 
 from ident.checks.finding import Finding
 from ident.run import Run
+from ident.words.run_name import run_name
 
 EXACT = 1e-6
 """Of the output's deviation, what no gain and no offset of the command explains: any recorder's noise is larger."""
@@ -22,7 +23,7 @@ def copied(run: Run) -> Iterator[Finding]:
     if not x.any() or float(np.std(residual)) > EXACT * float(np.std(x)):
         return
     text = (
-        f"{run.output} of run {run.id} is a copy of its command, without delay, dynamics or noise, which no sensor "
-        "gives; check that its column is that of the sensor"
+        f"{run.output} of {run_name(run.id)} is a copy of its command, without delay, dynamics or noise, which no "
+        "sensor gives; check that its column is that of the sensor"
     )
     yield Finding(run.id, "doubt", "copied", text)

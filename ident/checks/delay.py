@@ -12,6 +12,7 @@ from ident.checks.finding import Finding
 from ident.checks.local_response import LocalResponse, local_response
 from ident.checks.response import Response
 from ident.run import Run, Samples
+from ident.words.run_name import run_name
 
 POLES = 4  # of the chain: valve, pressure, mass
 SEARCHED = 24.0  # samples either way
@@ -58,8 +59,9 @@ def delays(measured: list[tuple[Run, Response | None]]) -> Iterator[Finding]:
     for run, estimate in found:
         if estimate.told and len(told) > 2 and estimate.apart(middle, apart):
             text = (
-                f"displacement of run {run.id} {lags(estimate.samples)} where the runs in common show {middle:.1f}; "
-                "look for a shift between the channels of this run (rows, other recorder) or a wrong label"
+                f"displacement of {run_name(run.id)} {lags(estimate.samples)} where the runs in common show "
+                f"{middle:.1f}; look for a shift between the channels of this run (rows, other recorder) or a wrong "
+                "label"
             )
             yield Finding(run.id, "doubt", "skew", text)
         elif estimate.told and len(told) == 1 and estimate.apart(0.0, LEAST):
@@ -70,7 +72,7 @@ def delays(measured: list[tuple[Run, Response | None]]) -> Iterator[Finding]:
 
 def alone(run: Run, samples: float) -> Finding:
     """The finding for one run that is judged by itself."""
-    return Finding(run.id, "doubt", "delay", f"displacement of run {run.id} {lags(samples)}{remedy(samples)}")
+    return Finding(run.id, "doubt", "delay", f"displacement of {run_name(run.id)} {lags(samples)}{remedy(samples)}")
 
 
 def lags(samples: float) -> str:

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from ident.checks.finding import Finding
 from ident.run import Run, Samples
 from ident.words.percent import percent
+from ident.words.run_name import run_name
 
 OWN, OTHER = 40, 12  # lags of the command's past, and of the output's beside as many more of the command's
 LONGEST = 8192  # samples that are looked at, from the middle of the record
@@ -33,9 +34,9 @@ def feedback(run: Run) -> Iterator[Finding]:
     found = shares(run) if run.closed_loop is None else None
     if found and _fed_back(*found):
         text = (
-            f"the command of run {run.id} depends on the measured output, so a controller made it: the output predicts "
-            f"{percent(max(found))} of the innovations of the command. Use the reference of the controller as the "
-            "command and state controller or gain, or set closed_loop: false if there is no feedback"
+            f"the command of {run_name(run.id)} depends on the measured output, so a controller made it: the output "
+            f"predicts {percent(max(found))} of the innovations of the command. Use the reference of the controller as "
+            "the command and state controller or gain, or set closed_loop: false if there is no feedback"
         )
         yield Finding(run.id, "doubt", "closed-loop", text)
 

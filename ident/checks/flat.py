@@ -8,6 +8,7 @@ import numpy as np
 
 from ident.checks.finding import Finding
 from ident.run import Run, Samples
+from ident.words.run_name import run_name
 
 SECONDS = 0.05  # longer than any rest of a rounded signal in a band of tens of Hz
 SAMPLES = 32
@@ -31,8 +32,9 @@ def flat(run: Run) -> Iterator[Finding]:
         if name == run.output and starts_again_from_rest(run.channels[name], end):
             continue
         text = (
-            f"{name} of run {run.id} is flat from sample {first} to {end - 1} ({(end - first) / run.sample_rate:.3g} "
-            f"{run.time_unit}) while {other} moves; look for a stuck sensor or a filled gap and cut it out with rows"
+            f"{name} of {run_name(run.id)} is flat from sample {first} to {end - 1} "
+            f"({(end - first) / run.sample_rate:.3g} {run.time_unit}) while {other} moves; "
+            "look for a stuck sensor or a filled gap and cut it out with rows"
         )
         yield Finding(run.id, "doubt", "flat", text)
 

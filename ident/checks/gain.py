@@ -10,6 +10,7 @@ import numpy as np
 from ident.checks.finding import Finding
 from ident.checks.response import RELATED, Response, response
 from ident.run import Run
+from ident.words.run_name import run_name
 
 BAND = (0.0, 0.1)  # of the command's power
 TURNED = 120.0  # degrees; the loop lags by less than 90 there
@@ -33,13 +34,13 @@ def gain(run: Run, measured: Response | None) -> Iterator[Finding]:
     turn = degrees(abs(np.angle(value)))
     if turn > TURNED:
         text = (
-            f"displacement of run {run.id} moves against the command ({turn:.0f} degrees at {where(measured)}); "
+            f"displacement of {run_name(run.id)} moves against the command ({turn:.0f} degrees at {where(measured)}); "
             "set invert: true on the channel whose sign is wrong"
         )
         yield Finding(run.id, "doubt", "sign", text)
     if not SMALL < abs(value) < LARGE:
         text = (
-            f"displacement of run {run.id} is {abs(value):.3g} times the command at {where(measured)}"
+            f"displacement of {run_name(run.id)} is {abs(value):.3g} times the command at {where(measured)}"
             f"{guess(abs(value))}; correct the unit or scale of the channel"
         )
         yield Finding(run.id, "doubt", "unit", text)
@@ -48,8 +49,8 @@ def gain(run: Run, measured: Response | None) -> Iterator[Finding]:
 def unrelated(run: Run, coherence: float) -> Finding:
     """The finding for two channels that have nothing to do with each other."""
     text = (
-        f"displacement of run {run.id} hardly follows the command (coherence {coherence:.2f} where it is excited); "
-        "check that both columns are the right ones and of this run"
+        f"displacement of {run_name(run.id)} hardly follows the command (coherence {coherence:.2f} where it is "
+        "excited); check that both columns are the right ones and of this run"
     )
     return Finding(run.id, "doubt", "unrelated", text)
 
@@ -81,7 +82,7 @@ def force_sign(run: Run) -> Iterator[Finding]:
     power = float(np.sum((np.abs(needed) ** 2 * measured.uu)[used]))
     if agreement < -0.3 * power:
         text = (
-            f"force of run {run.id} is {agreement / power:.2g} times what its specimen needs: the sign is wrong; "
+            f"force of {run_name(run.id)} is {agreement / power:.2g} times what its specimen needs: the sign is wrong; "
             "set invert: true on force, which is positive on the specimen along +x"
         )
         yield Finding(run.id, "doubt", "force-sign", text)

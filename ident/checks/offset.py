@@ -8,6 +8,7 @@ from ident.checks.finding import Finding
 from ident.checks.response import rests
 from ident.run import Run
 from ident.words.percent import percent
+from ident.words.run_name import run_name
 
 SMALL = 0.05  # of the displacement's standard deviation; as large as the error that a good model leaves
 LARGE = 1.0
@@ -30,7 +31,7 @@ def offset(run: Run) -> Iterator[Finding]:
         else "Possible causes: null bias, static load, sensor zero"
     )
     text = (
-        f"the mean displacement of run {run.id} is {1e3 * abs(difference):.3g} mm {side} the command ({percent(share)} "
-        f"of its standard deviation). The error of eq. (17) ignores constant offsets. {remedy}"
+        f"the mean displacement of {run_name(run.id)} is {1e3 * abs(difference):.3g} mm {side} the command "
+        f"({percent(share)} of its standard deviation). The error of eq. (17) ignores constant offsets. {remedy}"
     )
     yield Finding(run.id, "doubt" if share > LARGE else "note", "offset", text)

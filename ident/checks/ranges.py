@@ -9,6 +9,7 @@ import numpy as np
 from ident.checks.finding import Finding
 from ident.matrix import Actuator
 from ident.run import Run
+from ident.words.run_name import run_name
 
 PRESSURES = ("load_pressure", "pressure_a", "pressure_b")
 MARGIN = 1.1  # pressure peaks above the supply; a stroke is printed with its cushions
@@ -21,8 +22,8 @@ def ranges(run: Run, actuator: Actuator) -> Iterator[Finding]:
         extent = float(np.ptp(travel))
         if extent > MARGIN * actuator.stroke:
             text = (
-                f"displacement of run {run.id} travels {extent:.3g} m where the stroke is {actuator.stroke:.3g} m; "
-                "correct the unit of the channel or the stroke"
+                f"displacement of {run_name(run.id)} travels {extent:.3g} m where the stroke is {actuator.stroke:.3g} "
+                "m; correct the unit of the channel or the stroke"
             )
             yield Finding(run.id, "fault", "beyond-stroke", text)
     for name in PRESSURES:
@@ -32,7 +33,7 @@ def ranges(run: Run, actuator: Actuator) -> Iterator[Finding]:
         highest = float(np.abs(pressure).max())
         if highest > MARGIN * actuator.supply_pressure:
             text = (
-                f"{name} of run {run.id} reaches {highest:.3g} Pa where the supply is {actuator.supply_pressure:.3g} "
-                "Pa; correct the unit of the channel or supply_pressure"
+                f"{name} of {run_name(run.id)} reaches {highest:.3g} Pa where the supply is "
+                f"{actuator.supply_pressure:.3g} Pa; correct the unit of the channel or supply_pressure"
             )
             yield Finding(run.id, "doubt", "beyond-supply", text)

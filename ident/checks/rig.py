@@ -10,6 +10,7 @@ from ident.checks.finding import Finding
 from ident.matrix import Actuator
 from ident.rig.motion import edge_of_band, motion_peaks
 from ident.run import BENCH, Run
+from ident.words.run_name import run_name
 
 BEYOND = "beyond-rig"
 """The code of such a finding: it is said first."""
@@ -21,7 +22,7 @@ def beyond_rig(run: Run, actuator: Actuator) -> Iterator[Finding]:
     if actuator.rig is None or run.time_unit != "s":
         return
     for said in actuator.rig_limits.leaving(_peaks(run, actuator)):
-        text = f"run {run.id} is {said}; spare the machine, or correct the unit of the channel or the limit"
+        text = f"{run_name(run.id)} is {said}; spare the machine, or correct the unit of the channel or the limit"
         yield Finding(run.id, "doubt", BEYOND, text)
 
 

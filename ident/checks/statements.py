@@ -8,6 +8,7 @@ from ident.checks.finding import Finding
 from ident.matrix import Matrix
 from ident.run import BENCH, Run
 from ident.words.listed import first_of
+from ident.words.run_name import run_name
 
 _TURNING = ("rad", "rad/s", "N*m")  # units of an output
 
@@ -60,8 +61,8 @@ def uses(matrix: Matrix) -> Iterator[Finding]:
     for run in verify:
         if gains and run.gain is not None and not min(gains) <= run.gain <= max(gains):
             text = (
-                f"run {run.id} is validation data at Kp = {run.gain:g}, outside the {min(gains):g} to {max(gains):g} "
-                "of the estimation data. Its error includes an extrapolation"
+                f"{run_name(run.id)} is validation data at Kp = {run.gain:g}, outside the {min(gains):g} to "
+                f"{max(gains):g} of the estimation data. Its error includes an extrapolation"
             )
             yield Finding(run.id, "note", "extrapolation", text)
 

@@ -10,6 +10,7 @@ from ident.checks.finding import Finding
 from ident.checks.response import Response
 from ident.readers.clock import STRAY
 from ident.run import Run
+from ident.words.run_name import run_name
 
 JITTER = 0.5  # samples; a time printed with too few digits stays below, a real clock that errs more does not
 SAMPLES_A_CYCLE = 10.0  # of the highest excited frequency; below, the command between samples decides the fit
@@ -24,20 +25,20 @@ def timing(run: Run, response: Response | None) -> Iterator[Finding]:
     if run.gaps:
         what = "they were interpolated" if run.evened else "the phase after a gap is shifted"
         text = (
-            f"the time of run {run.id} has gaps: {run.gaps} samples are missing, and {what}. "
+            f"the time of {run_name(run.id)} has gaps: {run.gaps} samples are missing, and {what}. "
             "Use the longest part without a gap (rows), or repeat the run"
         )
         yield Finding(run.id, "doubt", "gaps", text)
     if run.evened and run.clock_jitter > STRAY:
         command = "with the steps of the held command at their time" if run.hold == "zoh" else "by interpolation"
         text = (
-            f"the clock of run {run.id} has a jitter of up to {run.clock_jitter:.2g} samples. The record was "
+            f"the clock of {run_name(run.id)} has a jitter of up to {run.clock_jitter:.2g} samples. The record was "
             f"resampled to {run.sample_rate:.6g} Hz by its time column, {command}"
         )
         yield Finding(run.id, "note", "clock-jitter", text)
     elif run.clock_jitter > STRAY:
         text = (
-            f"the clock of run {run.id} has a jitter of up to {run.clock_jitter:.2g} samples, and a constant "
+            f"the clock of {run_name(run.id)} has a jitter of up to {run.clock_jitter:.2g} samples, and a constant "
             "sample rate is assumed. Record with a hardware clock, or print the time with more digits"
         )
         yield Finding(run.id, "doubt" if run.clock_jitter > JITTER else "note", "clock-jitter", text)
@@ -49,7 +50,7 @@ def timing(run: Run, response: Response | None) -> Iterator[Finding]:
     highest = response.below(POWER)
     if run.hold != "band-limited" and run.sample_rate < SAMPLES_A_CYCLE * highest:
         text = (
-            f"run {run.id} has {run.sample_rate / highest:.2g} samples per cycle at {highest:.3g} Hz, and "
+            f"{run_name(run.id)} has {run.sample_rate / highest:.2g} samples per cycle at {highest:.3g} Hz, and "
             f"{POWER:.0%} of the power of the command is below that. Use at least {SAMPLES_A_CYCLE * highest:.3g} Hz"
         )
         yield Finding(run.id, "doubt", "sample-rate", text)
@@ -74,7 +75,7 @@ def _too_quick(run: Run) -> Iterator[Finding]:
     share = 1.0 - float(np.median(away))
     if share > MOST:
         text = (
-            f"the sample rate of run {run.id} is too low: {share:.0%} of the step response happens within {QUICK} "
-            f"samples. Use at least {4 * run.sample_rate:.3g} Hz"
+            f"the sample rate of {run_name(run.id)} is too low: {share:.0%} of the step response happens within "
+            f"{QUICK} samples. Use at least {4 * run.sample_rate:.3g} Hz"
         )
         yield Finding(run.id, "doubt", "sample-rate", text)

@@ -18,6 +18,7 @@ from ident.checks.finding import Finding
 from ident.checks.response import RELATED, Response, respond, response, rests
 from ident.run import Run
 from ident.words.listed import first_of
+from ident.words.run_name import run_name
 
 NEAR = 0.02  # a clock is right to 1e-4 and a repeated RMS to 1 %; by chance one ratio in 40 is so near to a factor
 FACTORS = {25.4: "in for mm", 60.0: "min for s", 180 / pi: "deg for rad", 9.80665: "kgf for N, or g for m/s^2"}
@@ -148,13 +149,14 @@ def _clocks(records: Sequence[Record]) -> Iterator[_Doubt]:
         by_rate, by_duration = factor(rate), factor(run.duration / duration)
         if by_rate and _clock_is_off(record, sisters, 1 / rate):
             what = (
-                f"run {record.name} is sampled at {run.sample_rate:.6g} Hz and lasts {run.duration:.4g} s: the rate is "
-                f"{rate:.4g} times that of {_named(sisters)} ({by_rate.told}), though sample by sample it is like them"
+                f"{run_name(record.name)} is sampled at {run.sample_rate:.6g} Hz and lasts {run.duration:.4g} s: the "
+                f"rate is {rate:.4g} times that of {_named(sisters)} ({by_rate.told}), though sample by sample "
+                "it is like them"
             )
             yield _Doubt(run.id, "clock-factor", what, "correct the unit of its time or its sample rate")
         elif by_duration and factor(rate) is None and _answers_as(record, sisters, run.duration / duration) is True:
             what = (
-                f"run {record.name} lasts {run.duration:.4g} s, {run.duration / duration:.4g} times as long as "
+                f"{run_name(record.name)} lasts {run.duration:.4g} s, {run.duration / duration:.4g} times as long as "
                 f"{_named(sisters)} ({by_duration.told}), and answers its command as much more slowly"
             )
             yield _Doubt(run.id, "clock-factor", what, "correct the unit of its time or resample")
@@ -292,7 +294,7 @@ def _levels(records: Sequence[Record], channel: str) -> list[list[Record]]:
 
 def _size(record: Record, channel: str, off: Off, otherwise: str) -> _Doubt:
     what = (
-        f"{channel} of run {record.name} is {off.ratio:.4g} times as large as that of {_named(off.sisters)} "
+        f"{channel} of {run_name(record.name)} is {off.ratio:.4g} times as large as that of {_named(off.sisters)} "
         f"({off.near.told})"
     )
     return _Doubt(record.run.id, "amplitude-factor", what, f"correct its unit or scale{otherwise}")

@@ -20,6 +20,7 @@ from ident.words.error import error_said, unstable_on
 from ident.words.listed import all_of
 from ident.words.percent import percent
 from ident.words.probability import probability_said
+from ident.words.run_name import run_name
 from ident.words.titles import title
 
 _BOUNDED = (
@@ -120,7 +121,7 @@ def verdict_text(
         for group in groups
     ]
     for suspect in suspects:
-        parts.append(f"Run {suspect.run} is doubted ({suspect.what}): {suspect.evidence}.")
+        parts.append(f"{run_name(suspect.run, begins=True)} is doubted ({suspect.what}): {suspect.evidence}.")
     if unexplained:
         left = "Something is left that none of the listed effects explains" if complete else "Something is left"
         parts.append(_probable(left, "unlisted", probabilities) + ".")

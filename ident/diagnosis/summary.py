@@ -8,6 +8,7 @@ from ident.words.listed import all_of
 from ident.words.percent import percent
 from ident.words.plus_minus import plus_minus
 from ident.words.probability import probability_said
+from ident.words.run_name import run_name
 from ident.words.shown import in_brief
 from ident.words.titles import title
 
@@ -75,7 +76,7 @@ def _next(found: Diagnosis) -> str:
     verdict = found.verdict
     them = "it" if len(verdict.effects) == 1 else "them"
     if verdict.suspects:
-        return f"correct the label of run {verdict.suspects[0].run}, and fit again."
+        return f"correct the label of {run_name(verdict.suspects[0].run)}, and fit again."
     if not found.complete:
         return "search again with more time."
     if verdict.standing == "contradicted":

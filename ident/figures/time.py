@@ -24,6 +24,7 @@ from ident.fit.reduction import within
 from ident.fit.result import FitResult
 from ident.matrix import Actuator, Matrix
 from ident.run import Run
+from ident.words.run_name import run_name
 from ident.words.titles import title
 
 BINS = 350  # stretches of which smallest and largest sample are kept
@@ -95,7 +96,7 @@ def _window(run: Run, command: Real, start: float | None, seconds: float | None)
     first = start if start is not None else max(0.0, min(run.duration / 3, run.duration - length))
     if not (0 <= first < run.duration and length > 0):
         stretch = f"a stretch of {length:g} from {first:g}"
-        raise Unusable("outside-record", stretch, f"run {run.id}", f"stay within 0 to {run.duration:g}")
+        raise Unusable("outside-record", stretch, f"{run_name(run.id)}", f"stay within 0 to {run.duration:g}")
     begin = round(first * run.sample_rate)
     return slice(begin, min(run.length, begin + max(2, round(length * run.sample_rate))))
 

@@ -14,6 +14,7 @@ from ident.figures.thin import Real, significant
 from ident.hybrid.tracked_run import Track
 from ident.matrix import Actuator
 from ident.words.number import trimmed
+from ident.words.run_name import run_name
 
 BAND = 1.96  # standard deviations of the 95 % band
 _POINTS = 900
@@ -35,7 +36,9 @@ def tracking(tracked: Track, actuator: Actuator, look: Look) -> Chart:
     t = tracked.t[places]
     ends = {name: _ends(*(part[places] for part in pair)) for name, pair in series.items()}
     tables = {name: _rows(t, value[places], BAND * std[places], ends[name]) for name, (value, std) in series.items()}
-    title = alt.TitleParams(words.headline(actuator, f"tracking of run {tracked.run.id}"), subtitle=_told(tracked))
+    title = alt.TitleParams(
+        words.headline(actuator, f"tracking of {run_name(tracked.run.id)}"), subtitle=_told(tracked)
+    )
     panels = (
         _panel("tau", words.axis("Time constant τyr", unit), None, ends["tau"], look, 0),
         _panel("gain", words.axis("Gain kyr", "–"), clock, ends["gain"], look, 1),

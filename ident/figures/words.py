@@ -12,6 +12,7 @@ from ident.words import conditions
 from ident.words.engineering import power_of, printed_unit, scaled_unit
 from ident.words.error import ErrorOf
 from ident.words.percent import percent as in_percent
+from ident.words.run_name import run_name
 from ident.words.uses import DATA
 
 _SIGNS = "²³"  # raised: a 4 or a minus is missing from too many fonts
@@ -85,7 +86,7 @@ def error(of: ErrorOf) -> str:
 
 def describe(run: Run) -> str:
     """A run in one line: id, gain, amplitude, specimen, as far as stated."""
-    parts = [f"run {run.id}"]
+    parts = [f"{run_name(run.id)}"]
     if run.gain is not None:
         parts.append(gain(run.gain))
     if run.amplitude is not None:

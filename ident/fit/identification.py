@@ -40,6 +40,7 @@ from ident.progress import Progress, Report, silent
 from ident.run import Run
 from ident.unstable import UNSTABLE
 from ident.words.nearest import did_you_mean
+from ident.words.run_name import run_name
 
 Array = NDArray[np.float64]
 SEARCHED = 65_536  # samples of a search with effects; the polish takes every sample
@@ -281,7 +282,7 @@ def _refuse_undriven(preset: Preset, matrix: Matrix) -> None:
             others = [known.name for known in PRESETS.values() if known.data.driven_by in run.channels]
             what = f"no {preset.data.driven_by} channel, which drives the model {preset.name}"
             remedy = f"name its column, or use the model {' or '.join(others)}" if others else "name its column"
-            raise Unusable("missing-channel", what, f"run {run.id}", remedy)
+            raise Unusable("missing-channel", what, f"{run_name(run.id)}", remedy)
 
 
 def _fed_back(preset: Preset, runs: Sequence[Run]) -> tuple[str, ...]:

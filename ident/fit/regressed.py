@@ -20,6 +20,7 @@ from ident.fit.settings import Settings
 from ident.matrix import Matrix
 from ident.progress import Report, silent
 from ident.words.error import error_said
+from ident.words.run_name import run_name
 
 NAME = "inverse-dynamics"
 EFFECTS = ("coulomb_friction", "static_load")
@@ -46,7 +47,7 @@ class RegressedIdentification(Identification):
             parameters[name] = replace(parameters[name], std_error=error, fixed=False)
         with_, without = self.regression.residual, self.regression.residual_without_friction
         said = tuple(
-            f"run {run}: force residual {error_said(with_[run])}, without dry friction {error_said(without[run])}"
+            f"{run_name(run)}: force residual {error_said(with_[run])}, without dry friction {error_said(without[run])}"
             for run in with_
         )
         return replace(found, method=NAME, parameters=parameters, notes=(*found.notes, *said),

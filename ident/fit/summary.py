@@ -35,6 +35,7 @@ from ident.unstable import UNSTABLE
 from ident.words.engineering import quantity
 from ident.words.error import error_said
 from ident.words.plus_minus import determined
+from ident.words.run_name import run_name
 
 _DRAWN = 100  # parameter vectors within their standard errors
 _AT_BOUND = "the estimate is at its bound: the best value is outside it"
@@ -375,6 +376,6 @@ def _bad_runs(errors: Sequence[RunError], left_out: tuple[str, ...]) -> Iterator
     for run in errors:
         if run.id in left_out:
             yield (
-                f"Run {run.id} was left out of the fit: its error is {error_said(run.error)}, that of the others "
-                f"typically {error_said(typical)}. Look at its labels and its record."
+                f"{run_name(run.id, begins=True)} was left out of the fit: its error is {error_said(run.error)}, that "
+                f"of the others typically {error_said(typical)}. Look at its labels and its record."
             )

@@ -25,6 +25,7 @@ from ident.hybrid.tracking import Noise, Tracker
 from ident.matrix import Matrix
 from ident.progress import Progress, Report, silent
 from ident.run import Run
+from ident.words.run_name import run_name
 
 NAME = "ekf"
 _MOST = 0.2  # of the output's deviation: as noise is taken what a loop that does not hold leaves
@@ -72,7 +73,7 @@ class KalmanIdentification(Identification):
             name: replace(found.parameters[name], std_error=float(error) if holds else None, fixed=False)
             for name, error in zip(_NAMES, errors, strict=True)
         }
-        said = tuple(f"run {passed.run.id}: {passed.verdict.reason}" for passed in self.found.tracks)
+        said = tuple(f"{run_name(passed.run.id)}: {passed.verdict.reason}" for passed in self.found.tracks)
         return replace(
             found, method=NAME, parameters={**found.parameters, **parameters}, notes=(*found.notes, *said),
             correlation={a: {b: 1.0 if a == b else linked for b in _NAMES} for a in _NAMES} if holds else {},

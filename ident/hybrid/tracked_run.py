@@ -17,6 +17,7 @@ from ident.run import Run
 from ident.words.engineering import quantity
 from ident.words.nearest import did_you_mean
 from ident.words.number import plain, trimmed
+from ident.words.run_name import run_name
 from ident.words.shown import Listing, Shown
 
 Array = NDArray[np.float64]
@@ -48,7 +49,7 @@ class Track(Shown):
             ("τyr", quantity(float(self.tau[-1]), clock), quantity(float(self.std_tau[-1]), clock)),
             ("kyr", plain(float(self.gain[-1])), plain(float(self.std_gain[-1]), 2)),
         ]
-        yield Listing("", (f"run {self.run.id}, at its end", "value", "std"), rows, ("value", "std"))
+        yield Listing("", (f"{run_name(self.run.id)}, at its end", "value", "std"), rows, ("value", "std"))
         said, unit = self.verdict, self.run.units.get(self.run.output, "m")
         mean = "unknown" if said.nis_mean is None else plain(said.nis_mean)
         noise = quantity(self.noise.measurement, unit)
@@ -114,11 +115,11 @@ def sensor_noise(y: Array) -> float:
 def _samples(run: Run) -> tuple[Array, Array]:
     if "command" not in run.channels:
         raise Unusable(
-            "missing-channel", "no command channel, which a loop follows", f"run {run.id}", "name its column"
+            "missing-channel", "no command channel, which a loop follows", f"{run_name(run.id)}", "name its column"
         )
     r, y = run.command, run.measured
     if len(r) < 2 or not (np.std(r) > 0 and np.std(y) > 0):
-        raise Unusable("no-motion", "command or output does not move", f"run {run.id}", "track a run that moves")
+        raise Unusable("no-motion", "command or output does not move", f"{run_name(run.id)}", "track a run that moves")
     return r, y
 
 

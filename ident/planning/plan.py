@@ -31,6 +31,7 @@ from ident.words.conditions import amplitude
 from ident.words.listed import first_of
 from ident.words.number import count, plain
 from ident.words.percent import percent
+from ident.words.run_name import run_name
 from ident.words.shown import Listing, Shown
 
 AIM = 0.98
@@ -214,7 +215,7 @@ def _nothing_left(first: RefusedRun) -> Unusable:
     remedy = "give a rig with wider limits, or another gain"
     if first.factor is not None:
         remedy = f"shrink its amplitude to {first.factor:.3g} times what is asked, or allow that by a smaller least"
-    return Unusable("beyond-limits", f"no run can be: {first.why}", f"run {first.id}", remedy)
+    return Unusable("beyond-limits", f"no run can be: {first.why}", f"{run_name(first.id)}", remedy)
 
 
 @dataclass(frozen=True)

@@ -8,6 +8,7 @@ from ident import beginning
 from ident.preprocessing.step import Prepared, Step, Threshold
 from ident.run import USES, Run
 from ident.words.listed import first_of
+from ident.words.run_name import run_name
 
 THRESHOLDS = (
     Threshold(
@@ -75,7 +76,7 @@ def _said(runs: list[Run], how: str, words: str) -> list[str]:
     if not ids:
         return []
     if len(ids) == 1:
-        return [f"Run {ids[0]} begins {words}, not at rest: its first state is found from its data."]
+        return [f"{run_name(ids[0], begins=True)} begins {words}, not at rest: its first state is found from its data."]
     return [f"Runs {first_of(ids)} begin {words}, not at rest: their first states are found from their data."]
 
 

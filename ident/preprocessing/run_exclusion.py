@@ -10,6 +10,7 @@ import numpy as np
 from ident.preprocessing.step import Prepared, Step, Threshold
 from ident.run import BENCH, STILL, Run
 from ident.words.percent import percent
+from ident.words.run_name import run_name
 
 STANDS = Threshold(
     0.02,
@@ -53,9 +54,9 @@ def _moved(run: Run) -> float:
 
 def _said(run: Run, share: float) -> str:
     return (
-        f"run {run.id} stands still: its {run.output} has {percent(share)} of the deviation that the other runs have, "
-        "though its command is of the size of theirs, as behind a dead zone, in dry friction or at a stop; the error "
-        "of eq. (17), which divides by that deviation, says nothing of it, so it is neither fitted nor verified"
+        f"{run_name(run.id)} stands still: its {run.output} has {percent(share)} of the deviation that the other runs "
+        "have, though its command is of the size of theirs, as behind a dead zone, in dry friction or at a stop; the "
+        "error of eq. (17), which divides by that deviation, says nothing of it, so it is neither fitted nor verified"
     )
 
 

@@ -19,6 +19,7 @@ from ident.parameter import Parameter
 from ident.presets.middle import about
 from ident.stages import MASS_SPRING_DAMPER, MEASURED_LOAD
 from ident.words.nearest import did_you_mean
+from ident.words.run_name import run_name
 
 Kind = Literal["chain", "bench"]
 """Who serves a model: what fits chains to test runs, or Kononykhin's procedures for the records of a bench."""
@@ -182,7 +183,7 @@ class Model:
         """The model with the force measured on the specimen in place of the specimen's equation."""
         bare = [run.id for run in matrix.runs if "force" not in run.channels]
         if bare:
-            raise Unusable("missing-channel", "no force channel", f"run {bare[0]}", "fit without the measured load")
+            raise Unusable("missing-channel", "no force channel", run_name(bare[0]), "fit without the measured load")
         self.refuse_without_specimen()
         stages = tuple(MEASURED_LOAD if stage is MASS_SPRING_DAMPER else stage for stage in self.chain.stages)
         return replace(self, chain=replace(self.chain, stages=stages))

@@ -28,6 +28,7 @@ from ident.readers.text import read_text
 from ident.run import Run
 from ident.words.arguments import of_kind
 from ident.words.number import count
+from ident.words.run_name import run_name
 from ident.words.stated import Stated
 
 __all__ = ["Limits", "from_arrays", "from_table", "read_matrix", "read_source"]
@@ -134,7 +135,7 @@ def read_runs(
         tables: dict[int, Table] = {}
         for number, run in wanted:
             if run.skip_rows not in tables:
-                of_run = f"run {run.labels.id}"
+                of_run = f"{run_name(run.labels.id)}"
                 tables[run.skip_rows] = read_table(parts[0], name, run.skip_rows, limits, of_run, near)
                 for notice in tables[run.skip_rows].notices:
                     notices.setdefault(notice.replace(name, "", 1), []).append(notice)

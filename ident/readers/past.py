@@ -12,6 +12,7 @@ from ident.readers.clock import evened
 from ident.readers.run_description import RunDescription
 from ident.readers.table import Array
 from ident.run import Run, Samples
+from ident.words.run_name import run_name
 
 
 def with_past(run: Run, raw: Mapping[str, Array], described: RunDescription, largest: float) -> Run:
@@ -39,7 +40,7 @@ def with_past(run: Run, raw: Mapping[str, Array], described: RunDescription, lar
     count = int((time[-1] - time[0]) * run.sample_rate)
     begin = float(time[-1]) - count / run.sample_rate
     try:
-        past = evened(time, command, run.sample_rate, run.hold == "zoh", f"run {run.id} rows", begin)
+        past = evened(time, command, run.sample_rate, run.hold == "zoh", f"{run_name(run.id)} rows", begin)
     except Unusable:  # hardly any samples, or far apart
         return run
     return replace(run, past=past[:count])

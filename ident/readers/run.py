@@ -13,6 +13,7 @@ from ident.readers.run_description import RunDescription, TimeColumn
 from ident.readers.table import Array, Table, numeric
 from ident.run import Run, Samples
 from ident.units.quantity import Scale, shown
+from ident.words.run_name import run_name
 
 SHORTEST = 8  # samples; below, not even the straight line of the clock and a mean leave anything to fit
 LARGEST = 1e100  # SI; squares beyond overflow
@@ -25,10 +26,10 @@ def read_run(described: RunDescription, table: Table) -> Run:
     ``not-finite``, ``zero-variance``, ``time-not-monotonic``.
     """
     labels = described.labels
-    places = {name: f"run {labels.id} channels.{name}" for name in described.channels}
+    places = {name: f"{run_name(labels.id)} channels.{name}" for name in described.channels}
     wanted = {name: channel.column for name, channel in described.channels.items()}
     if described.time is not None:
-        places["time"], wanted["time"] = f"run {labels.id} time", described.time.column
+        places["time"], wanted["time"] = f"{run_name(labels.id)} time", described.time.column
     numbers = {name: table.numbers(column, places[name]) for name, column in wanted.items()}
     loaded = iter(table.load([number for of_channel in numbers.values() for number in of_channel]))
     raw = {name: difference([next(loaded) for _ in found], places[name]) for name, found in numbers.items()}
@@ -78,7 +79,7 @@ def difference(columns: list[Array], where: str) -> Array:
 
 def check_lengths(raw: dict[str, Array], described: RunDescription) -> None:
     """All columns of one length, long enough, and as long as `rows` says."""
-    where = f"run {described.labels.id} file {described.labels.file}"
+    where = f"{run_name(described.labels.id)} file {described.labels.file}"
     lengths = {name: len(column) for name, column in raw.items()}
     count = min(lengths.values())
     if max(lengths.values()) != count:

@@ -14,6 +14,7 @@ from ident.readers.source import inside
 from ident.run import BENCH, HOLDS, KINDS, MOTIONS, USES, Run, Specimen
 from ident.units.quantity import quantity, shown, split, unit_scale
 from ident.words.nearest import did_you_mean
+from ident.words.run_name import run_name
 
 RUN = (
     "id", "file", "sample_rate", "time", "specimen", "gain", "amplitude", "kind", "hold", "output", "use", "skip_rows",
@@ -56,7 +57,7 @@ def describe_run(data: Any, where: str) -> RunDescription:
     """Read one run. Raises Unusable with the run's id and the field."""
     fields = Fields(data, where, RUN)
     name = describe_id(fields)
-    fields = Fields(data, f"run {name}", RUN)
+    fields = Fields(data, f"{run_name(name)}", RUN)
     kind = fields.choice("kind", KINDS, "other")
     channels = describe_channels(fields.need("channels", "describe command and displacement"), fields.place("channels"))
     outputs = describe_outputs(fields, kind, channels)

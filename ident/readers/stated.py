@@ -25,6 +25,7 @@ from ident.readers.table import Array, Table
 from ident.units.quantity import shown
 from ident.words.arguments import of_kind
 from ident.words.nearest import did_you_mean
+from ident.words.run_name import run_name
 from ident.words.stated import Stated
 
 _OF_NO_RUN = ("units", "columns", "actuator")
@@ -47,7 +48,7 @@ def described(stated: Mapping[str, Any], file: str, name: str) -> RunDescription
     run = {key: list(value) if isinstance(value, tuple) else value for key, value in stated.items()}
     for key in _OF_NO_RUN:
         run.pop(key, None)
-    return describe_run({"id": name, "file": file, "channels": channels, **run}, f"run {name}")
+    return describe_run({"id": name, "file": file, "channels": channels, **run}, f"{run_name(name)}")
 
 
 def of_file(

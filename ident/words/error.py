@@ -11,6 +11,7 @@ from dataclasses import dataclass
 
 from ident.unstable import UNSTABLE
 from ident.words.percent import percent, percent_in_print
+from ident.words.run_name import run_name
 from ident.words.uses import data
 
 MEAN_COUNTS = 1.5
@@ -91,7 +92,7 @@ def unstable_on(runs: Sequence[str]) -> str:
     if not runs:
         return "unstable"
     if len(runs) == 1:
-        return f"unstable on run {runs[0]}"
+        return f"unstable on {run_name(runs[0])}"
     if len(runs) <= _NAMED:
         return f"unstable on runs {', '.join(runs)}"
     return f"unstable on {len(runs)} runs ({', '.join(runs[:_NAMED])}, …)"

@@ -61,7 +61,7 @@ def test_nothing_something_unlisted_and_what_is_contradicted_are_said():
 
 
 def test_a_wrong_label_and_a_search_that_was_stopped_come_first():
-    assert lines(suspects=(Suspect("run-3"),))[2] == "Next: correct the label of run run-3, and fit again."
+    assert lines(suspects=(Suspect("run-3"),))[2] == "Next: correct the label of run-3, and fit again."
     stopped = replace(FOUND, complete=False, verdict=Verdict())
     assert stopped.summary[::2] == (
         "Nothing was found so far: the search was stopped.",
