@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import shlex
 import sys
+from collections.abc import Mapping
 from dataclasses import replace
 from fnmatch import fnmatchcase
 from pathlib import Path
@@ -25,6 +27,7 @@ if TYPE_CHECKING:
     from ident.drafts.text import Gathered
 
 _SHOWN = 5  # names of files in a remedy
+_LONGEST = 400  # signs of what was given, in a remedy: of more the files are left out
 _FORM = "NAME=COLUMN:UNIT"
 _OF_FILE = "@"
 """Before the name of a file, or a pattern of names, that an answer is about."""
@@ -32,7 +35,8 @@ _Texts = list[str] | None
 
 
 def init(
-    files: Annotated[list[Path], typer.Argument(metavar="FILES…", help="Raw files of one actuator, one run per file.")],
+    files: Annotated[list[Path], typer.Argument(metavar="FILES…", help="Raw files of one actuator: one run or one "
+                                                           "signal per file.")],
     out: Annotated[
         Path | None,
         typer.Option(metavar="MATRIX", help="Folder to write, with matrix.yaml and runs/. Default: the serial number."),
@@ -63,21 +67,22 @@ def init(
 ) -> None:  # fmt: skip
     """Describe raw files and write matrix.yaml.
 
-    It detects columns, units, time and sample rate. On a terminal it asks for what is missing; elsewhere it lists what
+    It detects columns, units, time and sample rate. Files of one signal each are joined to runs by their names, such as
+    pos_A.txt and vel_A.txt. On a terminal it asks for what is missing; elsewhere it lists what
     is missing and stops. It checks the data set and prints all errors, warnings and notes.
     """
     from ident.drafts.answers import NONE, Answers
     from ident.drafts.draft import Draft
+    from ident.drafts.signal_files import with_runs_joined
     from ident.drafts.text import gathered
 
     if out is not None:
         _free(out)
-    contents = [_content(file) for file in files]
-    of_files = [(one, content) for file, content in zip(files, contents, strict=True)
-                for one in _parts(content, file, files)]  # fmt: skip
-    found, contents = [one for one, _ in of_files], [content for _, content in of_files]
+    whole = [(Path(name).name, data) for name, data in with_runs_joined([(str(one), _content(one)) for one in files])]
+    of_files = [(one, data) for name, data in whole for one in _parts(data, name, files)]
+    found, contents = [one for one, _ in of_files], [data for _, data in of_files]
     given = {"gain": gain, "hold": hold}
-    names = [file.name for file in files]
+    names = [name for name, _ in whole]
     of_all, of_some = _said(names, channel or [], time or [], rate or [])
     answers = Answers(
         serial=serial, channels=of_all.channels, time=of_all.time, rate=of_all.rate, files=of_some,
@@ -87,8 +92,24 @@ def init(
     draft = Draft(found, answers)
     while draft.missing and sys.stdin.isatty():
         draft = _asked(draft, NONE)
+    if draft.missing:
+        said = {"--out": out, "--serial": serial, "--channel": channel, "--time": time, "--rate": rate,
+                "--output": output, "--verify": verify, "--area": area, "--gain": gain, "--hold": hold}  # fmt: skip
+        raise _with_command(draft, files, said)
     made = gathered(draft, contents)
     _made(draft, made, _free(out or _of_serial(draft.answers.serial)))
+
+
+def _with_command(draft: Draft, files: list[Path], said: Mapping[str, object]) -> Unusable:
+    """That something is missing, with the whole command that says it: what was given, and every option that lacks."""
+    given = [str(file) for file in files]
+    for option, value in said.items():
+        for one in value if isinstance(value, list) else [value] if value else []:
+            given += [option, str(one)]
+    named = shlex.join(given) if len(shlex.join(given)) <= _LONGEST else f"FILES… {shlex.join(given[len(files) :])}"
+    what = "the files do not state: " + "; ".join(one.question for one in draft.missing)
+    remedy = f"say it in one command: servoident init {' '.join((named.strip(), *draft.options))}"
+    return Unusable("not-stated", what, "init", remedy)
 
 
 def _free(out: Path) -> Path:
@@ -135,12 +156,12 @@ def _made(draft: Draft, files: Gathered, out: Path) -> None:
     print(f"wrote {out / 'matrix.yaml'} and {count(len(files.files) - 1, 'file')}; next: servoident fit {out}")
 
 
-def _parts(content: bytes, file: Path, files: list[Path]) -> tuple[RawFile, ...]:
+def _parts(content: bytes, name: str, files: list[Path]) -> tuple[RawFile, ...]:
     """The runs of a file. Raises Unusable; for one signal alone with the command that joins the files given."""
     from ident.drafts.raw import read_parts
 
     try:
-        return read_parts(content, file.name)
+        return read_parts(content, name)
     except Unusable as refused:
         if refused.code != "one-signal" or len(files) == 1:
             raise

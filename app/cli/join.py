@@ -20,6 +20,7 @@ def join(
     `servoident init` then describes the table.
     """
     from ident.drafts.joined import joined
+    from ident.drafts.raw import read_whole
     from ident.readers.limits import LIMITS
     from ident.readers.source import read_regular
 
@@ -29,6 +30,6 @@ def join(
     names = [file.name for file in files]
     if len(set(names)) < len(names) or len(names) == 1:
         raise Unusable("bad-option", "give two files or more, each with a name of its own", "join", "name each once")
-    text = joined({file.name: read_regular(file, file.name, LIMITS.file) for file in files})
+    text = joined({file.name: read_whole(read_regular(file, file.name, LIMITS.file), file.name) for file in files})
     write_bytes(text.encode(), out)
     print(f"wrote {out}; next: servoident init {out}")

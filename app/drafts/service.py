@@ -20,6 +20,7 @@ from ident.checks.check import check
 from ident.drafts.answers import Answer, Answers, FileAnswers
 from ident.drafts.draft import Draft
 from ident.drafts.raw import RawFile, read_parts
+from ident.drafts.signal_files import named_runs, with_runs_joined
 from ident.drafts.text import as_yaml, run_files
 from ident.errors import Unusable
 from ident.readers import read_source
@@ -51,8 +52,9 @@ def begin(context: Context, files: Mapping[str, BinaryIO]) -> DraftView:
     context.storage.tidy()
     name, store = context.storage.begun()
     try:
-        plain = {PurePosixPath(inside(path, "upload")).name: content for path, content in files.items()}
-        if len(plain) < len(files):
+        whole = _joined({inside(path, "upload"): content for path, content in files.items()})
+        plain = {PurePosixPath(path).name: content for path, content in whole.items()}
+        if len(plain) < len(whole):
             raise Unusable("duplicate-file", "two files have one name", "upload", "give each its own name")
         names = {one: store.put(content) for one, content in sorted(plain.items())}
         (store.folder / _NAMES).write_text(json.dumps(names), encoding="utf-8")
@@ -60,6 +62,19 @@ def begin(context: Context, files: Mapping[str, BinaryIO]) -> DraftView:
     except BaseException:
         shutil.rmtree(store.folder, ignore_errors=True)
         raise
+
+
+def _joined(files: Mapping[str, BinaryIO]) -> Mapping[str, BinaryIO]:
+    """The files, those of one signal each as the runs that they are. Raises Unusable."""
+    contents: dict[str, bytes] = {}
+    parts = {one for run in named_runs(list(files)).values() for one in run}
+    for name in sorted(parts):
+        contents[name] = files[name].read(LIMITS.file + 1)
+        check_size(len(contents[name]), LIMITS.file, "the file", name)
+        files[name].seek(0)
+    runs = dict(with_runs_joined(list(contents.items())))
+    kept = {name: content for name, content in files.items() if name not in contents or name in runs}
+    return kept | {name: io.BytesIO(data) for name, data in runs.items() if name not in kept}
 
 
 def look(context: Context, draft: str, asked: AnswersRequest) -> DraftView:

@@ -5,7 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import PurePosixPath
+from shlex import quote
 from typing import Any
+
+import numpy as np
 
 from ident.drafts.answers import NONE, Answer, Answers, FileAnswers
 from ident.drafts.names import suggested, unit_of
@@ -185,19 +188,45 @@ class Draft:
         """What matrix.yaml says. Raises Unusable ``not-stated`` with everything that is missing."""
         if missing := self.missing:
             what = "the files do not state: " + "; ".join(one.question for one in missing)
-            raise Unusable("not-stated", what, "init", "say it, as " + ", ".join(self._option(one) for one in missing))
+            raise Unusable("not-stated", what, "init", "say it, as " + ", ".join(self.options))
         runs = [self._run(file, name) for file, name in zip(self.files, run_ids(self.files), strict=True)]
         return {"actuator": {"serial": self.answers.serial, **self.answers.actuator}, "runs": runs}
 
-    def _option(self, missing: Missing) -> str:
-        """How an answer is given on the command line."""
-        kind, _, name = missing.key.partition(" ")
-        at = "" if self.of_all(missing) else f"@{missing.files[0]}"
-        timed = f"--time {at}=" if at else "--time "
-        if kind in ("channel", "unit"):
-            column = "COLUMN:UNIT" if kind == "channel" else ":UNIT"
-            return f"{timed}{column}" if name == "time" else f"--channel {name}{at}={column}"
-        return f"--rate '{f'{at}=' if at else ''}1000 Hz' or {timed}COLUMN:UNIT" if kind == "rate" else f"--{kind} TEXT"
+    @property
+    def options(self) -> tuple[str, ...]:
+        """How everything that is missing is said on the command line; in capitals what only the user knows.
+
+        A column is named where one alone is left that it can be.
+        """
+        return tuple(option for one in self.missing for option in self._options(one))
+
+    def _options(self, missing: Missing) -> Iterator[str]:
+        """An option, or one a file where something is missing in some files only."""
+        if not missing.files:
+            yield "--serial TEXT"
+            return
+        named = {file_name(file): file for file in self.files}
+        for name in missing.files[:1] if self.of_all(missing) else missing.files:
+            yield self._option(missing.key, named[name], "" if self.of_all(missing) else f"@{name}=")
+
+    def _option(self, key: str, file: RawFile, at: str) -> str:
+        """How an answer is given; `at` says of which file alone."""
+        kind, _, name = key.partition(" ")
+        clock, others = self._left(file)
+        if kind == "rate":
+            return f"--time {quote(f'{at}{clock}')}:UNIT" if clock else f"--rate '{at}1000 Hz'"
+        column = (quote(others[0]) if len(others) == 1 else "COLUMN") if kind == "channel" else ""
+        return f"--time {at}{column}:UNIT" if name == "time" else f"--channel {name}{at or '='}{column}:UNIT"
+
+    def _left(self, file: RawFile) -> tuple[str, list[str]]:
+        """The columns that are nothing yet: the one that may be the time, as its samples only increase; the others."""
+        known = self.known(file)
+        answers = [*known.channels.values(), *([known.time] if known.time.column != "" else [])]
+        taken = {number for answer in answers for number in file.table.numbers(answer.column, file.name)}
+        left = [column for column in file.columns if column.number not in taken]
+        timed = known.time.column != "" or known.rate
+        clock = next((one for one in left if not timed and (np.diff(file.samples(one.number)) > 0).all()), None)
+        return clock.name if clock else "", [one.name for one in left if one is not clock]
 
     def _run(self, file: RawFile, name: str) -> dict[str, Any]:
         known = self.known(file)

@@ -24,6 +24,8 @@ from ident.readers.text import as_utf8
 from ident.run import Samples
 from ident.units.quantity import unit_scale
 
+JOINED = "# joined: "
+"""How a line begins, above a table that was joined from several files, that says how."""
 _OF_TABLES = (".json",)
 _LETTER_M = "m"  # behind a name it may be metres, or say that it was measured
 _SAMPLING = r"^\W{0,9}(?:sampl|abtast|[ée]chantillon|campion)\w*[ _]?"
@@ -145,7 +147,9 @@ class RawFile:
         assumed = ""
         if self.period is not None and not self.period[1]:
             assumed = f"{self.name}: the interval of {self.period[0]:g} has no unit; seconds are assumed"
-        return tuple(filter(None, (*self.table.notices, assumed, *self.named_units, *self.left_out)))
+        lines = self.preamble.splitlines()
+        joins = [f"{self.name} is joined {one.removeprefix(JOINED)}" for one in lines if one.startswith(JOINED)]
+        return tuple(filter(None, (*joins, *self.table.notices, assumed, *self.named_units, *self.left_out)))
 
     def _has_stated(self, number: int) -> bool:
         stated = self.table.units[number] if number < len(self.table.units) else ""

@@ -5,6 +5,7 @@ What is right for each stands in ../shared/cases/README.md; the samples are read
 
 from __future__ import annotations
 
+import shlex
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -80,7 +81,8 @@ def test_init_reads_it_or_asks_for_exactly_what_the_file_does_not_state(servoide
     options = {"unit command": "--channel command=:UNIT", "unit displacement": "--channel displacement=:UNIT",
                "unit time": "--time :UNIT"}  # fmt: skip
     asked = {"--serial TEXT", *(options[key] for key in case.asked)}
-    assert set(refused.stderr.strip().rpartition("say it, as ")[2].split(", ")) == asked
+    command = refused.stderr.strip().rpartition(f" --out {tmp_path / 'm'} ")[2]
+    assert {f"--{option}" for option in f" {command}".split(" --")[1:]} == asked
     given = ["--channel", "command=:mm", "--channel", "displacement=:mm", "--time", ":s"] if case.asked else []
     done = servoident("init", FOLDER / case.name, "--serial", "A", *given, "--out", tmp_path / "m")
     assert done.returncode == 0, done.stderr
@@ -147,23 +149,26 @@ def test_two_files_of_other_names_and_units_are_one_matrix(servoident, tmp_path)
             assert (run.sample_rate, run.duration) == (pytest.approx(RATE), pytest.approx(1.5, abs=2e-3))
 
 
-def test_a_file_of_one_signal_is_refused_with_the_command_that_joins_it_to_the_others(servoident, service, tmp_path):
-    """The joined file is the run, of which the rate alone is asked."""
+def test_files_of_one_signal_are_a_run_of_which_the_rate_alone_is_asked(servoident, service, tmp_path):
+    """By `init`, on the page's way and by `join`: the joined samples are those of the files."""
     files = sorted((FOLDER / "one_file_a_signal").glob("*.txt"))
     if len(files) != 2:
         pytest.skip("no small files")
-    refused = servoident("init", *files, "--serial", "A", "--out", tmp_path / "m")
-    assert refused.returncode == 2
-    command = refused.stderr.strip().rpartition("servoident ")[2].replace("run.csv", str(tmp_path / "run.csv")).split()
-    assert command[:3] == ["join", *map(str, files)]
-    answer = service.post(f"{API}/drafts", files=[("files", (file.name, file.read_bytes())) for file in files])
-    assert (answer.status_code, answer.json()["code"]) == (422, "one-signal")
-    assert "servoident join" in answer.json()["remedy"]
-    assert servoident(*command).returncode == 0
-    assert servoident(*command).returncode == 2  # nothing is written over
-    assert "--rate" in servoident("init", tmp_path / "run.csv", "--serial", "A").stderr
-    done = servoident("init", tmp_path / "run.csv", "--serial", "A", "--rate", "1 kHz", "--out", tmp_path / "m")
-    assert done.returncode == 0, done.stderr
+    asked = servoident("init", *files, "--serial", "A", "--out", tmp_path / "m")
+    assert asked.returncode == 2
+    command = asked.stderr.strip().rpartition("servoident ")[2]
+    assert command.endswith("--rate '1000 Hz'")
+    assert servoident(*shlex.split(command)).returncode == 0
+    sent = [("files", (file.name, file.read_bytes())) for file in files]
+    draft = service.post(f"{API}/drafts", files=sent).json()
+    assert ([one["name"] for one in draft["files"]], [one["key"] for one in draft["missing"]]) == (
+        ["run.csv"], ["serial", "rate"]
+    )  # fmt: skip
+    assert any("joined from command_mm.txt, position_mm.txt" in one for one in draft["doubts"])
+    joined = ("join", *files, "--out", tmp_path / "run.csv")
+    assert servoident(*joined).returncode == 0
+    assert servoident(*joined).returncode == 2  # nothing is written over
+    assert (tmp_path / "run.csv").read_bytes() == (tmp_path / "m/runs/one_file_a_signal.csv").read_bytes()
     (run,) = read_matrix(tmp_path / "m").runs
     np.testing.assert_allclose([run.command, run.measured], [1e-3 * np.loadtxt(file) for file in files], rtol=1e-12)
 
