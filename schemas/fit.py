@@ -213,6 +213,7 @@ class ComparedRun(BaseModel):
     error: float
     offset: float
     error_with_mean: float | None = None
+    fit_percent: float | None = None
     rmse: float | None
     mae: float | None
     unit: str
@@ -228,11 +229,20 @@ class ErrorSize(BaseModel):
     mae_in_print: str
 
 
+class WhitenessView(BaseModel):
+    """The test of Ljung and Box at 99 % on some runs: how many there are, how many pass, and the verdict on all."""
+
+    runs: int
+    white: int
+    passed: bool
+
+
 class ErrorSizesView(BaseModel):
-    """That of each run, and the means over the runs of a use that have one unit."""
+    """That of each run, and the means over the runs of a use that have one unit; is the residual of a use white."""
 
     uses: dict[str, ErrorSize]
     runs: dict[str, ErrorSize]
+    whiteness: dict[str, WhitenessView] = Field(default_factory=dict)
 
 
 class ProfileRequest(BaseModel):
@@ -354,7 +364,9 @@ class ComparisonView(BaseModel):
     error: dict[str, float | None]
     offset: dict[str, float | None]
     error_with_mean: dict[str, float | None] = Field(default_factory=dict)
+    fit_percent: dict[str, float | None] = Field(default_factory=dict)
     rmse: dict[str, float | None] = Field(default_factory=dict)
+    whiteness: dict[str, WhitenessView] = Field(default_factory=dict)
     runs: list[ComparedRun]
     bands: Bands
     groups: dict[str, list[GroupError]]

@@ -218,6 +218,7 @@ class FitResultView(BaseModel):
     """The contract's fit JSON; `evolution` belongs to the parameters `searched`, in that order.
 
     `error_with_mean` is RMS(x − x_m)/std(x_m), `rmse` RMS(x − x_m) in `rmse_unit`, averaged as the error is.
+    `fit_percent` is 100 (1 − RMS(x − x_m)/std(x_m)) of the free simulation; `aic` compares fits to the same samples.
 
     What an earlier version did not know is absent.
     """
@@ -246,6 +247,8 @@ class FitResultView(BaseModel):
     error_with_mean: Errors = Field(default_factory=dict)
     rmse: Errors = Field(default_factory=dict)
     rmse_unit: str = ""
+    fit_percent: Errors = Field(default_factory=dict)
+    aic: float | None = None
     window: WindowView | None = None
     starts: StartsView | None = None
     machine: MachineView | None = None

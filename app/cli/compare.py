@@ -49,7 +49,7 @@ def compare(
     comparison = compared(read, result)
     found = survey(comparison)
     if json is not None:
-        names = ("error", "offset", "error_with_mean", "rmse")
+        names = ("error", "offset", "error_with_mean", "fit_percent", "rmse")
         means = {name: dict(getattr(comparison, name)) for name in names}
         write_json({**means, "runs": comparison.records(), **found.to_json()}, json)
     if json != STANDARD_OUTPUT:

@@ -26,7 +26,7 @@ def compare_several(matrix: Matrix, fits: Sequence[FitResult], json: Path | None
         columns = [
             {"name": one.name, "serial": one.serial, "model": one.fit.model, "effects": list(one.fit.effects),
              "error": dict(one.error), "error_with_mean": {use: of.with_mean for use, of in one.words.items()},
-             "parameters": one.fit.records()}
+             "aic": one.fit.aic, "parameters": one.fit.records()}
             for one in found.columns
         ]  # fmt: skip
         write_json({"fits": columns, "runs": found.records()}, json)

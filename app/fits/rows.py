@@ -44,8 +44,8 @@ class ParameterRow:
 class ErrorRow:
     """Errors of one use of runs; `sized` is the use under which their sizes in the output's unit are told.
 
-    `size` is the RMSE, `with_mean` the error with the mean counted, `error` eq. (17), with the mean beside it where it
-    counts, and the runs on which the model is unstable.
+    `size` is the RMSE, `with_mean` the error with the mean counted, `fit` 100 % less that, `error` eq. (17), with the
+    mean beside it where it counts, and the runs on which the model is unstable.
     """
 
     use: str
@@ -57,6 +57,7 @@ class ErrorRow:
     sized: str = ""
     size: str = "–"
     with_mean: str = "–"
+    fit: str = "–"
 
 
 @dataclass(frozen=True)
@@ -130,6 +131,7 @@ def _errors(
             sized="" if over else use,
             size="–" if over else whole.rmse or "–",
             with_mean="–" if over else whole.counted(percent_in_print),
+            fit="–" if over else whole.fit(percent_in_print),
         )
 
 

@@ -173,7 +173,7 @@ def comparison(context: Context, fit_id: str) -> ComparisonView:
     runs = [ComparedRun(**record) for record in found.records()]
     return ComparisonView(
         fit=fit_id, error=found.error, offset=found.offset, error_with_mean=found.error_with_mean, rmse=found.rmse,
-        runs=runs, **survey(found).to_json(),
+        fit_percent=found.fit_percent, runs=runs, **survey(found).to_json(),
     )  # fmt: skip
 
 

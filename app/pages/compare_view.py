@@ -8,6 +8,7 @@ from dataclasses import dataclass
 
 from app.fits.service import Stored
 from app.pages.figure_forms import FigureForm, forms
+from ident.fit.information import aic_change
 from ident.fit.result import Estimate, FitResult
 from ident.presets import preset
 from ident.words.error import ErrorOf
@@ -121,10 +122,17 @@ def _errors(a: FitResult, b: FitResult) -> Iterator[Compared]:
         known = not (before.is_unstable or after.is_unstable)
         change = error_change(before.error, after.error) if known else "–"
         yield Compared("", f"Error, {data(use)}", before.in_print(), after.in_print(), change)
+        if before.with_mean is not None and after.with_mean is not None:
+            fits = before.fit(percent_in_print), after.fit(percent_in_print)
+            yield Compared("", f"NRMSE fit, {data(use)}", *fits, "–")
         one, other = (None if said.is_unstable else fit.offset.get(use) for said, fit in ((before, a), (after, b)))
         if one is not None or other is not None:
             offsets = percent_in_print(one), percent_in_print(other)
             yield Compared("", f"Offset, {data(use)}", *offsets, error_change(one, other))
+    criterion = aic_change(b, a)
+    if criterion is not None and a.aic is not None and b.aic is not None:
+        better = "better" if criterion < 0 else "worse"
+        yield Compared("", "AIC, same samples", f"{a.aic:.6g}", f"{b.aic:.6g}", f"{criterion:+.4g} ({better})")
 
 
 def _change(one: float | None, other: float | None) -> str:

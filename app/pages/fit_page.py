@@ -95,6 +95,7 @@ class FitPageView:
     worst: str
     on_bench: bool
     free_run: str
+    aic: str
     others: tuple[tuple[str, str], ...]
     kept: tuple[KeptRow, ...]
     keeping: tuple[Keeping, ...]
@@ -157,6 +158,7 @@ def fit_page(
         again=json.dumps(fit_request(fit, stored.id)),
         on_bench=preset(fit.model).kind == "bench",
         free_run=_free_run(fit),
+        aic="" if fit.aic is None else f"{fit.aic:.6g}".replace("-", "\u2212"),
         kept=tuple(kept_rows(suited(kept, fit.model), fit.effects)),
         keeping=tuple(keeping(lacks, kept)),
     )

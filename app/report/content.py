@@ -16,7 +16,6 @@ from ident.errors import Unusable
 from ident.figures import figure, ladder, look
 from ident.fit.result import FitResult
 from ident.matrix import Matrix
-from ident.residuals.budget import Budget
 from ident.residuals.survey import Survey, survey
 from ident.run import USES
 from ident.words.engineering import printed_unit, quantity
@@ -25,6 +24,7 @@ from ident.words.percent import percent_in_print
 from ident.words.run_name import run_name
 from ident.words.severity import level
 from ident.words.titles import with_effects
+from ident.words.uses import data
 from ident.workflows import compare, study
 
 CAPTIONS = {
@@ -42,7 +42,7 @@ def content(matrix: Matrix, fit: FitResult, diagnosis: Diagnosis | None = None) 
     title = with_effects(model.title, fit.effects)
     blocks = [
         *([Text(_verdict(diagnosis), "verdict")] if diagnosis else ()),
-        *_error(fit, found.budget),
+        *_error(fit, found),
         *_parameters(fit),
         Heading("Measurement and model"),
         _drawn("bode", matrix, fit),
@@ -58,17 +58,25 @@ def content(matrix: Matrix, fit: FitResult, diagnosis: Diagnosis | None = None) 
     return Report(f"{matrix.actuator.serial}: {title}", f"Error {errors} · {lead}", blocks)
 
 
-def _error(fit: FitResult, budget: Budget | None) -> Iterator[Block]:
+def _error(fit: FitResult, found: Survey) -> Iterator[Block]:
+    budget = found.budget
     yield Heading("Error")
     whole = "Means over runs of RMS(measured − model), of the same over std(measured),"
-    yield Text(f"{whole} and of std(measured − model) / std(measured), eq. (17).")
+    fit_to = "NRMSE fit: 100 % less the latter, of the free simulation."
+    yield Text(f"{whole} and of std(measured − model) / std(measured), eq. (17). {fit_to}")
     listed = error_rows(fit)
     rows = tuple(
-        (f"{row.runs} {row.use}", row.size, row.with_mean, row.error, row.floor, row.ratio, row.offset)
+        (f"{row.runs} {row.use}", row.size, row.with_mean, row.fit, row.error, row.floor, row.ratio, row.offset)
         for row in listed
     )
-    header = ("Runs", "RMSE", "With the mean", "Eq. (17)", "Noise floor", "Ratio", "Offset")
-    yield Table(header, rows, (1, 2, 3, 4, 5, 6))
+    header = ("Runs", "RMSE", "With the mean", "NRMSE fit", "Eq. (17)", "Noise floor", "Ratio", "Offset")
+    yield Table(header, rows, (1, 2, 3, 4, 5, 6, 7))
+    yield Facts(
+        (
+            *((f"Whiteness of the residual, {data(use)}", str(white)) for use, white in found.white.items()),
+            *((("AIC, for fits to the same samples", f"{fit.aic:.6g}"),) if fit.aic is not None else ()),
+        )
+    )
     if budget:
         yield Heading("Error budget", 3)
         yield Table(("Part", "Meaning", "Size", "At least", "At most"), budget_rows(budget), (2, 3, 4))

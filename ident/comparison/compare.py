@@ -36,7 +36,7 @@ Complex = NDArray[np.complex128]
 Simulator = Callable[[Preset, Mapping[str, float], Matrix], dict[str, Array]]
 """A model, its values by the equations' names and a matrix in; the output of every run out, by the run's id."""
 _HUGE = 1e100  # of a signal: its square is still a number
-_NUMBERS = ("RMSE", "with the mean", "eq. (17)", "offset", "MAE")
+_NUMBERS = ("RMSE", "with the mean", "NRMSE fit", "eq. (17)", "offset", "MAE")
 _WINDOW = 1.0  # s: the length of a window of the spectral estimate, and with it its resolution of 1 Hz
 
 
@@ -60,7 +60,7 @@ class RunComparison(Shown):
         """Id, use, RMSE, the error with the mean counted, eq. (17), offset and mean size of the residual."""
         offset, of = "–" if self.unstable else percent(self.offset), self.words
         mean_size = "–" if self.mae is None else quantity(self.mae, self.unit)
-        return (self.run.id, self.run.use, of.rmse or "–", of.counted(), of.alone(), offset, mean_size)
+        return (self.run.id, self.run.use, of.rmse or "–", of.counted(), of.fit(), of.alone(), offset, mean_size)
 
     @cached_property
     def error(self) -> float:
@@ -77,6 +77,11 @@ class RunComparison(Shown):
     def error_with_mean(self) -> float:
         """RMS(x − x_m) / std(x_m): it sees the means that eq. (17) does not."""
         return UNSTABLE if self.unstable else math.hypot(self.error, self.offset)
+
+    @property
+    def fit_percent(self) -> float | None:
+        """100 (1 − ‖x − x_m‖/‖x_m − mean x_m‖) of the free simulation; None where the model is unstable on the run."""
+        return None if self.unstable else 100.0 * (1.0 - self.error_with_mean)
 
     @property
     def unstable(self) -> bool:
@@ -178,6 +183,12 @@ class Comparison(Shown):
         return {use: self._mean(use, "error_with_mean") for use in USES}
 
     @property
+    def fit_percent(self) -> dict[str, float | None]:
+        """The fit to the data averaged over the runs of each use, %; None where the model is unstable on one."""
+        return {use: None if any(one.unstable for one in self._meant(use)) else self._mean(use, "fit_percent")
+                for use in USES}  # fmt: skip
+
+    @property
     def rmse(self) -> dict[str, float | None]:
         """The RMSE averaged over the runs of each use; None where a run has none, or the outputs have several units."""
         units = {one.unit for one in self.runs}
@@ -202,7 +213,7 @@ class Comparison(Shown):
         rows = [one.row for one in self.runs]
         means = {use: self.error_of(use) for use in USES}
         rows += [
-            ("mean", use, of.rmse or "–", of.counted(), of.alone(), "", "")
+            ("mean", use, of.rmse or "–", of.counted(), of.fit(), of.alone(), "", "")
             for use, of in means.items()
             if of.error is not None
         ]
@@ -215,7 +226,8 @@ class Comparison(Shown):
         """
         return [
             {"id": one.run.id, "use": one.run.use, "error": one.error, "offset": one.offset,
-             "error_with_mean": one.error_with_mean, "rmse": one.rmse, "mae": one.mae, "unit": one.unit}
+             "error_with_mean": one.error_with_mean, "fit_percent": one.fit_percent, "rmse": one.rmse, "mae": one.mae,
+             "unit": one.unit}
             for one in self.runs
         ]  # fmt: skip
 

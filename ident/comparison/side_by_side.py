@@ -9,6 +9,7 @@ from typing import Any
 
 from ident.comparison.compare import Comparison
 from ident.errors import Unusable
+from ident.fit.information import same_samples
 from ident.fit.result import Estimate, FitResult
 from ident.words.error import ErrorOf
 from ident.words.number import count
@@ -75,6 +76,14 @@ class SideBySide(Shown):
         for use, title in DATA.items():
             if any(column.error.get(use) is not None for column in self.columns):
                 yield title, *(column.words[use].said() if use in column.words else "–" for column in self.columns)
+        for use, title in DATA.items():
+            if any(use in column.words and column.words[use].with_mean is not None for column in self.columns):
+                known = (column.words.get(use) for column in self.columns)
+                yield f"NRMSE fit, {title}", *("–" if of is None else of.fit() for of in known)
+        criteria = [column.fit.aic for column in self.columns]
+        if all(same_samples(self.columns[0].fit, column.fit) for column in self.columns) and None not in criteria:
+            least = min(one for one in criteria if one is not None)
+            yield "AIC, above the least", *(f"{one - least:.4g}" for one in criteria if one is not None)
 
     def parameter_rows(self) -> Iterator[tuple[str, ...]]:
         """One row a parameter that one of the fits has, with its standard error."""

@@ -15,6 +15,7 @@ from ident.checks.unit_factor import unit_causes
 from ident.fit.ends import SETTLED, parted
 from ident.fit.far_bounds import far_bounds
 from ident.fit.fitness import Fitness
+from ident.fit.information import aic
 from ident.fit.multistart import Optimum
 from ident.fit.normal_matrices import NormalMatrices
 from ident.fit.reduction import excited_band
@@ -128,6 +129,9 @@ def summarise(
             (*mean_errors, *verify_errors),
             {"fit": [run.share for run in mean_runs], "verify": [run.share for run in verify_runs]},
         ),
+        aic=None
+        if window
+        else aic([one.error for one in mean_errors], [own[i].length for i in meant], len(space.names)),
         window=window,
         starts=_labelled(optimum.starts, label),
         noise_floor=floors.of_use(matrix),

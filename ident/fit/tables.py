@@ -28,6 +28,8 @@ def fit_listings(result: FitResult) -> Iterator[Listing | str]:
 
 def remarks(result: FitResult) -> Iterator[str]:
     """What the data determine and what they do not, and the notes, a line each."""
+    if result.aic is not None:
+        yield f"AIC: {result.aic:.6g} (only for comparison with fits to the same samples; the smaller is the better)"
     for combination in result.determined:
         value = plus_minus_si(combination.value, combination.std_error, combination.unit)
         yield f"identifiable: {combination.expression} = {value}"
@@ -54,6 +56,7 @@ def error_rows(result: FitResult) -> Iterator[tuple[str, ...]]:
     errors = [result.error_of(use) for use in uses]
     yield "RMSE", *(of.rmse or "–" for of in errors)
     yield "with the mean", *(of.counted() for of in errors)
+    yield "NRMSE fit", *(of.fit() for of in errors)
     yield "eq. (17)", *(of.alone() for of in errors)
     if result.window:
         over = result.window.error

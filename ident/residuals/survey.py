@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from dataclasses import asdict, dataclass
+from collections.abc import Iterator, Mapping
+from dataclasses import asdict, dataclass, field
 from typing import Any
 
 from ident.comparison.compare import Comparison
@@ -12,8 +12,10 @@ from ident.residuals.breakdown import Breakdown, breakdown
 from ident.residuals.budget import Budget, budget
 from ident.residuals.curves import Curve, curve_fits, curves_of, traced
 from ident.residuals.trends import Trend, trends
+from ident.residuals.whiteness import Whiteness, by_use
 from ident.words.percent import percent
 from ident.words.shown import Listing, Shown
+from ident.words.uses import data
 
 
 @dataclass(frozen=True)
@@ -24,6 +26,7 @@ class Survey(Shown):
     curves: tuple[Curve, ...]
     trends: tuple[Trend, ...]
     budget: Budget | None
+    white: Mapping[str, Whiteness] = field(default_factory=dict)
 
     def listings(self) -> Iterator[Listing | str]:
         """Errors by condition, the curves, the parameters that follow a condition, the budget."""
@@ -37,6 +40,8 @@ class Survey(Shown):
                 values = " → ".join(f"{point.value:.4g}" for point in trend.points)
                 change = f"{values} {trend.unit} (p = {trend.p:.2g})"
                 yield f"{trend.parameter} depends on the {trend.condition}: {change}; the model is missing an effect"
+        for use, found in self.white.items():
+            yield f"whiteness of the residual on {data(use)}: {found}"
         if self.budget is not None:
             yield from self.budget.listings()
 
@@ -49,6 +54,7 @@ class Survey(Shown):
             "bands": {"edges": list(self.where.edges), "runs": [asdict(run) for run in self.where.runs]},
             "groups": groups,
             "curves": [curve.to_json() for curve in self.curves],
+            "whiteness": {use: asdict(found) for use, found in self.white.items()},
             "trends": [asdict(trend) for trend in self.trends],
             "budget": None if self.budget is None else self.budget.to_json(),
         }
@@ -59,7 +65,7 @@ def survey(comparison: Comparison) -> Survey:
     shown = breakdown(comparison)
     try:
         found = traced(comparison)
-        return Survey(shown, curves_of(found, curve_fits(found)), trends(found), budget(comparison))
+        return Survey(shown, curves_of(found, curve_fits(found)), trends(found), budget(comparison), by_use(comparison))
     except Unusable as error:
         if error.code != "unstable-model":
             raise

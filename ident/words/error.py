@@ -64,6 +64,12 @@ class ErrorOf:
         """The error with the mean counted, in a table; "–" where it is not known."""
         return unstable_on(self.unstable) if self.is_unstable else number(self.with_mean)
 
+    def fit(self, number: Callable[[float | None], str] = percent) -> str:
+        """The fit to the data, 1 − RMS(x − x_m)/std(x_m) of the free simulation, its mean counted: "87.9 %"."""
+        if self.is_unstable:
+            return unstable_on(self.unstable)
+        return number(None if self.with_mean is None else 1.0 - self.with_mean)
+
     def headline(self, number: Callable[[float | None], str] = percent) -> str:
         """The same for a first line: "2.82 % (with the mean 45.0 times, RMSE 830.0 m)"."""
         return self._said(number, f", RMSE {self.rmse}" if self.rmse else "")

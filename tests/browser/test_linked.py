@@ -14,7 +14,7 @@ MAP, BODE = "#figure-residual-map", "#figure-bode"
 
 def opened(page, address):
     """The page of a fit with its map and its Bode plot drawn."""
-    page.goto(address)
+    page.goto(address if "?" in address else f"{address}#residuals")
     for figure in (MAP, BODE):
         expect(page.locator(f"{figure} canvas")).to_be_visible(timeout=LONG)
         expect(page.locator(f"{figure} .plot")).to_have_attribute("aria-busy", "false", timeout=LONG)
@@ -137,7 +137,7 @@ def test_a_band_upside_down_is_refused_with_the_remedy(page, site, watch, fitted
 
 
 def test_a_place_of_the_chain_lists_its_effects(page, site, fitted):
-    page.goto(f"{site.address}/fits/{fitted}")
+    page.goto(f"{site.address}/fits/{fitted}#model")
     place = page.get_by_role("link", name=re.compile("^spool: switched on none"))
     place.focus()
     page.keyboard.press("Enter")
@@ -175,7 +175,7 @@ def test_two_fits_stand_side_by_side(page, site, fitted, second, screenshots):
             assert page.evaluate("document.documentElement.scrollWidth") <= width
             if screenshots:
                 page.screenshot(path=screenshots / f"compare-{width}-{theme}.png", full_page=True)
-    page.goto(f"{site.address}/fits/{second}")
+    page.goto(f"{site.address}/fits/{second}#history")
     page.get_by_role("link", name="compare", exact=True).click()
     expect(page.locator("h1")).to_have_text("Two fits side by side")
 
@@ -190,7 +190,7 @@ def test_a_comparison_of_what_is_not_there_says_so(fits, page, site, watch):
 
 def test_a_value_is_copied_with_its_unit_and_a_table_with_tabs(page, site, fitted):
     page.context.grant_permissions(["clipboard-read", "clipboard-write"], origin=site.address)
-    page.goto(f"{site.address}/fits/{fitted}")
+    page.goto(f"{site.address}/fits/{fitted}#parameters")
     stored = site.client.get(f"/fits/{fitted}").json()["result"]["parameters"]["tau"]
     button = page.get_by_role("button", name=re.compile("^Copy τ = "))
     button.focus()
@@ -198,6 +198,7 @@ def test_a_value_is_copied_with_its_unit_and_a_table_with_tabs(page, site, fitte
     expect(page.locator("[role=status]", has_text="is copied")).to_have_count(1)
     value, unit = page.evaluate("navigator.clipboard.readText()").split()
     assert unit == "s"
+    page.get_by_role("link", name="Summary").click()
     error = page.get_by_role("button", name="Copy Error, estimation runs = ")
     assert error.evaluate("button => getComputedStyle(button).opacity") == "0"
     error.focus()
@@ -215,7 +216,7 @@ def test_a_value_is_copied_with_its_unit_and_a_table_with_tabs(page, site, fitte
 
 
 def test_an_own_effect_has_other_parameters_and_a_state(page, site, watch, fitted):
-    page.goto(f"{site.address}/fits/{fitted}")
+    page.goto(f"{site.address}/fits/{fitted}#own")
     own = page.locator("form[data-own]")
     for label, text in (("Name", "droop"), ("Strength, symbol", "d"), ("Unit", "1"), ("Largest", "1")):
         own.get_by_label(label, exact=True).fill(text)

@@ -51,7 +51,7 @@ def test_a_page_fits_desk_and_tablet_in_both_themes_and_shuts_nobody_out(name, p
 
 
 def test_a_figure_and_the_ground_follow_the_system_theme(page, site, fitted):
-    page.goto(f"{site.address}/fits/{fitted}")
+    page.goto(f"{site.address}/fits/{fitted}#residuals")
     for theme in ("light", "dark"):
         page.emulate_media(color_scheme=theme)
         link = page.locator(f"{FIGURE} a[data-format=svg]")
@@ -65,7 +65,7 @@ def test_a_figure_and_the_ground_follow_the_system_theme(page, site, fitted):
 def test_what_is_pressed_before_the_scripts_have_come_is_heard(page, site, fitted):
     held = []
     page.route(re.compile(r"/own\.js"), lambda route: held.extend([route]))  # a bound method cannot be marked
-    page.goto(f"{site.address}/fits/{fitted}", wait_until="commit")
+    page.goto(f"{site.address}/fits/{fitted}#own", wait_until="commit")
     own = page.locator("form[data-own]")
     fields = {"Name": "overlap", "Strength, symbol": "h", "Unit": "mm", "Largest": "1", "Equation": "w = w - h"}
     for label, text in fields.items():
@@ -75,7 +75,7 @@ def test_what_is_pressed_before_the_scripts_have_come_is_heard(page, site, fitte
     expect(own.locator("math")).to_have_count(0)
     held[0].continue_()
     expect(own.locator("math")).to_have_count(1)
-    assert page.url == f"{site.address}/fits/{fitted}"
+    assert page.url == f"{site.address}/fits/{fitted}#own"
 
 
 def test_a_running_fit_is_told_to_everybody(page, site, running, screenshots):
@@ -133,8 +133,33 @@ def test_the_fit_page_shows_the_stored_parameters_and_errors(page, site, fitted)
         assert f"{100 * result['error'][use]:.3g}" in row
 
 
-def test_the_run_table_sorts_by_number(page, site, fitted):
+def test_the_sections_of_a_fit_are_tabs_that_the_address_keeps_and_the_summary_fits_a_screen(page, site, fitted):
+    """By a link, by going back, by a place inside one; without scripts every section stands there."""
+    page.set_viewport_size({"width": 1280, "height": 800})
     page.goto(f"{site.address}/fits/{fitted}")
+    summary, model = page.locator("#summary"), page.locator("#model")
+    expect(page.locator("[data-white]")).to_contain_text(re.compile("^(pass|fail) on estimation data"), timeout=60_000)
+    expect(page.locator("#nrmse-verify")).to_contain_text("%")
+    expect(page.locator("figure.budget")).to_be_visible(timeout=60_000)
+    box = summary.bounding_box()
+    assert box["y"] + box["height"] <= 800
+    page.get_by_role("navigation", name="Sections of the fit").get_by_role("link", name="Model").click()
+    expect(model).to_be_visible()
+    expect(summary).to_be_hidden()
+    expect(page.locator("form[data-own]")).to_be_hidden()  # until it is asked for
+    assert page.url.endswith("#model")
+    page.reload()
+    expect(model).to_be_visible()
+    page.go_back()
+    expect(summary).to_be_visible()
+    page.goto(f"{site.address}/fits/{fitted}#own")
+    expect(page.locator("form[data-own]")).to_be_visible()
+    shown = page.request.get(f"{site.address}/fits/{fitted}").text()
+    assert not re.search(r"data-section[^>]* hidden", shown)
+
+
+def test_the_run_table_sorts_by_number(page, site, fitted):
+    page.goto(f"{site.address}/fits/{fitted}#residuals")
     page.get_by_text("Table of the 12 runs").click()
     page.get_by_role("button", name="Eq. (17)", exact=True).click()
     texts = page.locator("table:has([data-pick]) tbody td:nth-child(4)").all_inner_texts()
@@ -145,7 +170,7 @@ def test_the_run_table_sorts_by_number(page, site, fitted):
 
 def test_a_figure_follows_its_options_and_the_theme(page, site, fitted):
     page.emulate_media(color_scheme="light")
-    page.goto(f"{site.address}/fits/{fitted}")
+    page.goto(f"{site.address}/fits/{fitted}#residuals")
     page.locator("#tab-bode").click()
     link = page.locator("#figure-bode a[data-format=svg]")
     expect(link).to_have_attribute("href", re.compile("theme=light"))
@@ -161,7 +186,7 @@ def test_a_figure_follows_its_options_and_the_theme(page, site, fitted):
 
 
 def test_the_figures_are_reached_by_keyboard(page, site, fitted):
-    page.goto(f"{site.address}/fits/{fitted}")
+    page.goto(f"{site.address}/fits/{fitted}#residuals")
     tabs = page.locator("[role=tablist] [role=tab]")
     names = [tab.removeprefix("tab-") for tab in tabs.evaluate_all("tabs => tabs.map(tab => tab.id)")]
     assert {"bode", "time", "evolution", "residual-curve", "sensitivity"} <= set(names)
@@ -263,7 +288,7 @@ def test_a_refused_upload_says_what_where_and_the_remedy(page, watch, site, tmp_
 
 def test_what_is_left_is_told_in_its_unit_and_a_profile_is_drawn_when_it_is_opened(page, site, fitted):
     """In both themes, with its downloads; the choice of a parameter draws another."""
-    page.goto(f"{site.address}/fits/{fitted}")
+    page.goto(f"{site.address}/fits/{fitted}#parameters")
     expect(page.locator('[data-size="use:fit"][data-of="mae"]')).to_have_text(re.compile(r"\d.*m$"), timeout=60_000)
     figure = page.locator("#figure-profile")
     expect(figure).to_be_hidden()

@@ -68,7 +68,7 @@ def test_a_figure_says_that_it_is_drawn_and_then_what_is_drawn(page: Page, site:
     """While it is on its way a word stands in its place; its canvas is an image, named by the figure's heading."""
     held = []
     page.route(re.compile(r"/figures/residual-map\.json"), lambda route: held.extend([route]))
-    page.goto(f"{site.address}/fits/{fitted}")
+    page.goto(f"{site.address}/fits/{fitted}#residuals")
     plot = page.locator("#figure-residual-map .plot")
     plot.scroll_into_view_if_needed()
     expect(plot).to_have_attribute("aria-busy", "true")
@@ -87,7 +87,7 @@ def test_a_figure_says_that_it_is_drawn_and_then_what_is_drawn(page: Page, site:
 
 def test_every_canvas_has_a_name_that_follows_what_it_shows(page: Page, site: Service, fitted: str) -> None:
     """Each figure of a fit, tab by tab; the name of a run's plot names the run that was chosen."""
-    page.goto(f"{site.address}/fits/{fitted}")
+    page.goto(f"{site.address}/fits/{fitted}#residuals")
     for tab in page.locator("[role=tab]").all():
         tab.click()
         drawn = page.locator(f"#{tab.get_attribute('aria-controls')} canvas")

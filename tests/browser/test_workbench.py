@@ -169,7 +169,7 @@ def test_a_search_can_be_cancelled_and_says_so(page, site):
     stored = site.client.post("/matrices", files={"files": ("matrix.zip", zipped("DZ-STOP"))}).json()
     fit = site.fit(stored["id"])
     assert site.ended(fit)["state"] == "succeeded"
-    page.goto(f"{site.address}/fits/{fit}")
+    page.goto(f"{site.address}/fits/{fit}#missing")
     page.get_by_role("button", name="Search for missing effects").click()
     page.locator("#missing").get_by_role("button", name="Cancel").click(timeout=story.LONG)
     expect(page.locator("#missing")).to_contain_text("The last search was cancelled", timeout=story.LONG)

@@ -27,7 +27,9 @@ function draw(budget) {
     figure.querySelector("ul").append(entry(name, `${percent(share / 100)} ${meaning}, error ${percent(budget[name])}`));
     from += share;
   }
-  for (const note of budget.notes) figure.querySelector("ul").append(entry("", note));
+  const notes = figure.querySelector("details");
+  notes.hidden = !budget.notes.length;
+  for (const note of budget.notes) notes.querySelector("ul").append(entry("", note));
   figure.hidden = false;
 }
 

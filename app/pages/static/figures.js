@@ -148,7 +148,12 @@ function show(tab) {
     document.getElementById(other.getAttribute("aria-controls")).hidden = !on;
   }
   const figure = document.getElementById(tab.getAttribute("aria-controls"));
-  if (figure.dataset.drawn !== String(query(figure))) draw(figure);
+  refresh(figure);
+}
+
+// A figure in a section that is not shown has no width to be drawn in.
+function refresh(figure) {
+  if (figure.offsetParent !== null && figure.dataset.drawn !== String(query(figure))) draw(figure);
 }
 
 function choose(tab) {
@@ -175,10 +180,10 @@ for (const form of figures.map((figure) => figure.querySelector("form")).filter(
   });
 }
 
-for (const name of ["themechange", "picked"]) {
+for (const name of ["themechange", "picked", "sectionshown"]) {
   document.addEventListener(name, () => {
     for (const figure of figures) {
-      if (!figure.hidden && figure.turn && figure.dataset.drawn !== String(query(figure))) draw(figure);
+      if (figure.turn || figure.getAttribute("role") === "tabpanel") refresh(figure);
     }
   });
 }

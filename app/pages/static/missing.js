@@ -9,8 +9,8 @@ for (const form of document.querySelectorAll("form[data-diagnose]")) {
     const propose = "propose" in form.dataset;
     const own = form.elements.own?.checked;
     const asked = { fit: form.dataset.diagnose, ...(time > 0 && { time }), ...(own && { own }), ...(propose && { propose }) };
+    location.hash = "missing"; // where it says how the search goes, or why it cannot begin
     await send("POST", form.action, asked);
-    location.hash = "missing";
     location.reload();
   });
 }

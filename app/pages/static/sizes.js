@@ -13,6 +13,10 @@ try {
       cell.dataset.value = found[cell.dataset.of];
     }
   }
+  const said = { fit: "estimation data", verify: "validation data" };
+  const white = document.querySelector("[data-white]");
+  const parts = Object.entries(data.whiteness).map(([use, { passed, white: some, runs }]) => `${passed ? "pass" : "fail"} on ${said[use]} (${some} of ${runs} runs)`);
+  if (parts.length) white.textContent = parts.join(", ");
 } catch {
   // a model that is unstable at its values leaves nothing to measure; eq. (17) stands by itself
 }
