@@ -37,7 +37,17 @@ gc.set_threshold(1_000_000, 20, 50)
 
 
 def pytest_collection_finish() -> None:
-    """What is there before the first test stays: the collector need not look through it again."""
+    """Loops of the references are compiled once for all processes, though they know nothing of the library's way.
+
+    What is there before the first test stays: the collector need not look through it again.
+    """
+    for name, module in list(sys.modules.items()):
+        if name.startswith("tests.reference."):
+            from ident.simulation.jit import shared
+
+            for function in vars(module).values():
+                if hasattr(function, "py_func"):
+                    shared(function)
     gc.freeze()
     gc.set_threshold(50_000, 20, 50)
 

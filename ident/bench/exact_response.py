@@ -12,10 +12,10 @@ from __future__ import annotations
 from math import log, sqrt
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from ident.bench.response import earlier, filter_gains
+from ident.simulation.jit import jit
 
 Array = NDArray[np.float64]
 CONSTANTS = 6
@@ -29,7 +29,7 @@ _FAR = 0.25
 """Of the current from the zero shift: what it may change in half a sample for the speed to be a straight line."""
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@jit(nogil=True, error_model="numpy")
 def delayed(current: Array, late: float) -> tuple[Array, Array]:
     """A current that comes so many samples later, and its derivative with respect to `late`, each (n,)."""
     out, slope = np.empty(len(current)), np.empty(len(current))
@@ -41,7 +41,7 @@ def delayed(current: Array, late: float) -> tuple[Array, Array]:
     return out, slope
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@jit(nogil=True, error_model="numpy")
 def _speed(a: float, side: int, nodes: Array, pieces: Array) -> tuple[float, float, int, float]:
     """f and its slope at a current `a` from the zero shift; the piece of the table, and the place in it."""
     i = len(nodes) - 2
@@ -53,7 +53,7 @@ def _speed(a: float, side: int, nodes: Array, pieces: Array) -> tuple[float, flo
     return c[0] + within * (c[1] + within * (c[2] + within * c[3])) + (t - within) * slope, slope, i, t
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@jit(nogil=True, error_model="numpy")
 def _node(t: float, width: float, c: Array) -> float:
     """A piece of the table, (4,), at a place in it; beyond the last node the end slope goes on."""
     within = min(t, width)
@@ -61,7 +61,7 @@ def _node(t: float, width: float, c: Array) -> float:
     return float(c[0] + within * (c[1] + within * (c[2] + within * c[3])) + (t - within) * slope)
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@jit(nogil=True, error_model="numpy")
 def _kind(u: float, still: float, full: float) -> int:
     """0 at rest, 1 moving, 2 moving with all of the supply pressure; negative back."""
     a = abs(u)
@@ -71,7 +71,7 @@ def _kind(u: float, still: float, full: float) -> int:
     return kind if u > 0.0 else -kind
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@jit(nogil=True, error_model="numpy")
 def respond_exact(  # noqa: PLR0912, PLR0915 - one loop over the samples, whose state would else be handed about
     current: Array, late: float, step: float, held: bool, constants: Array, nodes: Array, pieces: Array, moves: Array,
     begin_at: float, picked: NDArray[np.int64], between: float, position: Array, pressure: Array,

@@ -9,16 +9,16 @@ from __future__ import annotations
 from math import pi, sin
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from ident.bench.response import respond
+from ident.simulation.jit import jit
 
 Array = NDArray[np.float64]
 STATIC, FREQUENCY, LEVELS, CONTINUOUS = range(4)
 
 
-@njit(cache=True)
+@jit()
 def saw_tooth(settings: Array, t: float, seen: float, first: float) -> float:
     """Static test: I = offset + gain (set − position), the set position a triangle of ±width at a constant rate.
 
@@ -30,7 +30,7 @@ def saw_tooth(settings: Array, t: float, seen: float, first: float) -> float:
     return float(offset + gain * (first + width * tooth - seen))
 
 
-@njit(cache=True)
+@jit()
 def sine(settings: Array, t: float, step: float, seen: float, memory: Array) -> float:
     """Frequency test: I = offset + c + amplitude sin(2πft); c integrates how far the mean position moved in a period.
 
@@ -48,7 +48,7 @@ def sine(settings: Array, t: float, step: float, seen: float, memory: Array) -> 
     return float(offset + memory[0] + amplitude * sin(2.0 * pi * frequency * t))
 
 
-@njit(cache=True)
+@jit()
 def fixed_level(settings: Array, t: float) -> float:
     """Speed test: a level, a rest, the level with the other sign, a rest."""
     offset, level, length, rest = settings[:4]
@@ -57,7 +57,7 @@ def fixed_level(settings: Array, t: float) -> float:
     return float(offset + (sign * level if place % (length + rest) < length else 0.0))
 
 
-@njit(cache=True)
+@jit()
 def in_proportion(settings: Array, seen: float, first: float, memory: Array) -> float:
     """Speed test over a stroke: the current rises with the position up to the middle, falls behind it; then back.
 
@@ -72,8 +72,7 @@ def in_proportion(settings: Array, seen: float, first: float, memory: Array) -> 
     return float(offset + sign * (lowest + (highest - lowest) * 2.0 * min(share, max(1.0 - share, 0.0))))
 
 
-# Not kept on disk: a cache would not notice a change of `respond`, which is in another file.
-@njit(nogil=True, error_model="numpy")
+@jit(nogil=True, error_model="numpy")
 def driven(
     law: int, settings: Array, step: float, steps: int, slope: float, last_bit: float, constants: Array, nodes: Array,
     pieces: Array, position: float, current: Array, out: Array,

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from ident.bench.records import Record
+from ident.simulation.jit import jit
 
 Array = NDArray[np.float64]
 Groups = NDArray[np.int8]
@@ -37,7 +37,7 @@ def groups(record: Record) -> Groups:
     return np.sign(np.cumsum(edges))[:-1].astype(np.int8)
 
 
-@njit(cache=True, nogil=True)
+@jit(nogil=True)
 def without_flicker(position: Array, width: float, out: Array) -> None:
     """Fill `out` with the position behind a play of half-width `width`."""
     held = position[0]

@@ -11,8 +11,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
+
+from ident.simulation.jit import jit
 
 Array = NDArray[np.float64]
 _CHANGED = 1e-6  # of a step: less is the rounding of a reading, no change of it
@@ -62,7 +63,7 @@ def readings(position: Array, step: float, moved: Array, extra: float) -> Readin
     return Readings(picked, values, step * np.array([in_steps(one) for one in way / step]), 0.5, extra, step)
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@jit(nogil=True, error_model="numpy")
 def fastest(moved: Array) -> Array:
     """The largest movement in a sample around each, (n,), of those to either side that count."""
     out, n = np.empty(len(moved)), len(moved)
@@ -83,7 +84,7 @@ def _by_spacing(picked: NDArray[np.int64], change: Array) -> Array:
     return np.asarray(np.minimum(change, change / np.minimum(before, behind)))
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@jit(nogil=True, error_model="numpy")
 def in_steps(moved: float) -> float:
     """The deviation of a reading at a change, in steps, where the link goes so many steps in a sample."""
     f = moved % 1.0

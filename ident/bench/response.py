@@ -9,13 +9,14 @@ from __future__ import annotations
 from math import exp, sqrt
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
+
+from ident.simulation.jit import jit
 
 Array = NDArray[np.float64]
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@jit(nogil=True, error_model="numpy")
 def characteristic(u: float, nodes: Array, pieces: Array) -> float:
     """f(u): odd and even sides have tables of their own; beyond the last node the end slope goes on."""
     side = 0 if u >= 0.0 else 1
@@ -33,7 +34,7 @@ def characteristic(u: float, nodes: Array, pieces: Array) -> float:
     return float(c0 + t * (c1 + t * (c2 + t * c3)))
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@jit(nogil=True, error_model="numpy")
 def filter_gains(T: float, step: float) -> tuple[float, float, float]:
     """(φ, γ0, γ1) of T y' + y = u over a step, exact for an input that is a straight line."""
     if 1e-3 * step > T:
@@ -43,7 +44,7 @@ def filter_gains(T: float, step: float) -> tuple[float, float, float]:
     return phi, (1.0 - phi) - g1, g1
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@jit(nogil=True, error_model="numpy")
 def earlier(samples: Array, place: float) -> float:
     """The record between its samples; before its first and behind its last one these go on."""
     last = len(samples) - 1
@@ -55,7 +56,7 @@ def earlier(samples: Array, place: float) -> float:
     return float(samples[k] + (place - k) * (samples[k + 1] - samples[k]))
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@jit(nogil=True, error_model="numpy")
 def respond(
     current: Array, step: float, steps: int, held: bool, constants: Array, nodes: Array, pieces: Array, start: Array,
     out: Array,
@@ -106,7 +107,7 @@ def respond(
     start[0], start[1], start[2], start[3] = x, q, q2, w
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@jit(nogil=True, error_model="numpy")
 def rest(answer: Array, measured: Array, first: int, end: int, scale: float, drifting: bool, out: Array) -> None:
     """Fill `out` with answer − measured of a part, less its mean or, where `drifting`, its straight line; scaled."""
     count = end - first
@@ -122,7 +123,7 @@ def rest(answer: Array, measured: Array, first: int, end: int, scale: float, dri
         out[k] = (answer[first + k] - measured[first + k] - mean - slope * (k - middle)) / scale
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@jit(nogil=True, error_model="numpy")
 def residuals(
     current: Array, step: float, held: bool, constants: Array, nodes: Array, pieces: Array,
     position: Array, pressure: Array, parts: NDArray[np.int64], scales: Array, drifting: bool, out: Array,
@@ -149,7 +150,7 @@ def residuals(
                 at += end - first
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@jit(nogil=True, error_model="numpy")
 def compared(
     positions: Array, pressures: Array, slopes: bool, picked: NDArray[np.int64], values: Array, deviations: Array,
     measured: Array, parts: NDArray[np.int64], scale: float, drifting: bool, out: Array,
@@ -198,7 +199,7 @@ def compared(
                 at += end - first
 
 
-@njit(cache=True, nogil=True, error_model="numpy", fastmath=True)
+@jit(nogil=True, error_model="numpy", fastmath=True)
 def products(rows: Array, blocks: int, out: Array) -> None:
     """Fill `out` (blocks, m, m) with sums of products of the rows (m, n), block by block of neighbouring samples."""
     m, n = rows.shape

@@ -11,7 +11,6 @@ from __future__ import annotations
 from itertools import pairwise
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from ident.bench.least_squares import Solution
@@ -19,6 +18,7 @@ from ident.bench.observed import Observed
 from ident.bench.readings import fastest, in_steps
 from ident.bench.residual import BLOCKS, Residual
 from ident.parallel import each
+from ident.simulation.jit import jit
 
 Array = NDArray[np.float64]
 PLACES = 16
@@ -59,7 +59,7 @@ def _positions(residual: Residual, point: Array, observed: Observed, J: Array, r
     return np.asarray(out + np.cov(scores, rowvar=False).reshape(out.shape))
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@jit(nogil=True, error_model="numpy")
 def at_places(
     way: Array, slopes: Array, moved: Array, step: float, extra: float, parts: NDArray[np.int64], places: int
 ) -> Array:

@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
+
+from ident.simulation.jit import jit
 
 Array = NDArray[np.float64]
 _LOST = 1e-7  # relative to the largest eigenvalue of the scaled H: a direction that a fold does not see stays
 
 
-@njit(cache=True, nogil=True)
+@jit(nogil=True)
 def bounded_step(point: Array, H: Array, g: Array) -> Array:
     """−H⁻¹ g on the axes that it leaves in the unit cube; the axis that would leave it farthest stays at its bound, and
     so on with the others. Zero where H is not finite."""
@@ -51,7 +52,7 @@ def bounded_step(point: Array, H: Array, g: Array) -> Array:
     return step
 
 
-@njit(cache=True, nogil=True)
+@jit(nogil=True)
 def _newton(A: Array, rest: Array) -> Array:
     """−A⁻¹ rest, in the directions that A sees."""
     strengths, directions = np.linalg.eigh(A)
@@ -67,7 +68,7 @@ def _newton(A: Array, rest: Array) -> Array:
     return move
 
 
-@njit(cache=True, nogil=True)
+@jit(nogil=True)
 def bounded_steps(point: Array, H: Array, g: Array) -> Array:
     """The step of each of n problems from one point (p,), of H (n, p, p) and g (n, p): (n, p)."""
     steps = np.empty_like(g)

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
+
+from ident.simulation.jit import jit
 
 Array = NDArray[np.float64]
 _BLIND = 1e-12  # relative to the largest eigenvalue: nuisances that do the same
@@ -12,7 +13,7 @@ _ROUNDING = 1e-11  # of a record's deviation: a small step of a first state that
 CHUNK = 256  # samples turned at a time, so that the sums run along contiguous memory
 
 
-@njit(cache=True, fastmath=True, nogil=True)
+@jit(fastmath=True, nogil=True)
 def add_products(rows: Array, measured: Array, moved: int, sums: Array) -> None:
     """Add Σ of products of [J, N, 1, r] over the samples of a block to `sums`, (runs, q, q), lower triangle.
 
@@ -44,7 +45,7 @@ def add_products(rows: Array, measured: Array, moved: int, sums: Array) -> None:
                     sums[run, i, j] += total
 
 
-@njit(cache=True, nogil=True)
+@jit(nogil=True)
 def add_block_products(rows: Array, measured: Array, moved: int, length: int, sums: Array) -> None:
     """The same for blocks of `length` samples one after the other, each into its own `sums`, (blocks, runs, q, q)."""
     for block in range(-(-len(rows) // length)):
@@ -58,7 +59,7 @@ def completed(sums: Array, strides: Array) -> Array:
     return np.asarray(_completed(sums.reshape(-1, *sums.shape[-2:]), 1.0 / scale).reshape(sums.shape))
 
 
-@njit(cache=True, nogil=True)
+@jit(nogil=True)
 def _completed(sums: Array, factors: Array) -> Array:
     whole = np.empty(sums.shape)
     for n in range(len(sums)):

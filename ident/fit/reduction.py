@@ -17,7 +17,6 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 import scipy.fft
-from numba import njit
 from numpy.typing import NDArray
 
 from ident.cached import cached_property
@@ -26,6 +25,7 @@ from ident.noise.power_density import power_density
 from ident.parallel import each
 from ident.run import Run
 from ident.simulation.between import at_nodes
+from ident.simulation.jit import jit
 from ident.simulation.recursion import Recursion, discretise, responses
 
 Array = NDArray[np.float64]
@@ -122,8 +122,8 @@ class ReducedRun:
         return errors, doubt
 
 
-@njit(cache=True, fastmath=True, nogil=True)
-def _reduce(g, W, d, rest, unit, check, errors, doubt):  # type: ignore[no-untyped-def]
+@jit(fastmath=True, nogil=True)
+def _reduce(g: Array, W: Array, d: Array, rest: float, unit: float, check: Array, errors: Array, doubt: Array) -> None:
     outputs, misfits = np.dot(g, W.T), np.dot(g, check.T)
     half, checks = g.shape[1] // 2, len(check)
     for v in range(len(g)):

@@ -10,7 +10,6 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from ident.fit.fitness import STEP
@@ -18,6 +17,7 @@ from ident.fit.products import CHUNK, removal, shares_of, without
 from ident.fit.simulated_fitness import SimulatedFitness
 from ident.parallel import each
 from ident.run import Run
+from ident.simulation.jit import jit
 
 Array = NDArray[np.float64]
 _LANES = 1024  # simulated in one go: what all of them share is worked out once
@@ -167,7 +167,7 @@ class Sensitivities:
         return remove.transpose(0, 2, 1) @ cross, left, shares[:, -1]
 
 
-@njit(cache=True, fastmath=True, nogil=True)
+@jit(fastmath=True, nogil=True)
 def _add(rows: Array, Z: Array, cross: Array, power: Array) -> None:
     """Add to `cross` (runs, q, n) and `power` (runs, n) what the changes d give over the samples of a block.
 

@@ -9,9 +9,9 @@ from __future__ import annotations
 from typing import Any, NamedTuple
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from ident.simulation.jit import jit
 from ident.simulation.machine_call import advance_at
 
 Array = NDArray[np.float64]
@@ -65,7 +65,7 @@ class Rig(NamedTuple):
     scratch: Array
 
 
-@njit(cache=True, nogil=True)
+@jit(nogil=True)
 def _feed(k: int, lane: int, of: int, rig: Any) -> None:
     """The command of a lane, that of system `of`, before, at and behind the steps of sample k.
 
@@ -90,7 +90,7 @@ def _feed(k: int, lane: int, of: int, rig: Any) -> None:
         rig.buffer[before] = 2 * rig.buffer[before] - rig.buffer[now]
 
 
-@njit(cache=True, nogil=True)
+@jit(nogil=True)
 def advance_machine(k: int, rig: Any) -> None:
     """The machine from sample k to k + 1; what its transducers read at k is noted."""
     steps, lanes = rig.steps, rig.held.shape[1]
@@ -107,13 +107,13 @@ def advance_machine(k: int, rig: Any) -> None:
         _advance(k * steps + 1, (k + 1) * steps, rig)
 
 
-@njit(cache=True, nogil=True)
+@jit(nogil=True)
 def _advance(first: int, last: int, rig: Any) -> None:
     advance_at(rig.code, rig.buffer, rig.window, rig.window, rig.places, rig.places, first, last, _NEVER, rig.spare,
                LANES)  # fmt: skip
 
 
-@njit(cache=True, nogil=True)
+@jit(nogil=True)
 def control(k: int, lane: int, rig: Any) -> Any:
     """u(k) of the sampled controller, whose state goes on."""
     d, y, x, n = rig.d[k, lane], rig.y[k, lane], rig.x[lane], rig.A.shape[0]
@@ -130,7 +130,7 @@ def control(k: int, lane: int, rig: Any) -> Any:
     return u
 
 
-@njit(cache=True, nogil=True)
+@jit(nogil=True)
 def close(k: int, lane: int, u: float, rig: Any) -> None:
     """Hold the command of sample k, and take the numerical part to k + 1."""
     rig.held[k + rig.delay, lane] = u
@@ -147,14 +147,14 @@ def close(k: int, lane: int, u: float, rig: Any) -> None:
         z[i] = on[i]
 
 
-@njit(cache=True, nogil=True)
+@jit(nogil=True)
 def _watch(k: int, lane: int, rig: Any) -> None:
     """Take a lane out that ran away: its numbers would end in infinities."""
     if not (abs(rig.d[k, lane]) <= rig.limit[lane] and abs(rig.y[k, lane]) <= 10 * rig.limit[lane]):
         rig.ended[lane] = k
 
 
-@njit(cache=True, nogil=True)
+@jit(nogil=True)
 def advance_under(first: int, last: int, rig: Any) -> Any:
     """Samples first to last − 1 under the sampled controller; how many systems have not run away."""
     lanes = rig.held.shape[1]
@@ -175,7 +175,7 @@ def advance_under(first: int, last: int, rig: Any) -> Any:
     return left
 
 
-@njit(cache=True, nogil=True)
+@jit(nogil=True)
 def read(k: int, rig: Any) -> Any:
     """d(k) and y(k) of the one system there is, for a controller that is no sampled linear one."""
     advance_machine(k, rig)

@@ -6,10 +6,10 @@ from dataclasses import dataclass
 
 import numpy as np
 import scipy.linalg
-from numba import njit
 from numpy.typing import NDArray
 
 from ident.hybrid.case import Case
+from ident.simulation.jit import jit
 
 Array = NDArray[np.float64]
 
@@ -46,7 +46,7 @@ def reference(case: Case, ground: Array) -> Array:
     return np.asarray(_recursion(whole.phi, whole.ground0, whole.ground1, ground, case.place))
 
 
-@njit(cache=True, nogil=True)
+@jit(nogil=True)
 def _recursion(phi: Array, now: Array, then: Array, drive: Array, place: int) -> Array:
     out, z = np.zeros(len(drive)), np.zeros(len(phi))
     for k in range(1, len(drive)):

@@ -11,12 +11,12 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 import scipy.linalg
-from numba import njit
 from numpy.typing import NDArray
 
 from ident.fit.reduction import excited_band
 from ident.linear import LinearModel
 from ident.run import Run
+from ident.simulation.jit import jit
 from ident.simulation.recursion import discretise
 
 Array = NDArray[np.float64]
@@ -77,8 +77,8 @@ class Response:
         return np.asarray(_respond(self.phi, self.gamma0, self.gamma1, self.C, self.D, first, rows))
 
 
-@njit(cache=True, nogil=True, fastmath={"contract"})
-def _respond(phi, gamma0, gamma1, C, D, first, inputs):  # type: ignore[no-untyped-def]
+@jit(nogil=True, fastmath={"contract"})
+def _respond(phi: Array, gamma0: Array, gamma1: Array, C: Array, D: Array, first: Array, inputs: Array) -> Array:
     samples, width = inputs.shape
     n, m = len(first), len(D)
     out = np.zeros((samples, width, m))

@@ -16,6 +16,7 @@ from pathlib import Path
 from typing import Any
 
 from ident.simulation.cache import cache_folder, tidy, used, write
+from ident.simulation.jit import in_turns
 
 _watchers: list[Callable[[], None]] = []
 
@@ -57,7 +58,7 @@ def _loaded(name: str, path: Path, source: str) -> Callable[..., Any]:
     module = importlib.util.module_from_spec(spec)
     sys.modules[path.stem] = module
     spec.loader.exec_module(module)
-    compiled: Callable[..., Any] = getattr(module, name)
+    compiled: Callable[..., Any] = in_turns(getattr(module, name), lambda: source)
     return compiled
 
 

@@ -6,10 +6,12 @@ from typing import Any
 
 import numpy as np
 from llvmlite import ir
-from numba import njit, types
+from numba import types
 from numba.core import cgutils
 from numba.extending import intrinsic
 from numpy.typing import NDArray
+
+from ident.simulation.jit import jit
 
 Array = NDArray[np.float64]
 _POINTERS, _NUMBERS = 5, 3  # arguments of `advance` before its output and the output's stride
@@ -46,7 +48,7 @@ contiguous.
 """
 
 
-@njit(cache=True, nogil=True)
+@jit(nogil=True)
 def advance_groups(
     code: int, groups: tuple[int, int], buffers: Array, u: Array, fm: Array, u_at: NDArray[np.int64],
     fm_at: NDArray[np.int64], first: int, last: int, every: int, out: Array, lanes: int

@@ -8,8 +8,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from ident.simulation import cache
-from ident.simulation.kernel import kept, machine_code
+from ident.simulation import cache, kept
+from ident.simulation.kernel import machine_code
 from tests.simulation.test_machine_code import CASES, given, with_machine
 
 

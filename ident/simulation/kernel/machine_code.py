@@ -24,7 +24,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ident.equations.grammar import statement_of
-from ident.simulation.kernel.kept import kept
+from ident.simulation.kept import kept
 
 LANES = 16
 WIDE = 8

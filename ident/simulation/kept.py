@@ -1,0 +1,81 @@
+"""Machine code on disk: a text that was compiled once is not compiled again, by any process of this user.
+
+A file of the private cache folder is named by the hash of the text and of all that decides what becomes of it, and says
+the hash of what it holds: a change of one equation is another file, and what was cut off or changed counts as absent.
+"""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, suppress
+from functools import cache
+from pathlib import Path
+
+from ident.simulation.cache import cache_folder, tidy, used, write
+
+_MARK = hashlib.sha256().digest_size  # bytes before the code: its hash
+
+
+def kept(text: str, compiled: Callable[[], bytes]) -> bytes:
+    """The machine code of a text: what is on disk, or what `compiled` makes, which is then kept there if it can be."""
+    code = found(text)
+    if code is None:
+        code = compiled()
+        keep(text, code)
+    return code
+
+
+def found(text: str) -> bytes | None:
+    """The machine code of a text that is on disk; none where it is absent or not whole."""
+    path = _path(text)
+    try:
+        content = path.read_bytes()
+    except OSError:
+        return None
+    code = content[_MARK:]
+    if not code or hashlib.sha256(code).digest() != content[:_MARK]:
+        return None
+    used(path)
+    return code
+
+
+def keep(text: str, code: bytes) -> None:
+    """Keep the machine code of a text for the processes to come, if that can be."""
+    path = _path(text)
+    with suppress(OSError):  # a full disk, or a folder that may only be read: it is compiled the next time again
+        write(path, hashlib.sha256(code).digest() + code)
+        _tidied(path.parent)
+
+
+@contextmanager
+def in_turn(text: str) -> Iterator[None]:
+    """One process at a time compiles a text: the others find then what it kept.
+
+    Whoever ends gives up its turn. Where the system cannot lock a file, each goes on by itself.
+    """
+    try:
+        import fcntl  # noqa: PLC0415 - not on every system
+
+        lock = _path(text).with_suffix(".lock").open("ab")
+    except (ImportError, OSError):
+        yield
+        return
+    with lock:
+        with suppress(OSError):
+            fcntl.flock(lock, fcntl.LOCK_EX)
+        try:
+            yield
+        finally:  # by name: a process that was forked meanwhile has the file open, too
+            with suppress(OSError):
+                fcntl.flock(lock, fcntl.LOCK_UN)
+
+
+def _path(text: str) -> Path:
+    return cache_folder() / f"servoident_lines_{hashlib.sha256(text.encode()).hexdigest()[:32]}.o"
+
+
+@cache
+def _tidied(folder: Path) -> None:
+    """The folder is looked through once by each process that adds to it."""
+    tidy(folder)
