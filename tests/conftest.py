@@ -18,6 +18,7 @@ import pytest
 from tests.dearest import (  # noqa: F401  hooks
     pytest_runtest_logstart,
     pytest_runtest_makereport,
+    pytest_runtest_teardown,
     pytest_terminal_summary,
 )
 from tests.rounding import rounded_otherwise
