@@ -73,7 +73,7 @@ def terms_of_runs(
     with np.errstate(all="ignore"):  # what is not finite is left out below
         varied = [name for name in _VARIED if np.ptp(typical[name]) > 0]
         names = _distinct(names, typical)
-        there = _there(preset, places, names)
+        there = _there(preset, places, names, typical)
         library = TermLibrary(places, there, typical, units, models.band, shortest, varied, auxiliary_channels(models))
         drawn = free_curves.free_curves(library) if curves else []
         terms = [hat for curve in drawn for hat in curve.hats()] if curves else list(library.terms())
@@ -130,12 +130,17 @@ def _responses(
     return found
 
 
-def _there(preset: Preset, places: Mapping[str, str], names: Sequence[str]) -> dict[str, list[str]]:
-    """The signals that terms which add to each signal may be of."""
-    return {
-        at: [at] if place == ALONE else [name for name in names if _known_there(preset, place, at, name)]
-        for at, place in places.items()
-    }
+def _there(
+    preset: Preset, places: Mapping[str, str], names: Sequence[str], typical: Mapping[str, Array]
+) -> dict[str, list[str]]:
+    """The signals that terms which add to each signal may be of: of one that does not move there is none."""
+    there = {}
+    for at, place in places.items():
+        if place == ALONE:
+            there[at] = [at] if np.any(typical[at] != typical[at][0]) else []
+        else:
+            there[at] = [name for name in names if _known_there(preset, place, at, name)]
+    return there
 
 
 def _known_there(preset: Preset, place: str, at: str, name: str) -> bool:

@@ -75,6 +75,14 @@ def test_terms_that_are_not_finite_are_counted():
     assert terms_of_runs(models, values, told).left_out > 0
 
 
+def test_of_a_signal_at_rest_there_is_no_term():
+    """The spool's rate stays zero in these records: a root of it over its size, which is none, would be no number."""
+    models, values = models_of("machine:controller=p,of=velocity,valve=first,flow=to_speed,sensor=velocity")
+    told = records(models, "noise-free")
+    assert not any(record.signals["dq"].any() for record in told)
+    assert terms_of_runs(models, values, told).left_out == 0
+
+
 def test_a_residual_of_rounding_alone_is_not_explained():
     """A model that leaves nothing leaves nothing to a term either, and no number overflows."""
     models, values = models_of("specimen")
