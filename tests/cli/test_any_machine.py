@@ -17,7 +17,7 @@ def folder(tmp_path_factory) -> Path:
     """A machine that integrates its voltage, three runs as text files beside a plain description."""
     place = tmp_path_factory.mktemp("machine")
     entries = []
-    for run in lag("displacement", integrates=True).runs:
+    for run in lag("displacement", integrates=True, levels=20).runs:
         table = np.column_stack([run.channels["command"], 1e3 * run.channels["displacement"]])
         np.savetxt(place / f"{run.id}.csv", table, delimiter=",", header="u,x", comments="")
         channels = {"command": {"column": "u", "unit": "V"}, "displacement": {"column": "x", "unit": "mm"}}

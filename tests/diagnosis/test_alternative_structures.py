@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+import pytest
 
 from ident.diagnosis.result import Diagnosis
 from ident.fit.settings import Settings
@@ -20,7 +21,7 @@ def turned(tau: float, stops: bool) -> Matrix:
     """
     runs = []
     for number, use in enumerate(("fit", "fit", "verify")):
-        random, n = np.random.default_rng([7, number]), int(4 * RATE)
+        random, n = np.random.default_rng([7, number]), int(2.5 * RATE)
         t = np.arange(n) / RATE
         u = sum(np.sin(2 * np.pi * f * t + random.uniform(0, 6)) for f in (0.4, 0.9, 1.7)) / 1.5
         u *= np.minimum(1.0, t / 0.5)
@@ -49,6 +50,7 @@ def told(of: Diagnosis) -> set[tuple[str, tuple[str, ...], bool]]:
     return {(one.machine, one.effects, one.better) for one in of.verdict.elsewhere}
 
 
+@pytest.mark.usefixtures("few_effects")
 def test_without_mass_dry_friction_and_a_dead_zone_are_one_equation_in_every_model():
     light = found(1.5e-3)
     assert light.model == "motor"
@@ -58,6 +60,7 @@ def test_without_mass_dry_friction_and_a_dead_zone_are_one_equation_in_every_mod
     assert type(light).from_json(light.to_json()).verdict == light.verdict
 
 
+@pytest.mark.usefixtures("few_effects")
 def test_with_mass_they_are_two_and_the_model_that_explains_more_is_told():
     """Compared before anything was added, a model with a valve's lag looked better than the motor that it is."""
     heavy = found(0.15)

@@ -26,9 +26,9 @@ PLANT = linear.Plant()
 NOISE = 0.01
 
 
-def measured(**hidden: float) -> Matrix:
-    """Nine of the 36 runs of the small matrix, a second each, of every amplitude."""
-    return Machine(PLANT, hidden, NOISE, small=True, seed=20).measured(seconds=1.0, every=4)
+def measured(seconds: float = 0.5, **hidden: float) -> Matrix:
+    """Nine of the 36 runs of the small matrix, half a second each, of every amplitude."""
+    return Machine(PLANT, hidden, NOISE, small=True, seed=20).measured(seconds, every=4)
 
 
 def most(full: bool) -> dict[str, int]:
@@ -147,7 +147,7 @@ def test_repeats_tell_that_what_is_left_is_noise_in_the_band(full):
 def test_two_hidden_effects_are_both_found(full):
     if not full:  # as in the story of the first page
         pytest.skip("ten seconds: run with --full")
-    found = diagnose(measured(dead_zone=2.5e-4, quadratic_damping=6e3))
+    found = diagnose(measured(1.0, dead_zone=2.5e-4, quadratic_damping=6e3))
     assert set(found.verdict.effects) == {"dead_zone", "quadratic_damping"}
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+import pytest
 
 from ident.diagnosis.result import Diagnosis
 from ident.fit.settings import Settings
@@ -18,9 +19,10 @@ def found(matrix: Matrix) -> tuple[float, Diagnosis]:
     return fit.window.horizon, diagnose(matrix, fit, most=1, propose=False)
 
 
+@pytest.mark.usefixtures("few_effects")
 def test_another_gain_each_way_is_judged_over_whole_runs():
     """Over the windows that it made necessary it is worth little: a free run falls to the noise."""
-    matrix = cylinder(7, wander=0.0, skew=0.3)
+    matrix = cylinder(7, wander=0.0, skew=0.3, seconds=60.0)
     _, diagnosis = found(matrix)
     assert diagnosis.horizon is None
     assert diagnosis.verdict.effects == ("gain_asymmetry",)
@@ -29,7 +31,8 @@ def test_another_gain_each_way_is_judged_over_whole_runs():
     assert "errors over whole runs, where the fit was made over windows" in diagnosis.verdict.text
 
 
+@pytest.mark.usefixtures("few_effects")
 def test_where_disturbances_add_up_the_windows_stay():
-    horizon, diagnosis = found(cylinder(8, wander=1e-3, dead=0.2))
+    horizon, diagnosis = found(cylinder(8, wander=1e-3, dead=0.2, seconds=60.0))
     assert diagnosis.horizon == horizon
     assert "whole runs" not in diagnosis.verdict.text

@@ -26,12 +26,12 @@ from tests.presets.test_machines import motor, specimen
 RATE = 100.0
 
 
-def lag(output: str, integrates: bool) -> Matrix:
+def lag(output: str, integrates: bool, levels: int = 60) -> Matrix:
     """A lag of 0.1 s, or the integral of what is behind it; solved exactly from sample to sample, noise of 1 %."""
     runs = []
     for number, use in enumerate(("fit", "fit", "verify")):
         rng = np.random.default_rng([3, number])
-        u = np.repeat(rng.uniform(-1, 1, 60), 20)
+        u = np.repeat(rng.uniform(-1, 1, levels), 20)
         u -= u.mean() if integrates else 0.0
         y, x, held = np.zeros(len(u)), np.zeros(len(u)), np.exp(-1 / (RATE * 0.1))
         for k in range(1, len(u)):
@@ -69,7 +69,7 @@ def test_a_machine_that_settles_is_told_from_one_that_integrates(integrates, mod
     assert wrong.error["held_out"] is None or wrong.error["held_out"] > 3 * first.error["held_out"]
 
 
-def lift(rate: float = 20.0) -> Matrix:
+def lift(rate: float = 8.0) -> Matrix:
     """A load that follows its reference with 0.6 s upwards and 3 s downwards, read coarsely, begun while it creeps."""
     levels = [0.4, 2, 3.3, 4.6, 6, 7.2, 8.5, 9.5, 8.2, 6.8, 5.5, 4.2, 3, 1.7, 0.4]
     reference = np.repeat(levels, int(8 * rate))
@@ -109,7 +109,7 @@ def test_what_was_compared_is_kept_with_the_fit():
 
 def test_structures_are_compared_over_one_time():
     """A cylinder that disturbances moved: over whole runs a slow lag would leave less of it than what it is."""
-    matrix = cylinder(2, wander=4e-3, uses=("fit", "fit", "verify"))
+    matrix = cylinder(2, wander=4e-3, seconds=60.0, uses=("fit", "fit", "verify"))
     (first, *others) = compared_structures(matrix)
     assert first.machine in ("open_valve", "motor")
     lag = next(one for one in others if one.machine == "first_order")

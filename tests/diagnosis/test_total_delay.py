@@ -77,7 +77,7 @@ def test_two_lags_that_two_others_stand_for_as_well_are_told_as_pairs(valve, rec
 
     The outputs of another pair, a delay of the command and one in the loop, lie seven deviations of the noise apart.
     """
-    models = CandidateModels.of(measured(valve_second_order=valve, acquisition_lag=recorder), Settings())
+    models = CandidateModels.of(measured(1.0, valve_second_order=valve, acquisition_lag=recorder), Settings())
     start = models.off | {p.in_equations: p.value for p in models.preset.parameters}
     start |= {models.strength("valve_second_order"): valve, models.strength("acquisition_lag"): recorder}
     refit = models.refit(("valve_second_order", "acquisition_lag"), start)
