@@ -138,19 +138,27 @@ FEW = {
 }  # fmt: skip
 
 
-@pytest.fixture
-def few_effects(full: bool, monkeypatch: pytest.MonkeyPatch) -> None:
+@contextlib.contextmanager
+def of_few_effects(full: bool) -> Iterator[None]:
     """In the short form a diagnosis ranks eight effects of the catalogue, of several places.
 
-    For a chain or an output of one test alone, the kernels of the whole catalogue take half a minute to compile.
+    The whole catalogue takes several times as long, and half a minute where its kernels have to be compiled.
     """
-    if not full:
-        from ident.diagnosis import candidate_models
+    with pytest.MonkeyPatch.context() as own:
+        if not full:
+            from ident.diagnosis import candidate_models
 
-        monkeypatch.setattr(
-            candidate_models, "CATALOGUE", tuple(effect for effect in candidate_models.CATALOGUE if effect.name in FEW)
-        )
-        assert len(candidate_models.CATALOGUE) == len(FEW)
+            few = tuple(effect for effect in candidate_models.CATALOGUE if effect.name in FEW)
+            assert len(few) == len(FEW)
+            own.setattr(candidate_models, "CATALOGUE", few)
+        yield
+
+
+@pytest.fixture
+def few_effects(full: bool) -> Iterator[None]:
+    """For a test whose point is another than the whole catalogue."""
+    with of_few_effects(full):
+        yield
 
 
 @pytest.fixture(scope="session")

@@ -9,6 +9,7 @@ import pytest
 
 from app.cli import interrupts, output
 from tests import hidden_bump, hidden_dead_zone
+from tests.conftest import of_few_effects
 
 
 @pytest.fixture(scope="module")
@@ -18,10 +19,11 @@ def matrix(tmp_path_factory) -> Path:
 
 
 @pytest.fixture(scope="module")
-def told(servoident, matrix, tmp_path_factory) -> tuple[str, dict]:
-    """What is printed, and the JSON."""
+def told(servoident, matrix, tmp_path_factory, full) -> tuple[str, dict]:
+    """What is printed, and the JSON; the whole catalogue is ranked in tests/diagnosis/test_diagnose.py."""
     file = tmp_path_factory.mktemp("found") / "diagnosis.json"
-    done = servoident("diagnose", matrix, "--json", file)
+    with of_few_effects(full):
+        done = servoident("diagnose", matrix, "--json", file)
     assert done.returncode == 0, done.stderr
     assert "confirming" in done.stderr
     assert "first predictions, before any refit: error dead_zone" in done.stderr
