@@ -163,7 +163,7 @@ def test_a_dead_zone_is_found_below_the_disturbances():
     assert found.horizon is not None
     best = found.candidates[0]
     assert "dead_zone" in {best.effect, *best.group}
-    assert found.ladder[-1].nats > 2 * EVIDENCE_CRITERIA.effect_prior
+    assert found.ladder[-1].nats > 2 * EVIDENCE_CRITERIA.least_gain
     width = next(c for c in found.candidates if c.effect == "dead_zone").parameters["dead_zone.half_width"]
     assert width.value == pytest.approx(0.2, abs=0.03)
 

@@ -194,13 +194,13 @@ def compare(
 def improves(evidence: Evidence, bar: Callable[[], float], criteria: EvidenceCriteria = EVIDENCE_CRITERIA) -> bool:
     """Whether the second model explains more than chance does, and a share that matters, beyond its error.
 
-    The gain is to be worth the prior of an effect, η G > κ of :mod:`ident.diagnosis.evidence.probability`, and to pass
-    the `bar` of :func:`ident.diagnosis.evidence.chance.bar`, asked for where nothing else decides. Where a
+    The gain is to be worth a parameter, and to pass the `bar` of :func:`ident.diagnosis.evidence.chance.bar`, asked for
+    where nothing else decides. Where a
     residual has few harmonics a random phase is often met by some candidate, and the bar comes near to all that can be
     gained: what gains half of that passes, too.
     """
     gain = min(evidence.gain, evidence.without)
-    if not matters(evidence, criteria) or criteria.learning_rate * gain <= criteria.effect_prior:
+    if not matters(evidence, criteria) or gain <= criteria.least_gain:
         return False
     return gain > criteria.reaches * evidence.most or gain > bar()
 

@@ -90,7 +90,7 @@ def probabilities(sets: SetGains, criteria: EvidenceCriteria = EVIDENCE_CRITERIA
 def structure_probabilities(
     gains: Sequence[float], parameters: Sequence[int], criteria: EvidenceCriteria = EVIDENCE_CRITERIA
 ) -> list[float]:
-    """The probabilities of models of a machine by their gains: a parameter is charged as an effect is, by κ."""
-    logs = criteria.learning_rate * np.array(gains) - criteria.effect_prior * np.array(parameters)
+    """The probabilities of models of a machine by their gains: a parameter is charged by the gain that is worth one."""
+    logs = criteria.learning_rate * (np.array(gains) - criteria.least_gain * np.array(parameters))
     weights = np.exp(logs - logs.max())
     return [float(weight) for weight in weights / weights.sum()]
