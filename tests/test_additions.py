@@ -98,19 +98,21 @@ LAGGING = replace(
 
 import altair as alt
 
-from ident.figures.drawing import Drawing, Options
+from ident.figures.drawing import Drawing, Option, Options
 from ident.figures.look import Look
 from ident.figures.render import Chart
 from ident.figures.study import Study
 
 
-def _drawn(study: Study, look: Look, _options: Options) -> Chart:
+def _drawn(study: Study, look: Look, options: Options) -> Chart:
     rows = [{"run": each.run.id, "error": each.error} for each in study.compared(study.matrix.runs).runs]
-    chart: Chart = alt.Chart(alt.InlineData(values=rows)).mark_bar().encode(x="run:N", y="error:Q")
+    x = alt.X("run:N", sort="y" if options.get("order") == "error" else None)
+    chart: Chart = alt.Chart(alt.InlineData(values=rows)).mark_bar().encode(x=x, y="error:Q")
     return chart.configure(**look.config())
 
 
-ERROR_BARS = Drawing("error-bars", "Errors", _drawn)
+_ORDER = Option("order", "Order", str | None, lambda _: (("", "as recorded"), ("error", "by error")))
+ERROR_BARS = Drawing("error-bars", "Errors", Study, _drawn, (_ORDER,))
 ''',
         "ident/figures/__init__.py", '    "evolution",', '    "error_bars",',
     ),
@@ -163,6 +165,7 @@ import numpy as np
 from fastapi.testclient import TestClient
 
 from app.main import create_app
+from app.pages.figure_forms import forms
 from app.settings import Settings as ServiceSettings
 from ident import Settings, figure, identify, read_matrix
 from ident.figures import render
@@ -196,7 +199,9 @@ print(json.dumps({
     "moved": float(np.std(plain.runs[0].measured - bypassed.runs[0].measured) / np.std(plain.runs[0].measured)),
     "same": all(np.array_equal(a.measured, b.measured) for a, b in zip(plain.runs, columns.runs)),
     "errors": {name: fit.error["fit"] for name, fit in fits.items()},
-    "figure": json.loads(render(figure(fits["plain"], "error-bars"), "json")),
+    "fields": {field.label: [said for _, said in field.choices]
+               for form in forms((), fits["plain"]) if form.name == "error-bars" for field in form.fields},
+    "figure": json.loads(render(figure(fits["plain"], "error-bars", order="error"), "json")),
     "parameters": [parameter.name for parameter in model.parameters],
     "scales": [scale.name for scale in model.scales],
     "models": client.get("/api/v1/models").json(),
@@ -247,8 +252,10 @@ def test_a_preset(found):
 
 
 def test_a_figure(found):
-    """It is drawn by its name, with a bar a run."""
+    """It is drawn by its name, with a bar a run, by its option; the page has a field for that."""
     assert found["figure"]["mark"]["type"] == "bar"
+    assert found["figure"]["encoding"]["x"]["sort"] == "y"
+    assert found["fields"] == {"Order": ["as recorded", "by error"]}
     (rows,) = found["figure"]["datasets"].values()
     assert len(rows) == 27
 

@@ -7,15 +7,14 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from app.cli.figure_files import write_figure
 from app.cli.given import read_fit
-from app.cli.output import STANDARD_OUTPUT, check_target, write_bytes, write_json
+from app.cli.output import STANDARD_OUTPUT, check_target, write_json
 from ident.errors import Unusable
 
 if TYPE_CHECKING:
     from ident.fit.result import FitResult
     from ident.matrix import Matrix
-
-FORMATS = ("svg", "png", "pdf", "json")
 
 
 def compare(
@@ -60,21 +59,18 @@ def compare(
 
 def draw(matrix: Matrix, fit: FitResult, out: Path, candidate: FitResult | None = None) -> None:
     """Write every figure in every format to the folder `out`; curves also as `candidate` predicts them."""
-    from ident.figures import figure, figures_of, render
+    from ident.figures import figures_of
     from ident.workflows import study
 
-    out.mkdir(parents=True, exist_ok=True)
     drawn, studied = [], study(matrix, fit)
     for name in figures_of(fit):
         options: dict[str, Any] = {"candidate": candidate} if name == "residual-curve" and candidate is not None else {}
         try:
-            chart = figure(name, studied, **options)
+            write_figure(studied, name, out, **options)
         except Unusable as error:
             if error.code != "unstable-model":
                 raise
             print(f"{name} cannot be drawn: {error.what}")
             continue
-        for format_ in FORMATS:
-            write_bytes(render(chart, format_), out / f"{name}.{format_}")
         drawn.append(name)
     print(f"wrote {', '.join(drawn)} to {out}")

@@ -6,7 +6,8 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from app.cli.output import STANDARD_OUTPUT, write_bytes, write_json
+from app.cli.figure_files import write_figures
+from app.cli.output import STANDARD_OUTPUT, write_json
 
 if TYPE_CHECKING:
     from ident.fit.result import FitResult
@@ -33,10 +34,6 @@ def compare_several(matrix: Matrix, fits: Sequence[FitResult], json: Path | None
     if json != STANDARD_OUTPUT:
         show(found.listings())
     if out is not None:
-        from ident.figures import MEDIA, look, render, side_by_side
+        from ident.figures.subjects import Compared
 
-        out.mkdir(parents=True, exist_ok=True)
-        chart = side_by_side(found, matrix.actuator, look("light"))
-        for kind in MEDIA:
-            write_bytes(render(chart, kind), out / f"{NAME}.{kind}")
-        print(f"wrote {NAME} to {out}")
+        write_figures(Compared(found, matrix.actuator), out)

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from app.cli.figure_files import FORMATS, write_figure
 from app.cli.given import read_fit
 from app.cli.output import write_bytes, write_json
 from app.cli.rig_option import RigFile, rig_in
@@ -16,7 +17,6 @@ if TYPE_CHECKING:
     from ident.hybrid.controller_design import ControllerDesign
     from ident.hybrid.target import Target
 
-FORMATS = ("svg", "png", "pdf", "json")
 FILES = ("controller.json", "controller.mat", "controller.h", *(f"closed-loop.{kind}" for kind in FORMATS))
 
 
@@ -66,8 +66,7 @@ def _target(path: Path) -> Target:
 
 
 def _write(made: ControllerDesign, out: Path, case: str) -> None:
-    from ident.figures import look, render
-    from ident.figures.closed_loop import closed_loop
+    from ident.figures.subjects import Designed
     from ident.hybrid.export import as_header, as_mat
 
     out.mkdir(parents=True, exist_ok=True)
@@ -75,6 +74,4 @@ def _write(made: ControllerDesign, out: Path, case: str) -> None:
     write_json(made.to_json(), out / FILES[0])
     write_bytes(as_mat(controller), out / FILES[1])
     write_bytes(as_header(controller).encode(), out / FILES[2])
-    chart = closed_loop(made, look("light"), f"case {case}")
-    for kind in FORMATS:
-        write_bytes(render(chart, kind), out / f"closed-loop.{kind}")
+    write_figure(Designed(made, case), "closed-loop", out)

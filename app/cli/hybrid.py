@@ -8,19 +8,14 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from app.cli.arguments import effect_values
+from app.cli.figure_files import write_figures
 from app.cli.given import read_fit
-from app.cli.output import STANDARD_OUTPUT, check_target, write_bytes, write_json
+from app.cli.output import STANDARD_OUTPUT, check_target, write_json
 from app.cli.progress import shown
 from app.cli.rig_option import RigFile, rig_in
 
 if TYPE_CHECKING:
-    from ident.figures import Chart
-    from ident.hybrid.case import Case
-    from ident.hybrid.followed import Followed
-    from ident.hybrid.rig import HybridResult
     from ident.hybrid.share_map import ShareMap
-
-FORMATS = ("svg", "png", "pdf", "json")
 
 
 def hybrid(
@@ -76,7 +71,9 @@ def hybrid(
     if json != STANDARD_OUTPUT:
         show((*main.listings(), *(worth.listings() if worth else ())))
     if out is not None:
-        draw(runs, found, worth, of, out)
+        from ident.figures.subjects import Simulated
+
+        write_figures(Simulated(runs, of, found, worth), out)
 
 
 def _map(asked: bool, acting: Any, *rest: Any) -> ShareMap | None:
@@ -91,24 +88,3 @@ def _map(asked: bool, acting: Any, *rest: Any) -> ShareMap | None:
         raise Unusable("bad-option", "a map needs a linear controller", "map", "leave --map out, or give another")
     fit, case, effects, report = rest
     return share_map(fit, case, acting, effects, report=report)
-
-
-def draw(runs: dict[str, HybridResult], found: ShareMap | None, worth: Followed | None, case: Case, out: Path) -> None:
-    """Write the figures in every format to the folder `out`."""
-    from ident.figures import look, render
-    from ident.figures.feedforward import feedforward_figure
-    from ident.figures.hybrid_response import hybrid_response
-    from ident.figures.hybrid_time import hybrid_time
-    from ident.figures.share_map import share_map_chart
-
-    out.mkdir(parents=True, exist_ok=True)
-    of = look("light")
-    charts: dict[str, Chart] = {"displacement": hybrid_time(runs, of), "response": hybrid_response(runs, of)}
-    if found is not None:
-        charts["map"] = share_map_chart(found, case, next(iter(runs)), of)
-    if worth is not None:
-        charts["feedforward"] = feedforward_figure(worth, of)
-    for name, chart in charts.items():
-        for format_ in FORMATS:
-            write_bytes(render(chart, format_), out / f"{name}.{format_}")
-    print(f"wrote {', '.join(charts)} to {out}")

@@ -7,15 +7,14 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from app.cli.figure_files import write_figure
 from app.cli.given import read_fit
-from app.cli.output import STANDARD_OUTPUT, check_target, write_bytes, write_json
+from app.cli.output import STANDARD_OUTPUT, check_target, write_json
 
 if TYPE_CHECKING:
     from ident.comparison.profile import Profile
     from ident.fit.result import FitResult
     from ident.matrix import Actuator
-
-FORMATS = ("svg", "png", "pdf", "json")
 
 
 def profile(
@@ -52,11 +51,8 @@ def profile(
 
 def draw(found: list[Profile], fit: FitResult, actuator: Actuator, out: Path) -> None:
     """Write a figure a parameter, in every format, to the folder `out`."""
-    from ident.figures import look, profile_likelihood, render
+    from ident.figures.subjects import Profiled
 
-    out.mkdir(parents=True, exist_ok=True)
     for one in found:
-        for format_ in FORMATS:
-            chart = profile_likelihood(one, actuator, fit, look("light"))
-            write_bytes(render(chart, format_), out / f"profile-{one.parameter.replace('/', '-')}.{format_}")
+        write_figure(Profiled(one, actuator, fit), "profile", out, f"profile-{one.parameter.replace('/', '-')}")
     print(f"wrote {', '.join(f'profile-{one.parameter}' for one in found)} to {out}")

@@ -3,18 +3,13 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import typer
 
+from app.cli.figure_files import write_figures
 from app.cli.fit_options import MatrixPath
-from app.cli.output import STANDARD_OUTPUT, check_target, write_bytes, write_json
-
-if TYPE_CHECKING:
-    from ident.hybrid.tracked_run import Track
-    from ident.matrix import Actuator
-
-FORMATS = ("svg", "png", "pdf", "json")
+from app.cli.output import STANDARD_OUTPUT, check_target, write_json
 
 
 def track(
@@ -47,22 +42,12 @@ def track(
     if json != STANDARD_OUTPUT:
         show(found.listings())
     if out is not None:
-        draw(found, read.actuator, out)
+        from ident.figures.subjects import Tracked
+
+        write_figures(Tracked(found, read.actuator), out)
 
 
 def _size(noise: str | None, unit: str) -> float | None:
     from ident.units.quantity import parameter_value
 
     return None if noise is None else parameter_value(noise, unit, "--noise")
-
-
-def draw(found: Track, actuator: Actuator, out: Path) -> None:
-    """Write the figure in every format to the folder `out`."""
-    from ident.figures import look, render
-    from ident.figures.tracking import tracking
-
-    out.mkdir(parents=True, exist_ok=True)
-    chart = tracking(found, actuator, look("light"))
-    for format_ in FORMATS:
-        write_bytes(render(chart, format_), out / f"tracking.{format_}")
-    print(f"wrote tracking to {out}")

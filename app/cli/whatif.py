@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from app.cli.arguments import in_si, number, split
-from app.cli.compare import FORMATS
+from app.cli.figure_files import write_figures
 from app.cli.given import read_fit
-from app.cli.output import STANDARD_OUTPUT, check_target, write_bytes, write_json
+from app.cli.output import STANDARD_OUTPUT, check_target, write_json
 from app.cli.progress import shown
 from app.cli.rig_option import RigFile, rig_in
 from ident.words.nearest import did_you_mean
@@ -20,7 +20,6 @@ if TYPE_CHECKING:
     from ident.fit.result import FitResult
     from ident.hybrid.changed_machine import Change
     from ident.hybrid.peak_problem import PeakTarget
-    from ident.hybrid.what_if import WhatIf
     from ident.run import Specimen
 
 _OF_SPECIMEN = {"mass": "mass", "stiffness": "stiffness", "damping": "damping"}
@@ -91,7 +90,7 @@ def whatif(
     if json != STANDARD_OUTPUT:
         show(found.listings())
     if out is not None:
-        draw(found, out)
+        write_figures(found, out)
 
 
 def _change(fit: FitResult, set_: list[str], fitted: list[str], specimen: str | None) -> Change:
@@ -155,19 +154,3 @@ def _range(text: str, option: str, form: str) -> tuple[float, float]:
     """`LO:HI` as numbers; one number is both."""
     lower, separator, upper = text.partition(":")
     return number(lower, option, form), number(upper if separator else lower, option, form)
-
-
-def draw(found: WhatIf, out: Path) -> None:
-    """Write the figures in every format to the folder `out`."""
-    from ident.figures import look, render
-    from ident.figures.root_locus import root_locus
-    from ident.figures.what_if_response import what_if_response
-
-    out.mkdir(parents=True, exist_ok=True)
-    charts = {"response": what_if_response(found, look("light"))}
-    if found.locus is not None:
-        charts["root-locus"] = root_locus(found, look("light"))
-    for name, chart in charts.items():
-        for format_ in FORMATS:
-            write_bytes(render(chart, format_), out / f"{name}.{format_}")
-    print(f"wrote {', '.join(charts)} to {out}")

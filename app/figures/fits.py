@@ -15,9 +15,9 @@ from app.lru import LRU
 from app.profiles import service as profiles
 from app.refits import lineage
 from ident.errors import Unusable
-from ident.figures import MEDIA, figure, ladder, look, profile_likelihood, render, side_by_side
-from ident.figures.ladder import Step
+from ident.figures import MEDIA, figure, render
 from ident.figures.selection import number
+from ident.figures.subjects import Compared, Ladder, Profiled, Step
 from ident.fit.result import FitResult
 from ident.presets import preset
 from ident.words.nearest import did_you_mean
@@ -37,32 +37,31 @@ def drawn(context: Context, fit_id: str, name: str, kind: str, options: dict[str
 
 
 def _drawn(context: Context, fit_id: str, name: str, kind: str, options: dict[str, Any]) -> bytes:
-    studied = study(context, fit_id)
-    fit, matrix = studied.fit, studied.matrix
     theme, share = options.pop("theme", "light"), number(options, "share") or 1.0
     live = bool(options.pop("live", ""))
     options.pop("share", None)
     if not 0.2 <= share <= 4:
         raise Unusable("out-of-range", f"share is {share:g}", "figure option share", "give 0.2 to 4")
+    subject = _subject(context, fit_id, name, options)
+    return render(figure(name, subject, theme, share, **options), kind, live=live)
+
+
+def _subject(context: Context, fit_id: str, name: str, options: dict[str, Any]) -> object:
+    """What a figure is of; the options that choose it are taken from the others."""
+    studied = study(context, fit_id)
+    fit, actuator = studied.fit, studied.matrix.actuator
     if name == "side-by-side":
-        wanted = options.get("other", [])
-        found = service.beside(context, fit_id, [wanted] if isinstance(wanted, str) else wanted)
-        return render(side_by_side(found, matrix.actuator, look(theme, share)), kind)
+        wanted = options.pop("other", [])
+        return Compared(service.beside(context, fit_id, [wanted] if isinstance(wanted, str) else wanted), actuator)
     if name == "profile":
-        known = profiles.found(context, fit_id, str(options.pop("parameter", "") or fit.searched[0]))
-        if options:
-            raise Unusable("unknown-option", f"no option {next(iter(options))!r}", "figure profile", "use parameter")
-        return render(profile_likelihood(known, matrix.actuator, fit, look(theme, share)), kind)
+        parameter = str(options.pop("parameter", "") or fit.searched[0])
+        return Profiled(profiles.found(context, fit_id, parameter), actuator, fit)
     if name == "ladder":
-        if options:
-            raise Unusable("unknown-option", f"no option {next(iter(options))!r}", "figure ladder", "use theme")
         steps = list(_steps(lineage.ladder(context, fit_id).rungs, fit.model))
-        return render(ladder(steps, fit.noise_floor.get("fit"), matrix.actuator, look(theme, share)), kind)
-    if options.get("candidate"):
-        options["candidate"] = _candidate(context, fit, str(options["candidate"]))
-    else:
-        options.pop("candidate", None)
-    return render(figure(name, studied, theme, share, **options), kind, live=live)
+        return Ladder(steps, fit.noise_floor.get("fit"), actuator)
+    if candidate := options.pop("candidate", None):
+        options["candidate"] = _candidate(context, fit, str(candidate))
+    return studied
 
 
 def _candidate(context: Context, fit: FitResult, wanted: str) -> FitResult:

@@ -11,6 +11,7 @@ from app.pages.job_view import JobPageView
 from ident.custom.definition import preset_with
 from ident.effects import CATALOGUE
 from ident.effects.effect import Effect
+from ident.figures import DRAWINGS, subjects
 from ident.fit.result import FitResult
 from ident.hybrid.acting import NAMED
 from ident.hybrid.followed import Followed
@@ -28,12 +29,7 @@ _NAMED = {
     "kalman": "delay compensation from live estimates (Kalman)",
     "feedforward": "feedforward from the inverse of the model",
 }
-_FIGURES = {
-    "displacement": "Displacements over time",
-    "response": "Reference to measured displacement",
-    "map": "Stability over the physical share",
-    "feedforward": "Effect of the feedforward",
-}
+_FIGURES = {drawing.name: drawing.title for drawing in DRAWINGS if drawing.of is subjects.Simulated}
 _COMPARED = {
     "tracking_rms": ("Tracking, RMS", "measured against numerical"),
     "tracking_peak": ("Tracking, peak", "measured against numerical"),

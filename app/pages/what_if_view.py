@@ -8,6 +8,7 @@ from urllib.parse import urlencode
 
 from app.fits.rows import ParameterRow, parameter_rows
 from app.fits.service import Stored
+from ident.figures import drawings
 from ident.fit.result import Estimate, FitResult
 from ident.hybrid.changed_machine import SIZES
 from ident.hybrid.oil_column import JointChange, PeakSearch
@@ -184,7 +185,6 @@ def what_if_found(fit: FitResult, found: WhatIf) -> WhatIfFound:
     """The answer in words and rows."""
     named = {row.name: row for row in parameter_rows(fit)}
     peak = found.peak
-    locus = (("root-locus", "Poles over the gain"),) if found.locus is not None else ()
     return WhatIfFound(
         facts=tuple(_facts(found)),
         parameters=tuple(_carried(found, named)),
@@ -195,7 +195,7 @@ def what_if_found(fit: FitResult, found: WhatIf) -> WhatIfFound:
         size="" if peak is None or peak.smallest is None else plain(peak.smallest.size, 3),
         starts="" if peak is None or peak.starts is None else str(peak.starts),
         after=tuple(map(_loop, found.with_peak)),
-        figures=(("response", "Response after the change"), *locus),
+        figures=tuple((one.name, one.title) for one in drawings(found).values()),
     )
 
 

@@ -13,7 +13,8 @@ from ident.diagnosis.recommended import next_command
 from ident.diagnosis.result import Diagnosis
 from ident.diagnosis.sentences import cannot_distinguish
 from ident.errors import Unusable
-from ident.figures import figure, ladder, look
+from ident.figures import figure
+from ident.figures.subjects import Ladder
 from ident.fit.result import FitResult
 from ident.matrix import Matrix
 from ident.residuals.survey import Survey, survey
@@ -149,7 +150,7 @@ def _missing(diagnosis: Diagnosis, matrix: Matrix) -> Iterator[Block]:
     if command := next_command(diagnosis):
         yield Text(command)
     if steps := ladder_steps(diagnosis):
-        chart = ladder(steps, diagnosis.noise_floor.get("fit"), matrix.actuator, look("light"))
+        chart = figure("ladder", Ladder(steps, diagnosis.noise_floor.get("fit"), matrix.actuator))
         yield Figure("ladder", chart, "The error with each effect added")
     header = ("Effect", "Probability", "Predicted error", "Estimation", "Held-out", "Validation", "Reason")
     yield Table(header, candidate_rows(diagnosis), (1, 2, 3, 4, 5))

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from ident.diagnosis.result import Diagnosis
-from ident.figures.ladder import Step
+from ident.figures.subjects import Step
 from ident.residuals.breakdown import Breakdown, Group
 from ident.residuals.budget import Budget
 from ident.residuals.curves import Curve

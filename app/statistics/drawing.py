@@ -5,8 +5,8 @@ from __future__ import annotations
 from app.context import Context
 from app.errors import Failure
 from app.statistics import service
-from ident.figures import MEDIA, look, render
-from ident.figures.control_chart import control_chart as drawn
+from ident.figures import MEDIA, figure, render
+from ident.figures.subjects import Charted
 from ident.statistics import control_chart as chart_of
 from ident.words.symbols import symbol
 
@@ -30,5 +30,5 @@ def control_chart(
     where = f"serial number {serial}" if serial is not None else f"batch {batch}" if batch else "every batch"
     limits = (found.limits.lower, found.limits.upper) if found.limits else (None, None)
     labels = [point.serial if serial is None else point.created_at[:10] for point in found.points]
-    figure = drawn(chart, symbol(parameter, ""), found.unit, where, labels, limits, look(*style))
-    return render(figure, kind), MEDIA[kind]
+    subject = Charted(chart, symbol(parameter, ""), found.unit, where, labels, limits)
+    return render(figure("control-chart", subject, *style), kind), MEDIA[kind]

@@ -1,4 +1,8 @@
-"""Results in, charts out: one figure a file, one definition for page, SVG, PNG and PDF."""
+"""Results in, charts out: one figure a file, one definition for page, SVG, PNG and PDF, one catalogue of all.
+
+A figure is a value of :class:`Drawing`: what it is of, such as a fit beside its data, and the options that it takes.
+Forms, commands, the service and the documentation read them from the catalogue.
+"""
 
 from __future__ import annotations
 
@@ -8,15 +12,12 @@ from typing import Any
 from ident.custom.definition import preset_with
 from ident.diagnosis.result import Diagnosis
 from ident.errors import Unusable
-from ident.figures.choose import KINDS, Option
 from ident.figures.drawing import Drawing
 from ident.figures.frame import unchecked
-from ident.figures.ladder import ladder
 from ident.figures.look import look
-from ident.figures.profile_likelihood import profile_likelihood
 from ident.figures.render import MEDIA, AltairChart, Chart, render, shown
-from ident.figures.side_by_side import side_by_side
 from ident.figures.study import Study
+from ident.figures.subjects import Ladder
 from ident.fit.result import FitResult
 from ident.matrix import Actuator
 from ident.presets import Preset
@@ -25,8 +26,8 @@ from ident.words.nearest import did_you_mean
 from ident.words.titles import title
 
 __all__ = [
-    "FIGURES", "MEDIA", "AltairChart", "Chart", "Study", "figure", "figures_for", "figures_of", "ladder", "look",
-    "of_diagnosis", "profile_likelihood", "render", "shown", "side_by_side",
+    "DRAWINGS", "FIGURES", "MEDIA", "AltairChart", "Chart", "Study", "drawings", "figure", "figures_for", "figures_of",
+    "look", "of_diagnosis", "render", "shown",
 ]  # fmt: skip
 
 _FILES = (
@@ -42,40 +43,54 @@ _FILES = (
     "frequency_characteristics",
     "speed_characteristic",
     "acceptance_sheet",
+    "profile_likelihood",
+    "side_by_side",
+    "ladder",
+    "closed_loop",
+    "hybrid_time",
+    "hybrid_response",
+    "share_map",
+    "feedforward",
+    "what_if_response",
+    "root_locus",
+    "tracking",
+    "control_chart",
 )
-"""Each with one figure, in the order of the tabs of a page."""
-_DRAWINGS: tuple[Drawing, ...] = tuple(getattr(import_module(f"ident.figures.{file}"), file.upper()) for file in _FILES)
-FIGURES = {drawing.name: drawing for drawing in _DRAWINGS}
+"""Each with one figure, those of a fit in the order of the tabs of a page."""
+DRAWINGS: tuple[Drawing[Any], ...] = tuple(
+    getattr(import_module(f"ident.figures.{file}"), file.upper()) for file in _FILES
+)
+FIGURES = {drawing.name: drawing for drawing in DRAWINGS if drawing.of is Study}
+"""Those of a fit beside its data."""
 
 
-def figure(name: str, study: Study, theme: str = "light", share: float = 1.0, **options: Any) -> Chart:
+def drawings(subject: object) -> dict[str, Drawing[Any]]:
+    """The figures that there are of a subject, by name."""
+    if isinstance(subject, Study):
+        return {name: FIGURES[name] for name in figures_of(subject.fit)}
+    of_its_kind = (drawing for drawing in DRAWINGS if drawing.of is type(subject))
+    return {drawing.name: drawing for drawing in of_its_kind if drawing.there(subject)}
+
+
+def figure(name: str, subject: object, theme: str = "light", share: float = 1.0, **options: Any) -> Chart:
     """The chart of that name, "light" or "dark", `share` as wide as usual; only what it shows is computed.
 
-    `study` is a fit beside its data, with what earlier figures of it have computed.
-
-    Options, all optional: bode takes run, kp, amplitude, specimen, use, low, high, axis, candidate; time takes run,
-    start, seconds, low, high; evolution takes x, y, generations; sensitivity takes run; residual-map takes what bode
-    takes but axis and candidate; residual-curve takes these, view, and candidate, the fit of another model drawn
-    dashed; speed-characteristic, of a bench, takes smoothing.
+    `subject` is what it is of: a :class:`Study`, a fit beside its data with what earlier figures of it have computed,
+    or another that a drawing of the catalogue is `of`. The options, all optional, are those of the drawing.
 
     Raises Unusable for an unknown name, theme or option.
     """
-    names = figures_of(study.fit)
-    if name not in names:
-        raise Unusable("unknown-figure", f"no figure {name!r}", "figure", did_you_mean(name, names))
-    known = FIGURES[name].options
-    for option in options:
-        if option not in known:
-            raise Unusable(
-                "unknown-option",
-                f"no option {option!r}",
-                f"figure {name}",
-                did_you_mean(option, (*known, "theme", "share")),
-            )
+    there = drawings(subject)
+    if name not in there:
+        raise Unusable("unknown-figure", f"no figure {name!r}", "figure", did_you_mean(name, there))
+    known = {option.name: option for option in there[name].options}
     for option, value in options.items():
-        of_kind(f"figure {name}", option, value, KINDS.get(option, Option))
+        if option not in known:
+            remedy = did_you_mean(option, (*known, "theme", "share"))
+            raise Unusable("unknown-option", f"no option {option!r}", f"figure {name}", remedy)
+        of_kind(f"figure {name}", option, value, known[option].takes)
     with unchecked():
-        return FIGURES[name].draw(study, look(theme, share), options)
+        return there[name].draw(subject, look(theme, share), options)
 
 
 def of_diagnosis(
@@ -89,7 +104,7 @@ def of_diagnosis(
         (title(rung.added or "") or found.model, rung.error.get("fit"), rung.error.get("verify"))
         for rung in found.ladder
     ]
-    return ladder(steps, found.noise_floor.get("fit"), actuator, look(theme, share))
+    return figure("ladder", Ladder(steps, found.noise_floor.get("fit"), actuator), theme, share)
 
 
 def figures_of(fit: FitResult) -> tuple[str, ...]:
@@ -101,4 +116,4 @@ def figures_of(fit: FitResult) -> tuple[str, ...]:
 
 def figures_for(model: Preset) -> tuple[str, ...]:
     """Names of the figures of a model: those that its preset names, else all of its kind."""
-    return model.display.figures or tuple(name for name, drawing in FIGURES.items() if drawing.of == model.kind)
+    return model.display.figures or tuple(name for name, drawing in FIGURES.items() if drawing.kind == model.kind)

@@ -118,4 +118,4 @@ def _drawn(study: Study, of: Look, _options: Options) -> Chart:
     return sheet_chart(matrix, bench, analysis, lines, of)
 
 
-ACCEPTANCE_SHEET = Drawing("acceptance-sheet", "Acceptance sheet", _drawn, of="bench")
+ACCEPTANCE_SHEET = Drawing("acceptance-sheet", "Acceptance sheet", Study, _drawn, kind="bench")

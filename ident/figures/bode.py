@@ -15,13 +15,14 @@ from ident.comparison.compare import RunComparison
 from ident.errors import Unusable
 from ident.figures import words
 from ident.figures.candidate import called, candidate_of
-from ident.figures.choose import RUNS, asked, by_gain, chosen, representative
+from ident.figures.choose import asked, by_gain, chosen, representative
 from ident.figures.drawing import Drawing, Options
 from ident.figures.frame import Filled, Frame, blank, frame
 from ident.figures.look import Look
+from ident.figures.options import AXIS, BAND, CANDIDATE, CONDITIONS, RUN, USE
 from ident.figures.render import Panel
 from ident.figures.responses import Responses
-from ident.figures.selection import BAND, HIGH, LOW, OPEN, Band, band_of, band_params, band_values, brush, zoomed
+from ident.figures.selection import HIGH, LOW, OPEN, Band, band_of, band_params, band_values, brush, zoomed
 from ident.figures.study import Study
 from ident.figures.thin import decade_ticks, fine_ticks
 from ident.fit.result import FitResult
@@ -258,4 +259,4 @@ def _drawn(study: Study, look: Look, options: Options) -> Filled:
     )  # fmt: skip
 
 
-BODE = Drawing("bode", "Bode plot", _drawn, (*RUNS, *BAND, "axis", "candidate"))
+BODE = Drawing("bode", "Bode plot", Study, _drawn, (RUN, USE, *CONDITIONS, *BAND, AXIS, CANDIDATE), share=0.79)

@@ -11,6 +11,7 @@ import numpy as np
 
 from ident.errors import Unusable
 from ident.figures import words
+from ident.figures.drawing import Several
 from ident.matrix import Matrix
 from ident.run import Run
 
@@ -45,13 +46,8 @@ class Wish:
         )
 
 
-Option = str | float | Sequence[str] | Sequence[float] | None
-KINDS: Mapping[str, Any] = {"candidate": Any, **dict.fromkeys(("view", "axis", "smoothing", "x", "y"), str | None)}
-"""What an option takes that takes something else than one value or several; `candidate` is judged where it is used."""
-
-
 def wish(
-    run: Option = None, kp: Option = None, amplitude: Option = None, specimen: Option = None, use: Option = None
+    run: Several = None, kp: Several = None, amplitude: Several = None, specimen: Several = None, use: Several = None
 ) -> Wish:
     """A Wish from what a request or a notebook gives: one value or several, numbers also as text."""
     return Wish(
@@ -63,13 +59,13 @@ def wish(
     )
 
 
-def _texts(option: Option) -> tuple[str, ...] | None:
+def _texts(option: Several) -> tuple[str, ...] | None:
     if option is None or option == "":
         return None
     return (str(option),) if isinstance(option, str | float | int) else tuple(map(str, option))
 
 
-def _numbers(name: str, option: Option) -> tuple[float, ...] | None:
+def _numbers(name: str, option: Several) -> tuple[float, ...] | None:
     texts = _texts(option)
     try:
         return None if texts is None else tuple(map(float, texts))

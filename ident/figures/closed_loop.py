@@ -9,9 +9,11 @@ import altair as alt
 import numpy as np
 from numpy.typing import NDArray
 
+from ident.figures.drawing import Drawing, Options
 from ident.figures.frame import unchecked
 from ident.figures.look import Look
 from ident.figures.render import Chart, Panel, Row, datasets
+from ident.figures.subjects import Designed
 from ident.figures.thin import significant
 from ident.hybrid.controller_design import ControllerDesign
 from ident.hybrid.robustness import SHOWN, frequencies
@@ -120,3 +122,10 @@ def _ends(made: ControllerDesign) -> list[float]:
     """The range of the magnitudes, at least a decibel to each side, and not below the paper's."""
     values = 20 * np.log10(np.abs(np.concatenate(list(_curves(made).values()))))
     return [float(max(_LIMITS[0], values.min() - 1.0)), float(max(1.0, values.max() + 1.0))]
+
+
+def _drawn(of: Designed, look: Look, _: Options) -> Chart:
+    return closed_loop(of.design, look, f"case {of.case}" if of.case else "")
+
+
+CLOSED_LOOP = Drawing("closed-loop", "Closed loop", Designed, _drawn)

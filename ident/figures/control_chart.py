@@ -8,8 +8,10 @@ from typing import Any
 import altair as alt
 
 from ident.figures import words
+from ident.figures.drawing import Drawing, Options
 from ident.figures.look import Look
 from ident.figures.render import Chart, Panel, datasets
+from ident.figures.subjects import Charted
 from ident.statistics import ControlChart
 
 Limits = tuple[float | None, float | None]
@@ -98,3 +100,10 @@ def _panel(name: str, title: str, sets: int, height: int, look: Look) -> Panel:
         width=look.across(_WIDTH), height=height,
     )  # fmt: skip
     return panel
+
+
+def _drawn(of: Charted, look: Look, _: Options) -> Chart:
+    return control_chart(of.chart, of.quantity, of.unit, of.where, of.labels, of.limits, look)
+
+
+CONTROL_CHART = Drawing("control-chart", "Control chart", Charted, _drawn)

@@ -12,8 +12,7 @@ import altair as alt
 from ident.custom.definition import preset_with
 from ident.errors import Unusable
 from ident.figures import words
-from ident.figures.choose import Option
-from ident.figures.drawing import Drawing, Options
+from ident.figures.drawing import Choices, Drawing, Offer, Option, Options, Several
 from ident.figures.look import Look
 from ident.figures.render import Chart, Panel, datasets
 from ident.figures.study import Study
@@ -32,7 +31,7 @@ def evolution(
     *,
     x: str | None = None,
     y: str | None = None,
-    generations: Option = None,
+    generations: Several = None,
 ) -> Chart:
     """Scatter of two searched parameters at chosen generations, and best and mean error (%) over generation.
 
@@ -84,7 +83,7 @@ def _pair(fit: FitResult, x: str | None, y: str | None) -> tuple[str, str] | Non
     return (first, second) if first and second else None
 
 
-def _pictured(fit: FitResult, wanted: Option) -> list[Generation]:
+def _pictured(fit: FitResult, wanted: Several) -> list[Generation]:
     """Generations by number; the defaults are cut to those that there are, and the last one is always among them."""
     last = fit.evolution[-1].index
     if wanted is None:
@@ -217,8 +216,17 @@ def _history(look: Look, wide: bool) -> Panel:
     return panel
 
 
+def _searched(of: Offer) -> Choices:
+    """The parameters of the search, where there are two to set against each other."""
+    return (("", "default"), *((name, name) for name in of.fit.searched)) if len(of.fit.searched) > 1 else ()
+
+
 def _drawn(study: Study, look: Look, options: Options) -> Chart:
     return evolution(study.matrix.actuator, study.fit, look, **options)
 
 
-EVOLUTION = Drawing("evolution", "Evolution", _drawn, ("x", "y", "generations"))
+EVOLUTION = Drawing(
+    "evolution", "Evolution", Study, _drawn,
+    (Option("x", "Across", str | None, _searched), Option("y", "Up", str | None, _searched), Option("generations")),
+    share=0.63,
+)  # fmt: skip

@@ -7,8 +7,10 @@ from typing import Any
 
 import altair as alt
 
+from ident.figures.drawing import Drawing, Options
 from ident.figures.look import Look
 from ident.figures.render import Chart, Panel
+from ident.figures.subjects import Simulated
 from ident.hybrid.followed import Followed, rounded
 
 REFERENCE, ALONE, BOTH, BAND = "reference", "feedback alone", "with feedforward", "band of 90 % of the draws"
@@ -74,3 +76,13 @@ def _colour(look: Look) -> alt.Color:
 
 def _rounded(row: Mapping[str, float], name: str) -> dict[str, Any]:
     return {**{key: float(f"{value:.5g}") for key, value in row.items()}, "n": name}
+
+
+def _drawn(of: Simulated, look: Look, _: Options) -> Chart:
+    assert of.feedforward is not None
+    return feedforward_figure(of.feedforward, look)
+
+
+FEEDFORWARD = Drawing(
+    "feedforward", "Effect of the feedforward", Simulated, _drawn, there=lambda of: of.feedforward is not None
+)

@@ -76,4 +76,4 @@ def _drawn(study: Study, look: Look, _options: Options) -> Chart:
     return frequency_characteristics(frequency_response(records), records, model, look, title)
 
 
-FREQUENCY_CHARACTERISTICS = Drawing("frequency-characteristics", "Frequency", _drawn, of="bench")
+FREQUENCY_CHARACTERISTICS = Drawing("frequency-characteristics", "Frequency", Study, _drawn, kind="bench")

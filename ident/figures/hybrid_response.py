@@ -9,10 +9,12 @@ import altair as alt
 import numpy as np
 import scipy  # signal, which takes most of a second to load, is loaded where it is first used
 
+from ident.figures.drawing import Drawing, Options
 from ident.figures.frame import unchecked
 from ident.figures.hybrid_time import legend_of, told
 from ident.figures.look import Look
 from ident.figures.render import Chart, Panel, Row, datasets
+from ident.figures.subjects import Simulated
 from ident.figures.thin import significant
 from ident.hybrid.rig import HybridResult
 
@@ -67,3 +69,10 @@ def _panel(part: str, said: str, colours: Any, look: Look) -> Panel:
         )
     )
     return panel
+
+
+def _drawn(of: Simulated, look: Look, _: Options) -> Chart:
+    return hybrid_response(of.runs, look)
+
+
+HYBRID_RESPONSE = Drawing("response", "Reference to measured displacement", Simulated, _drawn)

@@ -9,9 +9,11 @@ import altair as alt
 import numpy as np
 
 from ident.figures import words
+from ident.figures.drawing import Drawing, Options
 from ident.figures.frame import unchecked
 from ident.figures.look import Look
 from ident.figures.render import Chart, Panel, Row, datasets
+from ident.figures.subjects import Simulated
 from ident.figures.thin import Real, envelope, significant
 from ident.hybrid.rig import HybridResult
 
@@ -105,3 +107,10 @@ def _panel(table: str, colours: Any, dashes: Any, across: str, look: Look) -> Pa
         )
     )
     return panel
+
+
+def _drawn(of: Simulated, look: Look, _: Options) -> Chart:
+    return hybrid_time(of.runs, look)
+
+
+HYBRID_TIME = Drawing("displacement", "Displacements over time", Simulated, _drawn)

@@ -9,12 +9,11 @@ import altair as alt
 
 from ident.errors import Unusable
 from ident.figures import words
+from ident.figures.drawing import Drawing, Options
 from ident.figures.look import Look
 from ident.figures.render import Chart, datasets
+from ident.figures.subjects import Ladder, Step
 from ident.matrix import Actuator
-
-Step = tuple[str, float | None, float | None]
-"""Label, error on the runs to fit, error on the runs to verify."""
 
 
 def ladder(steps: Sequence[Step], floor: float | None, actuator: Actuator, look: Look) -> Chart:
@@ -54,3 +53,10 @@ def ladder(steps: Sequence[Step], floor: float | None, actuator: Actuator, look:
         *layers, width=460, height=max(80, 38 * len(steps)), title=title, datasets=datasets({"steps": rows})
     ).configure(**look.config())
     return chart
+
+
+def _drawn(of: Ladder, look: Look, _: Options) -> Chart:
+    return ladder(of.steps, of.floor, of.actuator, look)
+
+
+LADDER = Drawing("ladder", "Error with each effect added", Ladder, _drawn)

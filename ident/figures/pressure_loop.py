@@ -72,4 +72,4 @@ def _drawn(study: Study, look: Look, _options: Options) -> Chart:
     return pressure_loop(records, model, look, title)
 
 
-PRESSURE_LOOP = Drawing("pressure-loop", "Pressure loop", _drawn, of="bench")
+PRESSURE_LOOP = Drawing("pressure-loop", "Pressure loop", Study, _drawn, kind="bench")

@@ -6,8 +6,10 @@ import altair as alt
 
 from ident.comparison.profile import BOUND, Profile
 from ident.figures import words
+from ident.figures.drawing import Drawing, Options
 from ident.figures.look import Look
 from ident.figures.render import Chart, Panel, datasets
+from ident.figures.subjects import Profiled
 from ident.fit.result import FitResult
 from ident.matrix import Actuator
 
@@ -75,3 +77,10 @@ def _estimate(value: float, look: Look) -> Panel:
     rows = alt.InlineData(values=[{"v": value}])
     upright: Panel = alt.Chart(rows).mark_rule(color=look.ink).encode(x=alt.X("v:Q"))
     return upright
+
+
+def _drawn(of: Profiled, look: Look, _: Options) -> Chart:
+    return profile_likelihood(of.profile, of.actuator, of.fit, look)
+
+
+PROFILE_LIKELIHOOD = Drawing("profile", "Profile likelihood", Profiled, _drawn)

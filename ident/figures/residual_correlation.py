@@ -9,8 +9,9 @@ import altair as alt
 from ident.comparison.compare import RunComparison
 from ident.figures import words
 from ident.figures.choose import one
-from ident.figures.drawing import Drawing, Options
+from ident.figures.drawing import Drawing, Option, Options
 from ident.figures.look import Look
+from ident.figures.options import RUN
 from ident.figures.render import Chart, Panel, datasets
 from ident.figures.selection import number
 from ident.figures.study import Study
@@ -86,4 +87,4 @@ def _draw(study: Study, look: Look, options: Options) -> Chart:
     )
 
 
-RESIDUAL_CORRELATION = Drawing("residual-correlation", "Residual correlation", _draw, ("run", "lags"))
+RESIDUAL_CORRELATION = Drawing("residual-correlation", "Residual correlation", Study, _draw, (RUN, Option("lags")))

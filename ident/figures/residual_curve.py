@@ -16,8 +16,9 @@ from ident.figures.choose import RUNS, asked, chosen
 from ident.figures.drawing import Drawing, Options
 from ident.figures.frame import Filled, Frame, blank, frame
 from ident.figures.look import Look
+from ident.figures.options import BAND, CANDIDATE, MANY, VIEW
 from ident.figures.render import Panel
-from ident.figures.selection import BAND, band_of
+from ident.figures.selection import band_of
 from ident.figures.study import Study
 from ident.figures.thin import significant
 from ident.fit.result import FitResult
@@ -194,4 +195,6 @@ def _drawn(study: Study, look: Look, options: Options) -> Filled:
     )  # fmt: skip
 
 
-RESIDUAL_CURVE = Drawing("residual-curve", "Missing characteristic", _drawn, (*RUNS, *BAND, "view", "candidate"))
+RESIDUAL_CURVE = Drawing(
+    "residual-curve", "Missing characteristic", Study, _drawn, (VIEW, *MANY, *BAND, CANDIDATE), share=0.63
+)

@@ -11,11 +11,12 @@ import altair as alt
 from ident.comparison.compare import Comparison
 from ident.errors import Unusable
 from ident.figures import words
-from ident.figures.choose import CONDITIONS, RUNS, asked, chosen
+from ident.figures.choose import CONDITIONS, asked, chosen
 from ident.figures.drawing import Drawing, Options
 from ident.figures.look import Look
+from ident.figures.options import BAND, MANY
 from ident.figures.render import Chart, Panel, datasets
-from ident.figures.selection import BAND, HIGH, LOW, OPEN, RUN, Band, band_of, band_params, brush
+from ident.figures.selection import HIGH, LOW, OPEN, RUN, Band, band_of, band_params, brush
 from ident.figures.study import Study
 from ident.figures.thin import decade_ticks
 from ident.fit.result import FitResult
@@ -180,4 +181,4 @@ def _drawn(study: Study, look: Look, options: Options) -> Chart:
     return residual_map(study.compared(shown), study.matrix.actuator, study.fit, look, run=run, band=band_of(options))
 
 
-RESIDUAL_MAP = Drawing("residual-map", "By run and frequency", _drawn, (*RUNS, *BAND))
+RESIDUAL_MAP = Drawing("residual-map", "By run and frequency", Study, _drawn, (*MANY, *BAND), share=0.66)

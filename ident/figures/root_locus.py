@@ -7,6 +7,7 @@ from typing import Any
 import altair as alt
 
 from ident.errors import Unusable
+from ident.figures.drawing import Drawing, Options
 from ident.figures.look import Look
 from ident.figures.render import Chart
 from ident.hybrid.what_if import WhatIf
@@ -56,3 +57,10 @@ def _ends(rows: list[dict[str, Any]], gain: float, shape: str, look: Look) -> An
         .mark_point(shape=shape, size=80, color=look.ink, filled=False)
         .encode(x="x:Q", y="y:Q")
     )
+
+
+def _drawn(of: WhatIf, look: Look, _: Options) -> Chart:
+    return root_locus(of, look)
+
+
+ROOT_LOCUS = Drawing("root-locus", "Poles over the gain", WhatIf, _drawn, there=lambda of: of.locus is not None)

@@ -11,8 +11,6 @@ import altair as alt
 from ident.errors import Unusable
 
 LOW, HIGH, RUN, BRUSH = "low", "high", "run", "brush"
-BAND = (LOW, HIGH)
-"""The options of a figure that shows a band."""
 _WIDEST = 6.0  # a narrow band is drawn within at least this ratio of frequencies
 
 

@@ -19,6 +19,7 @@ from ident.figures.choose import one
 from ident.figures.drawing import Drawing, Options
 from ident.figures.frame import Filled, Frame, blank, frame
 from ident.figures.look import Look
+from ident.figures.options import RUN
 from ident.figures.render import Panel
 from ident.figures.study import Study
 from ident.figures.thin import decade_ticks, excited_band, significant
@@ -198,4 +199,4 @@ def _drawn(study: Study, look: Look, options: Options) -> Filled:
     return sensitivity(run, study.matrix.actuator, study.fit, look)
 
 
-SENSITIVITY = Drawing("sensitivity", "Sensitivity", _drawn, ("run",))
+SENSITIVITY = Drawing("sensitivity", "Sensitivity", Study, _drawn, (RUN,), share=0.62)

@@ -5,9 +5,11 @@ from __future__ import annotations
 import altair as alt
 import numpy as np
 
+from ident.figures.drawing import Drawing, Options
 from ident.figures.frame import unchecked
 from ident.figures.look import Look
 from ident.figures.render import Chart, Row, datasets
+from ident.figures.subjects import Simulated
 from ident.hybrid.case import Case
 from ident.hybrid.share_map import ShareMap
 
@@ -40,3 +42,13 @@ def _rows(found: ShareMap) -> list[Row]:
             shown = float(f"{100 * max(score, _LEAST):.4g}") if ok and np.isfinite(score) else None
             rows.append({"m": round(100 * float(m), 2), "k": round(100 * float(k), 2), "s": shown, "ok": ok})
     return rows
+
+
+def _drawn(of: Simulated, look: Look, _: Options) -> Chart:
+    assert of.share_map is not None
+    return share_map_chart(of.share_map, of.case, of.controller, look)
+
+
+SHARE_MAP = Drawing(
+    "map", "Stability over the physical share", Simulated, _drawn, there=lambda of: of.share_map is not None
+)

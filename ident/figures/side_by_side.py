@@ -8,8 +8,10 @@ import altair as alt
 
 from ident.comparison.side_by_side import SideBySide
 from ident.figures import words
+from ident.figures.drawing import Drawing, Options
 from ident.figures.look import Look
 from ident.figures.render import Chart, datasets
+from ident.figures.subjects import Compared
 from ident.matrix import Actuator
 from ident.words.uses import DATA
 
@@ -54,3 +56,10 @@ def _headline(of: SideBySide, actuator: Actuator) -> str:
     """The actuators that the fits are of, and what is drawn."""
     what = f"{len(of.columns)} fits, run by run"
     return f"{' and '.join(of.serials)} · {what}" if of.serials else words.headline(actuator, what)
+
+
+def _drawn(of: Compared, look: Look, _: Options) -> Chart:
+    return side_by_side(of.fits, of.actuator, look)
+
+
+SIDE_BY_SIDE = Drawing("side-by-side", "Several fits", Compared, _drawn)

@@ -10,10 +10,11 @@ import numpy as np
 
 from ident.bench.model import Model
 from ident.bench.records import Record
+from ident.bench.smoothing import METHODS
 from ident.bench.speed import Level, curve, levels
 from ident.figures import words
 from ident.figures.bench import model_and_records
-from ident.figures.drawing import Drawing, Options
+from ident.figures.drawing import Choices, Drawing, Offer, Option, Options
 from ident.figures.look import Look
 from ident.figures.render import Chart, Panel
 from ident.figures.study import Study
@@ -82,10 +83,22 @@ def _row(current: float, speed: float, name: str, run: str, order: int) -> dict[
     }
 
 
+def _smoothings(_: Offer) -> Choices:
+    first, *others = METHODS
+    return (("", first), *((name, name) for name in others))
+
+
 def _drawn(study: Study, look: Look, options: Options) -> Chart:
     model, records = model_and_records(study, "speed characteristic", "speed-continuous", "speed-levels")
     title = words.headline(study.matrix.actuator, "speed characteristic, measured and model")
     return speed_characteristic(records, levels(model, records), model, look, options.get("smoothing") or "iir", title)
 
 
-SPEED_CHARACTERISTIC = Drawing("speed-characteristic", "Speed", _drawn, ("smoothing",), of="bench")
+SPEED_CHARACTERISTIC = Drawing(
+    "speed-characteristic",
+    "Speed",
+    Study,
+    _drawn,
+    (Option("smoothing", "Smoothing", str | None, _smoothings),),
+    kind="bench",
+)

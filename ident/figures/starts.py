@@ -75,4 +75,4 @@ def _draw(study: Study, look: Look, _: Options) -> Chart:
     return starts(study.matrix.actuator, study.fit, look)
 
 
-STARTS = Drawing("starts", "Starts", _draw)
+STARTS = Drawing("starts", "Starts", Study, _draw)

@@ -13,11 +13,12 @@ from ident.comparison.compare import RunComparison
 from ident.errors import Unusable
 from ident.figures import words
 from ident.figures.choose import one
-from ident.figures.drawing import Drawing, Options
+from ident.figures.drawing import Drawing, Option, Options
 from ident.figures.frame import Filled, Frame, blank, frame
 from ident.figures.look import Look
+from ident.figures.options import BAND, RUN
 from ident.figures.render import Panel
-from ident.figures.selection import BAND, OPEN, Band, band_of, number
+from ident.figures.selection import OPEN, Band, band_of, number
 from ident.figures.study import Study
 from ident.figures.thin import Real, envelope, significant
 from ident.fit.reduction import within
@@ -169,4 +170,11 @@ def _drawn(study: Study, look: Look, options: Options) -> Filled:
     return time(shown, study.matrix.actuator, study.fit, look, start=start, seconds=seconds, band=band_of(options))
 
 
-TIME = Drawing("time", "Time record", _drawn, ("run", *BAND, "start", "seconds"))
+TIME = Drawing(
+    "time",
+    "Time record",
+    Study,
+    _drawn,
+    (RUN, *BAND, Option("start", "Start (s)"), Option("seconds", "Length (s)")),
+    share=0.69,
+)

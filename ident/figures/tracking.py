@@ -8,8 +8,10 @@ import altair as alt
 import numpy as np
 
 from ident.figures import words
+from ident.figures.drawing import Drawing, Options
 from ident.figures.look import Look
 from ident.figures.render import Chart, Panel, datasets
+from ident.figures.subjects import Tracked
 from ident.figures.thin import Real, significant
 from ident.hybrid.tracked_run import Track
 from ident.matrix import Actuator
@@ -88,3 +90,10 @@ def _panel(table: str, title: str, clock: str | None, ends: tuple[float, float],
     line = base.mark_line(strokeWidth=1.5, color=look.series[place], clip=True).encode(x=x, y=y, tooltip=tips)
     panel: Panel = alt.layer(band, line).properties(width=look.across(720), height=190)
     return panel
+
+
+def _drawn(of: Tracked, look: Look, _: Options) -> Chart:
+    return tracking(of.track, of.actuator, look)
+
+
+TRACKING = Drawing("tracking", "Tracking", Tracked, _drawn)

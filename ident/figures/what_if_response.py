@@ -6,6 +6,7 @@ from typing import Any
 
 import altair as alt
 
+from ident.figures.drawing import Drawing, Options
 from ident.figures.look import Look
 from ident.figures.render import Chart, Panel
 from ident.hybrid.what_if import HIGHEST, Response, WhatIf
@@ -84,3 +85,10 @@ def _ground(result: WhatIf, look: Look) -> list[Any]:
     target = result.peak.target
     ends = [{"f": target.frequency - target.tolerance, "e": target.frequency + target.tolerance}]
     return [alt.Chart(alt.InlineData(values=ends)).mark_rect(color=look.faint, opacity=0.15).encode(x="f:Q", x2="e:Q")]
+
+
+def _drawn(of: WhatIf, look: Look, _: Options) -> Chart:
+    return what_if_response(of, look)
+
+
+WHAT_IF_RESPONSE = Drawing("response", "Response after the change", WhatIf, _drawn)

@@ -16,7 +16,7 @@ from ident.workflows import figure, identify, study
 from tests.bench.sets import as_matrix
 from tests.reference import kononykhin_reference as reference
 
-OF_BENCH = tuple(name for name, drawing in FIGURES.items() if drawing.of == "bench")
+OF_BENCH = tuple(name for name, drawing in FIGURES.items() if drawing.kind == "bench")
 
 
 @pytest.fixture(scope="module")

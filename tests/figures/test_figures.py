@@ -17,7 +17,7 @@ from ident.fit.result import Starts
 from ident.workflows import study
 from tests.figures.conftest import make_comparison
 
-OF_CHAINS = tuple(name for name, drawing in FIGURES.items() if drawing.of == "chain")
+OF_CHAINS = tuple(name for name, drawing in FIGURES.items() if drawing.kind == "chain")
 DRAWN: dict[tuple[object, ...], bytes] = {}
 
 

@@ -11,7 +11,8 @@ from app.report import paper
 from app.report.blocks import Facts, Figure, Heading, Report, Table, Tables, Text
 from app.report.content import content
 from ident.diagnosis.result import Diagnosis
-from ident.figures import ladder, look
+from ident.figures import look
+from ident.figures.ladder import ladder
 from ident.matrix import Actuator
 from tests.app.report.test_report import DIAGNOSIS
 from tests.residuals.conftest import compared

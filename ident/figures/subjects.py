@@ -1,0 +1,90 @@
+"""What figures are of, where that is more than one result."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+from ident.comparison.profile import Profile
+from ident.comparison.side_by_side import SideBySide
+from ident.fit.result import FitResult
+from ident.hybrid.case import Case
+from ident.hybrid.controller_design import ControllerDesign
+from ident.hybrid.followed import Followed
+from ident.hybrid.rig import HybridResult
+from ident.hybrid.share_map import ShareMap
+from ident.hybrid.tracked_run import Track
+from ident.matrix import Actuator
+from ident.statistics import ControlChart
+
+Step = tuple[str, float | None, float | None]
+"""Label, error on the runs to fit, error on the runs to verify."""
+
+
+@dataclass(frozen=True)
+class Ladder:
+    """The steps of adding effects, and the noise floor below them."""
+
+    steps: Sequence[Step]
+    floor: float | None
+    actuator: Actuator
+
+
+@dataclass(frozen=True)
+class Profiled:
+    """The profile likelihood of a parameter of a fit."""
+
+    profile: Profile
+    actuator: Actuator
+    fit: FitResult
+
+
+@dataclass(frozen=True)
+class Compared:
+    """Several fits, and the actuator whose runs they are of."""
+
+    fits: SideBySide
+    actuator: Actuator
+
+
+@dataclass(frozen=True)
+class Designed:
+    """A controller, and the name of the case that it was designed for."""
+
+    design: ControllerDesign
+    case: str = ""
+
+
+@dataclass(frozen=True)
+class Simulated:
+    """Hybrid simulations of a case by what controlled them, the first the one that was asked for; what else was."""
+
+    runs: Mapping[str, HybridResult]
+    case: Case
+    share_map: ShareMap | None = None
+    feedforward: Followed | None = None
+
+    @property
+    def controller(self) -> str:
+        """Of the simulation that was asked for."""
+        return next(iter(self.runs))
+
+
+@dataclass(frozen=True)
+class Tracked:
+    """A run that was followed, of this actuator."""
+
+    track: Track
+    actuator: Actuator
+
+
+@dataclass(frozen=True)
+class Charted:
+    """Values of a quantity in the order of production, a label each, and the limits of the product."""
+
+    chart: ControlChart
+    quantity: str
+    unit: str
+    where: str
+    labels: Sequence[str]
+    limits: tuple[float | None, float | None]
