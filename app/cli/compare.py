@@ -62,6 +62,7 @@ def draw(matrix: Matrix, fit: FitResult, out: Path, candidate: FitResult | None 
     from ident.figures import figures_of
     from ident.workflows import study
 
+    out.mkdir(parents=True, exist_ok=True)
     drawn, studied = [], study(matrix, fit)
     for name in figures_of(fit):
         options: dict[str, Any] = {"candidate": candidate} if name == "residual-curve" and candidate is not None else {}
