@@ -26,6 +26,7 @@ UNITS = ("--time", ":s", "--channel", "command=:mm", "--channel", "displacement=
 SERVICE = ("--server", "http://misspelt")
 
 MISSPELT: dict[tuple[str, str], list[tuple[tuple[str, ...], str]]] = {
+    ("effects", "--signals"): [(("--signals", "qian2041"), "qian2014")],
     ("simulate", "--preset"): [(("OUT", "--preset", "qian2041"), "qian2014")],
     ("simulate", "--effect"): [
         (("OUT", "--effect", "deadzone"), "dead_zone"),
