@@ -1,7 +1,7 @@
 """A change and its line in the audit are one transaction: neither is there without the other, also after a kill.
 
-The first transaction that a changing request commits carries the line. Those that are `APART` from the change, the
-claim of an Idempotency-Key and its answer, do not.
+The first transaction that a changing request commits carries the line. Those that are apart from the change, the claim
+of an Idempotency-Key and its answer (:data:`app.database.APART`), do not.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from starlette.types import Scope
 from app.access import repository
 from app.access.roles import declared
 from app.access.who import Who
-from app.database import APART, on_commit
+from app.database import on_commit
 from app.request_id import request_id
 
 
@@ -70,7 +70,7 @@ def carry(makers: sessionmaker[Session]) -> None:
 
 def _add(session: Session) -> None:
     change = _current.get()
-    if change is not None and change.waits and APART.keys().isdisjoint(session.info):
+    if change is not None and change.waits and "apart" not in session.info:
         change.note(session)
         session.info["noted"] = change
 
