@@ -226,8 +226,9 @@ def _force_scale(of: Description) -> str:
         return ""
     if of["load"] == "none":
         return "A*Ka*U"
-    # In open loop the largest force that drives it: what holds more stands still.
-    return "abs(Kt)*M" if not of.hydraulic and not of.closed else "(c0 + m0*W)*W*L"
+    if of.hydraulic:
+        return "(c0 + m0*W)*W*L"
+    return "Kt*Kp*U" if of.closed else "abs(Kt)*M"  # what drives it: what holds more stands still
 
 
 def _share_force(of: Description) -> tuple[str, ...]:

@@ -54,5 +54,5 @@ class SearchPlan:
     def _sizes(self, model: Model) -> dict[str, str]:
         """Of drive signal, its zones, force and time, in the words of a scale: see :func:`scale_of`."""
         drive = self.drive_scale or "Kp*L"
-        widest = "0.9*M" if OPENED_BY_COMMAND in model.chain.stages else f"0.5*{drive}"
+        widest = "0.9*M" if OPENED_BY_COMMAND in model.chain.stages else f"1.2*{drive}"
         return {"D": drive, "Z": widest, "F": self.force_scale, "T": _TIME}

@@ -10,10 +10,11 @@ import pytest
 from ident.chain.chain import Chain
 from ident.chain.conditions import conditions
 from ident.comparison.compare import modelled
+from ident.effects import CATALOGUE
 from ident.errors import Unusable
 from ident.fit.settings import Settings
 from ident.parameter import Parameter
-from ident.presets import PRESETS, Preset
+from ident.presets import PRESETS, Preset, preset
 from ident.presets.search_plan import SearchPlan
 from ident.stages import (
     COMPRESSIBLE,
@@ -130,3 +131,23 @@ def test_a_search_can_follow_its_order(name):
         assert scale.equation.names & own <= placed
         placed.add(scale.name)
     assert placed == {parameter.in_equations for parameter in PRESETS[name].parameters}
+
+
+LOOP = "machine:controller=p,load=mass_spring_damper,sensor=displacement"
+
+
+@pytest.mark.parametrize("model", ["drive", "motor", LOOP, "machine:load=mass_spring_damper,sensor=velocity"])
+def test_dry_friction_is_measured_by_what_drives_a_machine(model):
+    """By the fitted damping it could never take the place of that: its bound fell with it."""
+    friction = next(effect for effect in CATALOGUE if effect.name == "coulomb_friction")
+    scales = preset(model).with_effects((friction,)).scales
+    (scale,) = (scale for scale in scales if scale.name == "coulomb_friction__force")
+    assert not scale.equation.names & {"c0", "m0"}
+    assert scale.equation.names & {"M", "U"}
+
+
+def test_a_play_in_a_loop_may_be_wider_than_the_drive_signals_deviation():
+    """A sine of that deviation still comes through, at its peaks."""
+    play = next(effect for effect in CATALOGUE if effect.name == "backlash")
+    (scale,) = (s for s in preset(LOOP).with_effects((play,)).scales if s.name == "backlash__half_width")
+    assert 1.0 < scale.upper * float(scale.equation.value({"Kp": 2.0, "U": 1.0})) / 2.0 < np.sqrt(2)
