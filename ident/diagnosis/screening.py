@@ -90,12 +90,28 @@ def gain_by_chance(models: CandidateModels, base: FittedModel, names: Sequence[s
     """
     given = _Sensitivities.of(models, base)
     found = each(lambda group: _response_of_each(given, base, group), models.groups(base.effects, names))
-    runs = given.sensitivities.fitness.runs
-    columns = [given.sensitivities.columns[run.id].Z for run in runs]
-    residuals, free = [Z[-1] for Z in columns], [Z[:-1].T for Z in columns]
-    candidates = [np.column_stack([part[run.id] for part in found]) for run in runs]
+    runs, p = given.sensitivities.fitness.runs, len(base.point)
+    of_runs = [
+        _without_first_state(
+            given.sensitivities.columns[run.id].Z, np.column_stack([part[run.id] for part in found]), p
+        )
+        for run in runs
+    ]
+    residuals, free, candidates = zip(*of_runs, strict=True)
     bands = models.compared_records(CRITERIA.screening.samples).bands
     return bar(residuals, free, candidates, common_disturbance([Residuals(tuple(residuals), bands)]))
+
+
+def _without_first_state(Z: Array, responses: Array, p: int) -> tuple[Array, Array, Array]:
+    """Residual (n,), sensitivities (n, p+1) and responses (n, k) of a run, less what its own first state explains.
+
+    Z = [J, N, 1, r] holds the p sensitivities J, and N to the first state, of which a run that begins at rest has none.
+    """
+    kept = np.column_stack([Z[-1], Z[:p].T, Z[-2], responses])
+    if len(Z) > p + 2:
+        first_state, _ = np.linalg.qr(Z[p:-2].T)
+        kept = kept - first_state @ (first_state.T @ kept)
+    return kept[:, 0], kept[:, 1 : p + 2], kept[:, p + 2 :]
 
 
 def _response_of_each(given: _Sensitivities, base: FittedModel, names: Sequence[str]) -> dict[str, Array]:

@@ -9,9 +9,11 @@ import numpy as np
 import pytest
 
 from ident.diagnosis.candidate import Candidate, in_rank_order, indistinguishable_group
-from ident.diagnosis.evidence.comparison import Residuals
+from ident.diagnosis.evidence.chance import bar
+from ident.diagnosis.evidence.comparison import Residuals, common_disturbance
 from ident.diagnosis.evidence.energy_bands import EnergyBands, Record
 from ident.diagnosis.ranking import _finalists, rank_each
+from ident.diagnosis.screening import _without_first_state
 
 MODELS: Any = SimpleNamespace(simplicity=lambda name: (1, name))
 RUNS, N, NOISE = 6, 400, 0.01
@@ -117,3 +119,19 @@ def test_what_leaves_as_much_as_the_last_finalist_is_one_in_a_small_matrix(quick
     assert len(_finalists(models, base, trials, finalists_at_least=5)) == refitted
     nothing_more: Any = SimpleNamespace(trial_error=lambda _base: 0.404, is_quick=lambda _base: quick)
     assert len(_finalists(nothing_more, base, trials, finalists_at_least=5)) == 5
+
+
+def test_a_gain_by_chance_is_known_where_one_run_begins_in_motion_and_another_at_rest():
+    """The first states of the one are its own: the bar of both together was none."""
+    rng = np.random.default_rng(3)
+    at_rest, moving = rng.standard_normal((4, 64)), rng.standard_normal((6, 64))
+    responses = rng.standard_normal((2, 64, 3))
+    parts = [_without_first_state(Z, of, 2) for Z, of in zip((at_rest, moving), responses, strict=True)]
+    assert np.array_equal(parts[0][0], at_rest[-1])
+    assert np.array_equal(parts[0][1], at_rest[:3].T)
+    assert np.array_equal(parts[0][2], responses[0])
+    for part in parts[1]:
+        assert moving[2:4] @ part == pytest.approx(0.0, abs=1e-9)
+    residuals, free, candidates = zip(*parts, strict=True)
+    bands = EnergyBands((Record(1.0, "a"), Record(1.0, "b")), (64, 64))
+    assert bar(residuals, free, candidates, common_disturbance([Residuals(residuals, bands)])) > 0
