@@ -60,7 +60,7 @@ def proposed(stored: Stored, run: RunView | None) -> Iterator[ProposedCard]:
             equations=tuple(Markup(mathml(line, curves(one.effect))) for line in one.effect["equation"]),
             strength=UNDETERMINED if one.std_error is None else plus_minus(one.strength, one.std_error, one.unit),
             determined=one.std_error is not None and determined(one.strength, one.std_error),
-            against=one.contradicted.sentence("it") if one.contradicted else "",
+            against=str(one.contradicted.message("it")) if one.contradicted else "",
             error={use: one.error_of(use) for use in ("held_out", "fit", "verify")},
             evidence=f"{plain(one.nats, 3)} nats, threshold {plain(one.bar, 3)}",
             alike=one.alike,

@@ -144,7 +144,7 @@ def _missing(diagnosis: Diagnosis, matrix: Matrix) -> Iterator[Block]:
     if verdict.unexplained:
         yield Text("No effect in the library brings the error near the noise floor.")
     for group in verdict.indistinguishable:
-        yield Text(f"These data {cannot_distinguish(group, verdict.effects)}.")
+        yield Text(cannot_distinguish(group, verdict.effects))
     for suspect in verdict.suspects:
         yield Text(f"Label looks wrong: {run_name(suspect.run)}: {suspect.what}")
     if command := next_command(diagnosis):

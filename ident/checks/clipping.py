@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from ident.beginning import ROUNDING
 from ident.checks.finding import Finding
 from ident.run import Run, Samples
-from ident.words.run_name import run_name
+from ident.words.message import message
 
 PLATEAU = 4  # equal samples; three may be chance in a record of few bits
 PLATEAUS = 3  # peaks that end at the very same value
@@ -36,11 +36,10 @@ def clipping(run: Run) -> Iterator[Finding]:
             count = peaks_at_the_top(flipped) if run.kind == "blwn" else plateaus_at_the_top(flipped)
             level = float(signal.max() if side == "highest" else signal.min())
             if count and not (name == "command" and _full_scale(level, run.units.get(name))):
-                text = (
-                    f"{name} of {run_name(run.id)} seems clipped: {count} peaks end at its {side} value {level:.4g} "
-                    f"{run.units.get(name, '')}; look at the range of the sensor or amplifier and repeat the run"
-                )
-                yield Finding(run.id, "doubt", "clipping", text)
+                key = "check.clipped_high" if side == "highest" else "check.clipped_low"
+                unit = run.units.get(name, "")
+                text = message(key, channel=name, run=run.id, count=count, level=level, unit=unit)
+                yield Finding(run.id, "doubt", "clipping", str(text))
 
 
 def _full_scale(level: float, unit: str | None) -> bool:

@@ -8,7 +8,7 @@ import numpy as np
 
 from ident.checks.finding import Finding
 from ident.run import Run
-from ident.words.run_name import run_name
+from ident.words.message import message
 
 EXACT = 1e-6
 """Of the output's deviation, what no gain and no offset of the command explains: any recorder's noise is larger."""
@@ -22,8 +22,4 @@ def copied(run: Run) -> Iterator[Finding]:
     residual = x - u * (float(u @ x) / float(u @ u))
     if not x.any() or float(np.std(residual)) > EXACT * float(np.std(x)):
         return
-    text = (
-        f"{run.output} of {run_name(run.id)} is a copy of its command, without delay, dynamics or noise, which no "
-        "sensor gives; check that its column is that of the sensor"
-    )
-    yield Finding(run.id, "doubt", "copied", text)
+    yield Finding(run.id, "doubt", "copied", str(message("check.copied", channel=run.output, run=run.id)))

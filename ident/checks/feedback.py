@@ -14,8 +14,7 @@ from numpy.typing import NDArray
 
 from ident.checks.finding import Finding
 from ident.run import Run, Samples
-from ident.words.percent import percent
-from ident.words.run_name import run_name
+from ident.words.message import message
 
 OWN, OTHER = 40, 12  # lags of the command's past, and of the output's beside as many more of the command's
 LONGEST = 8192  # samples that are looked at, from the middle of the record
@@ -33,12 +32,8 @@ def feedback(run: Run) -> Iterator[Finding]:
     """A doubt where the command is a controller's output."""
     found = shares(run) if run.closed_loop is None else None
     if found and _fed_back(*found):
-        text = (
-            f"the command of {run_name(run.id)} depends on the measured output, so a controller made it: the output "
-            f"predicts {percent(max(found))} of the innovations of the command. Use the reference of the controller as "
-            "the command and state controller or gain, or set closed_loop: false if there is no feedback"
-        )
-        yield Finding(run.id, "doubt", "closed-loop", text)
+        text = message("check.closed_loop", run=run.id, share=max(found))
+        yield Finding(run.id, "doubt", "closed-loop", str(text))
 
 
 def closed_loop(run: Run) -> bool:

@@ -8,7 +8,7 @@ import numpy as np
 
 from ident.checks.finding import Finding
 from ident.run import Run, Samples
-from ident.words.run_name import run_name
+from ident.words.message import message
 
 SECONDS = 0.05  # longer than any rest of a rounded signal in a band of tens of Hz
 SAMPLES = 32
@@ -31,12 +31,11 @@ def flat(run: Run) -> Iterator[Finding]:
             continue
         if name == run.output and starts_again_from_rest(run.channels[name], end):
             continue
-        text = (
-            f"{name} of {run_name(run.id)} is flat from sample {first} to {end - 1} "
-            f"({(end - first) / run.sample_rate:.3g} {run.time_unit}) while {other} moves; "
-            "look for a stuck sensor or a filled gap and cut it out with rows"
-        )
-        yield Finding(run.id, "doubt", "flat", text)
+        text = message(
+            "check.flat", channel=name, run=run.id, first=first, last=end - 1,
+            duration=(end - first) / run.sample_rate, unit=run.time_unit, other=other,
+        )  # fmt: skip
+        yield Finding(run.id, "doubt", "flat", str(text))
 
 
 def starts_again_from_rest(signal: Samples, end: int) -> bool:

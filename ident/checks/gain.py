@@ -10,7 +10,7 @@ import numpy as np
 from ident.checks.finding import Finding
 from ident.checks.response import RELATED, Response, response
 from ident.run import Run
-from ident.words.run_name import run_name
+from ident.words.message import message
 
 BAND = (0.0, 0.1)  # of the command's power
 TURNED = 120.0  # degrees; the loop lags by less than 90 there
@@ -33,38 +33,31 @@ def gain(run: Run, measured: Response | None) -> Iterator[Finding]:
     value = complex(measured.uy[lowest].sum() / measured.uu[lowest].sum())
     turn = degrees(abs(np.angle(value)))
     if turn > TURNED:
-        text = (
-            f"displacement of {run_name(run.id)} moves against the command ({turn:.0f} degrees at {where(measured)}); "
-            "set invert: true on the channel whose sign is wrong"
-        )
-        yield Finding(run.id, "doubt", "sign", text)
+        text = message("check.sign", run=run.id, turn=turn, **_where(measured))
+        yield Finding(run.id, "doubt", "sign", str(text))
     if not SMALL < abs(value) < LARGE:
-        text = (
-            f"displacement of {run_name(run.id)} is {abs(value):.3g} times the command at {where(measured)}"
-            f"{guess(abs(value))}; correct the unit or scale of the channel"
-        )
-        yield Finding(run.id, "doubt", "unit", text)
+        values = {"run": run.id, "ratio": abs(value), **_where(measured)}
+        factor = guess(abs(value))
+        like = {} if factor is None else {"factor": factor, "unit": FACTORS[factor]}
+        text = message("check.unit_like", **values, **like) if like else message("check.unit", **values)
+        yield Finding(run.id, "doubt", "unit", str(text))
 
 
 def unrelated(run: Run, coherence: float) -> Finding:
     """The finding for two channels that have nothing to do with each other."""
-    text = (
-        f"displacement of {run_name(run.id)} hardly follows the command (coherence {coherence:.2f} where it is "
-        "excited); check that both columns are the right ones and of this run"
-    )
-    return Finding(run.id, "doubt", "unrelated", text)
+    return Finding(run.id, "doubt", "unrelated", str(message("check.unrelated", run=run.id, coherence=coherence)))
 
 
-def where(measured: Response) -> str:
-    """The band that was looked at, in words."""
-    return f"{measured.below(BAND[0]):.2g}-{measured.below(BAND[1]):.2g} Hz"
+def _where(measured: Response) -> dict[str, float]:
+    """The band that was looked at, Hz."""
+    return {"low": measured.below(BAND[0]), "high": measured.below(BAND[1])}
 
 
-def guess(ratio: float) -> str:
-    """The wrong unit that makes such a ratio, in words; nothing where none does."""
+def guess(ratio: float) -> float | None:
+    """The factor of the wrong unit that makes such a ratio; None where none does."""
     size = ratio / USUAL if ratio > 1 else USUAL / ratio
     factor = min(FACTORS, key=lambda each: abs(log(size / each)))
-    return f", near {factor:g}, as if {FACTORS[factor]}" if abs(log(size / factor)) < log(NEAR) else ""
+    return factor if abs(log(size / factor)) < log(NEAR) else None
 
 
 def force_sign(run: Run) -> Iterator[Finding]:
@@ -81,8 +74,5 @@ def force_sign(run: Run) -> Iterator[Finding]:
     agreement = float(np.real(np.sum((needed.conj() * measured.uy)[used])))
     power = float(np.sum((np.abs(needed) ** 2 * measured.uu)[used]))
     if agreement < -0.3 * power:
-        text = (
-            f"force of {run_name(run.id)} is {agreement / power:.2g} times what its specimen needs: the sign is wrong; "
-            "set invert: true on force, which is positive on the specimen along +x"
-        )
-        yield Finding(run.id, "doubt", "force-sign", text)
+        text = message("check.force_sign", run=run.id, ratio=agreement / power)
+        yield Finding(run.id, "doubt", "force-sign", str(text))

@@ -7,8 +7,7 @@ from collections.abc import Iterator
 from ident.checks.finding import Finding
 from ident.checks.response import rests
 from ident.run import Run
-from ident.words.percent import percent
-from ident.words.run_name import run_name
+from ident.words.message import message, said
 
 SMALL = 0.05  # of the displacement's standard deviation; as large as the error that a good model leaves
 LARGE = 1.0
@@ -24,14 +23,7 @@ def offset(run: Run) -> Iterator[Finding]:
     share = abs(difference) / float(run.measured.std())
     if share <= SMALL:
         return
-    side = "above" if difference > 0 else "below"
-    remedy = (
-        "Zero the sensor, or state the offset"
-        if share > LARGE
-        else "Possible causes: null bias, static load, sensor zero"
-    )
-    text = (
-        f"the mean displacement of {run_name(run.id)} is {1e3 * abs(difference):.3g} mm {side} the command "
-        f"({percent(share)} of its standard deviation). The error of eq. (17) ignores constant offsets. {remedy}"
-    )
-    yield Finding(run.id, "doubt" if share > LARGE else "note", "offset", text)
+    values = {"run": run.id, "millimetres": 1e3 * abs(difference), "share": share}
+    found = message("check.offset_above" if difference > 0 else "check.offset_below", **values)
+    remedy = message("check.offset_large" if share > LARGE else "check.offset_small")
+    yield Finding(run.id, "doubt" if share > LARGE else "note", "offset", said([found, remedy]))

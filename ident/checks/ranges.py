@@ -9,7 +9,7 @@ import numpy as np
 from ident.checks.finding import Finding
 from ident.matrix import Actuator
 from ident.run import Run
-from ident.words.run_name import run_name
+from ident.words.message import message
 
 PRESSURES = ("load_pressure", "pressure_a", "pressure_b")
 MARGIN = 1.1  # pressure peaks above the supply; a stroke is printed with its cushions
@@ -21,19 +21,14 @@ def ranges(run: Run, actuator: Actuator) -> Iterator[Finding]:
     if actuator.stroke is not None and travel is not None and run.units.get("displacement") == "m":
         extent = float(np.ptp(travel))
         if extent > MARGIN * actuator.stroke:
-            text = (
-                f"displacement of {run_name(run.id)} travels {extent:.3g} m where the stroke is {actuator.stroke:.3g} "
-                "m; correct the unit of the channel or the stroke"
-            )
-            yield Finding(run.id, "fault", "beyond-stroke", text)
+            text = message("check.beyond_stroke", run=run.id, extent=extent, stroke=actuator.stroke)
+            yield Finding(run.id, "fault", "beyond-stroke", str(text))
     for name in PRESSURES:
         pressure = run.channels.get(name)
         if actuator.supply_pressure is None or pressure is None or run.units.get(name) != "Pa":
             continue
         highest = float(np.abs(pressure).max())
         if highest > MARGIN * actuator.supply_pressure:
-            text = (
-                f"{name} of {run_name(run.id)} reaches {highest:.3g} Pa where the supply is "
-                f"{actuator.supply_pressure:.3g} Pa; correct the unit of the channel or supply_pressure"
-            )
-            yield Finding(run.id, "doubt", "beyond-supply", text)
+            supply = actuator.supply_pressure
+            text = message("check.beyond_supply", channel=name, run=run.id, highest=highest, supply=supply)
+            yield Finding(run.id, "doubt", "beyond-supply", str(text))

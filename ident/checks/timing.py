@@ -10,7 +10,7 @@ from ident.checks.finding import Finding
 from ident.checks.response import Response
 from ident.readers.clock import STRAY
 from ident.run import Run
-from ident.words.run_name import run_name
+from ident.words.message import message
 
 JITTER = 0.5  # samples; a time printed with too few digits stays below, a real clock that errs more does not
 SAMPLES_A_CYCLE = 10.0  # of the highest excited frequency; below, the command between samples decides the fit
@@ -23,25 +23,15 @@ STEPS = 3  # at least, to tell it by
 def timing(run: Run, response: Response | None) -> Iterator[Finding]:
     """Gaps and jitter of a time column; samples a cycle."""
     if run.gaps:
-        what = "they were interpolated" if run.evened else "the phase after a gap is shifted"
-        text = (
-            f"the time of {run_name(run.id)} has gaps: {run.gaps} samples are missing, and {what}. "
-            "Use the longest part without a gap (rows), or repeat the run"
-        )
-        yield Finding(run.id, "doubt", "gaps", text)
+        key = "check.gaps_filled" if run.evened else "check.gaps"
+        yield Finding(run.id, "doubt", "gaps", str(message(key, run=run.id, missing=run.gaps)))
     if run.evened and run.clock_jitter > STRAY:
-        command = "with the steps of the held command at their time" if run.hold == "zoh" else "by interpolation"
-        text = (
-            f"the clock of {run_name(run.id)} has a jitter of up to {run.clock_jitter:.2g} samples. The record was "
-            f"resampled to {run.sample_rate:.6g} Hz by its time column, {command}"
-        )
-        yield Finding(run.id, "note", "clock-jitter", text)
+        key = "check.jitter_held" if run.hold == "zoh" else "check.jitter_interpolated"
+        text = message(key, run=run.id, jitter=run.clock_jitter, rate=run.sample_rate)
+        yield Finding(run.id, "note", "clock-jitter", str(text))
     elif run.clock_jitter > STRAY:
-        text = (
-            f"the clock of {run_name(run.id)} has a jitter of up to {run.clock_jitter:.2g} samples, and a constant "
-            "sample rate is assumed. Record with a hardware clock, or print the time with more digits"
-        )
-        yield Finding(run.id, "doubt" if run.clock_jitter > JITTER else "note", "clock-jitter", text)
+        text = message("check.jitter", run=run.id, jitter=run.clock_jitter)
+        yield Finding(run.id, "doubt" if run.clock_jitter > JITTER else "note", "clock-jitter", str(text))
     if response is None or run.time_unit != "s":
         return
     if run.hold == "zoh":  # between the samples it is known
@@ -49,11 +39,11 @@ def timing(run: Run, response: Response | None) -> Iterator[Finding]:
         return
     highest = response.below(POWER)
     if run.hold != "band-limited" and run.sample_rate < SAMPLES_A_CYCLE * highest:
-        text = (
-            f"{run_name(run.id)} has {run.sample_rate / highest:.2g} samples per cycle at {highest:.3g} Hz, and "
-            f"{POWER:.0%} of the power of the command is below that. Use at least {SAMPLES_A_CYCLE * highest:.3g} Hz"
-        )
-        yield Finding(run.id, "doubt", "sample-rate", text)
+        text = message(
+            "check.few_samples", run=run.id, samples=run.sample_rate / highest, highest=highest, share=POWER,
+            least=SAMPLES_A_CYCLE * highest,
+        )  # fmt: skip
+        yield Finding(run.id, "doubt", "sample-rate", str(text))
 
 
 def _too_quick(run: Run) -> Iterator[Finding]:
@@ -74,8 +64,5 @@ def _too_quick(run: Run) -> Iterator[Finding]:
     away = np.abs(later[told] / whole[told][:, None] - 1.0).max(axis=1)  # from where it ends up, at most
     share = 1.0 - float(np.median(away))
     if share > MOST:
-        text = (
-            f"the sample rate of {run_name(run.id)} is too low: {share:.0%} of the step response happens within "
-            f"{QUICK} samples. Use at least {4 * run.sample_rate:.3g} Hz"
-        )
-        yield Finding(run.id, "doubt", "sample-rate", text)
+        text = message("check.too_quick", run=run.id, share=share, samples=QUICK, least=4 * run.sample_rate)
+        yield Finding(run.id, "doubt", "sample-rate", str(text))

@@ -1,4 +1,4 @@
-"""What a diagnosis says, in sentences."""
+"""What a diagnosis says: messages, whose text is in :mod:`ident.words.messages`, and the same as sentences."""
 
 from __future__ import annotations
 
@@ -16,31 +16,14 @@ from ident.diagnosis.verification import Contradiction
 from ident.effects.effect import Effect
 from ident.fit.result import Combination
 from ident.presets.record_units import SAMPLE
-from ident.words.error import error_said, unstable_on
-from ident.words.listed import all_of
-from ident.words.percent import percent
-from ident.words.probability import probability_said
-from ident.words.run_name import run_name
+from ident.words.message import Message, message, said
 from ident.words.titles import title
-
-_BOUNDED = (
-    "The strength of {} ended at the bound of its search: it may be larger, or stand for something else. Bounds of "
-    "your own let it go farther."
-)
-
-_LOSES = "but it rises on {}: what only a part of the data asks for is not added."
-_TOO_LITTLE = (
-    "it explains {:.2g} ± {:.2g} % of what is above the noise, and that counts from {:.2g} % on, beyond the error. It "
-    "would show as: {}."
-)
-_CHANCE = "no more than the best of all effects takes by chance. It would show as: {}."
 
 
 def why(candidate: Candidate, effect: Effect, before: float, floor: float | None, best: bool) -> str:
     """Why the data speak for or against an effect; `before` is the held-out error without it."""
     if candidate.refit is None or candidate.evidence is None:
-        share = 100 * candidate.prediction.reduction
-        return f"Predicted to take {share:.2g} % off the error, less than others; it was not refitted."
+        return str(message("why.predicted", share=100 * candidate.prediction.reduction))
     errors = before, candidate.refit.held_out.error
     return why_of_evidence(candidate.evidence, effect, errors, candidate.improves, floor, best)
 
@@ -49,22 +32,35 @@ def why_of_evidence(
     found: Evidence, effect: Effect, errors: tuple[float, float], improves: bool, floor: float | None, best: bool
 ) -> str:  # fmt: skip
     """The same of an effect that was refitted; `errors` are those on held-out data without it and with it."""
-    change = "On data held out from the fit the error goes from {} to {}".format(*map(error_said, errors))
+    return said(list(_reasons(found, effect, errors, improves, floor, best)))
+
+
+def _reasons(
+    found: Evidence, effect: Effect, errors: tuple[float, float], improves: bool, floor: float | None, best: bool
+) -> Iterator[Message]:  # fmt: skip
+    before, after = errors
+    if matters(found) and generalises(found) and improves and floor is not None:
+        yield message("why.change_floor", before=before, after=after, floor=floor)
+    else:
+        yield message("why.change", before=before, after=after)
     if not matters(found):
         share, error = 100 * found.share.mean, 100 * found.share.bound(EVIDENCE_CRITERIA)
-        return f"{change}: {_TOO_LITTLE.format(share, error, 100 * EVIDENCE_CRITERIA.share, effect.looks)}"
-    if not generalises(found):
-        return f"{change}, {_LOSES.format(_part_said(losing_part(found)))}"
-    if not improves:
-        return f"{change}: {_CHANCE.format(effect.looks)}"
-    near = f", with the noise floor at {percent(floor)}" if floor is not None else ""
-    first = "No other effect does better. " if best else ""
-    return f"{change}{near}. {first}It shows as: {effect.looks}."
+        yield message("why.little", share=share, error=error, least=100 * EVIDENCE_CRITERIA.share)
+        yield message("why.would_show", looks=effect.looks)
+    elif not generalises(found):
+        yield _loses(losing_part(found))
+    elif not improves:
+        yield message("why.chance")
+        yield message("why.would_show", looks=effect.looks)
+    else:
+        if best:
+            yield message("why.best")
+        yield message("why.shows", looks=effect.looks)
 
 
-def _part_said(part: Hashable) -> str:
-    """A part of the data in words: a half of the records, or one condition of the test."""
-    return f"the {part} of the records" if part in HALVES else "one condition of the tests"
+def _loses(part: Hashable) -> Message:
+    """Where the error rises: on a half of the records, or on one condition of the test."""
+    return message("why.half", part=part) if part in HALVES else message("why.condition")
 
 
 def evidence_figures(found: Evidence | None, effect: Effect, improves: bool) -> dict[str, Any]:
@@ -95,139 +91,159 @@ def verdict_text(
     of effects, of "nothing" and of something "unlisted".
     """
     named = _described_once(described)
-    parts = [one.sentence(named(one.effect)) for one in against]
+    found = [one.message(named(one.effect)) for one in against]
     if not complete:
-        parts.append("The search was not over: what else is missing, and what could stand in the place of what was "
-                     "found, was not looked at.")  # fmt: skip
+        found.append(message("verdict.stopped"))
     if added:
-        said = [_probable(named(name), name, probabilities) for name in added]
-        parts.append(_improves(said, bool(against) or unexplained, before, errors, fewer, unstable))
+        effects = [_probable("effect", name, probabilities, names=[named(name)]) for name in added]
+        key = "verdict.partly" if against or unexplained else "verdict.lacks"
+        found.append(message(key, effects=effects, change=_change(before, errors, fewer, unstable)))
     elif not complete:
-        parts.append(f"No effect was confirmed that lowers the error of {error_said(before)}.")
-    elif not unexplained and floor is None:
-        parts.append(f"Nothing is seen to be missing: the residual, {error_said(before)}, has no memory from sample to "
-                     "sample. How much of it is noise is not known.")  # fmt: skip
-    elif not unexplained:
-        parts.append(
-            _probable("Nothing is missing", "nothing", probabilities)
-            + f": the error of {error_said(before)} is the noise's."
-        )
+        found.append(message("verdict.unconfirmed", before=before))
+    elif unexplained:
+        found.append(message("verdict.none", before=before))
+    elif floor is None:
+        found.append(message("verdict.white", before=before))
     else:
-        parts.append(f"No effect of the catalogue lowers the error of {error_said(before)} beyond chance.")
-    parts += [_BOUNDED.format(named(name)) for name in bounded]
-    chance = "chance, or than what is left could have made" if unexplained else "chance"
-    parts += [
-        f"This matrix {cannot_distinguish(group, added, named)}; their refits differ by less than {chance}."
-        for group in groups
-    ]
-    for suspect in suspects:
-        parts.append(f"{run_name(suspect.run, begins=True)} is doubted ({suspect.what}): {suspect.evidence}.")
+        found.append(_probable("verdict.nothing", "nothing", probabilities, before=before))
+    found += [message("verdict.bounded", effect=named(name)) for name in bounded]
+    found += [_group(group, added, named, unexplained) for group in groups]
+    found += [message("verdict.label", run=one.run, what=one.what, evidence=one.evidence) for one in suspects]
     if unexplained:
-        left = "Something is left that none of the listed effects explains" if complete else "Something is left"
-        parts.append(_probable(left, "unlisted", probabilities) + ".")
+        found.append(_probable("verdict.unlisted" if complete else "verdict.remains", "unlisted", probabilities))
         if not repeats:
-            parts.append("No command was measured twice: part of it may be noise in the command's band, "
-                         "which a repeated run would tell.")  # fmt: skip
-    return " ".join(parts)
+            found.append(message("verdict.not_repeated"))
+    return said(found)
 
 
-def _probable(said: str, name: str, probabilities: Mapping[str, float]) -> str:
+_PROBABLE: Mapping[str, str] = {
+    "effect": "effect.probable", "verdict.nothing": "verdict.nothing_probable",
+    "verdict.unlisted": "verdict.unlisted_probable", "verdict.remains": "verdict.remains_probable",
+}  # fmt: skip
+"""The message that says the same with its probability."""
+
+
+def _probable(key: str, name: str, probabilities: Mapping[str, float], **values: object) -> Message:
     """What is said, and how probable it is where that is known."""
-    return f"{said} (probability {probability_said(probabilities[name])})" if name in probabilities else said
+    if name not in probabilities:
+        return message(key, **values)
+    return message(_PROBABLE[key], probability=probabilities[name], **values)
 
 
-def cannot_distinguish(group: Sequence[str], added: Sequence[str], described: Callable[[str], str] = title) -> str:
+def _group(group: Sequence[str], added: Sequence[str], named: Callable[[str], str], unexplained: bool) -> Message:
+    """That a group cannot be seen apart, and by how much its refits differ."""
+    if _has_two(group, added):
+        key = "verdict.two_unexplained" if unexplained else "verdict.two"
+    else:
+        key = "verdict.group_unexplained" if unexplained else "verdict.group"
+    return message(key, group=list(map(named, group)))
+
+
+def _has_two(group: Sequence[str], added: Sequence[str]) -> bool:
+    """Whether two of a group were added, which stand for two others as well."""
+    return len({*group} & {*added}) == 2
+
+
+def cannot_distinguish(group: Sequence[str], added: Sequence[str]) -> str:
     """What data cannot do of a group of effects of which one was added, or two that stand for two others as well."""
-    what = "which two these are of" if len({*group} & {*added}) == 2 else "apart"
-    return f"cannot tell {what}: {', '.join(map(described, group))}"
+    return str(message("group.two" if _has_two(group, added) else "group", group=list(map(title, group))))
 
 
-def _improves(
-    named: Sequence[str], in_doubt: bool, before: float, errors: Mapping[str, float | None],
-    fewer: tuple[float, Sequence[str]] | None, unstable: Sequence[str],
-) -> str:  # fmt: skip
-    names = all_of(named)
-    them = "it" if len(named) == 1 else "them"
-    lacks = "What helps on the fitted runs is" if in_doubt else "The model lacks"
-    verify = errors.get("verify")
-    said = "" if verify is None else f" ({error_said(verify)} on verify runs{_with_fewer(fewer)})"
-    said = f" ({unstable_on(unstable)})" if unstable else said
-    fell = f"from {error_said(before)} to {error_said(errors['fit'])}"
-    return f"{lacks} {names}: with {them} the error falls {fell}{said}."
-
-
-def _with_fewer(of: tuple[float, Sequence[str]] | None) -> str:
-    return "" if of is None else f", {error_said(of[0])} without {', '.join(map(title, of[1]))}"
+def _change(
+    before: float, errors: Mapping[str, float | None], fewer: tuple[float, Sequence[str]] | None,
+    unstable: Sequence[str],
+) -> Message:  # fmt: skip
+    """How the error falls on estimation data, and what it is on validation data."""
+    after, verify = errors["fit"], errors.get("verify")
+    if unstable:
+        return message("change.unstable", before=before, after=after, runs=unstable)
+    if verify is None:
+        return message("change", before=before, after=after)
+    if fewer is None:
+        return message("change.verify", before=before, after=after, verify=verify)
+    return message("change.fewer", before=before, after=after, verify=verify, fewer=fewer[0], without=fewer[1])
 
 
 def alternative_sentences(elsewhere: Sequence[Explanation]) -> Iterator[str]:
     """What other models explain better, or as well, in a sentence each; nothing where there is none."""
-    said = {better: [_alternative(one) for one in elsewhere if one.better is better] for better in (True, False)}
-    if said[True]:
-        yield f"Another model explains more: {', '.join(said[True])} (--model)."
-    if said[False]:
-        yield f"These data cannot tell it from other models: {', '.join(said[False])}."
+    for better, key in ((True, "alternative.better"), (False, "alternative.equal")):
+        if models := [_alternative(one) for one in elsewhere if one.better is better]:
+            yield str(message(key, models=models))
 
 
 def dispensable_sentence(names: Sequence[str]) -> Iterator[str]:
     """Which effects only stood for what a search proposes, in a sentence."""
     if names:
-        needed = "are not needed: they stood" if len(names) > 1 else "is not needed: it stood"
-        listed = all_of([*map(title, names)])
-        yield f"Beside what a search proposes beyond the catalogue {listed} {needed} for that."
+        yield str(message("dispensable.several" if len(names) > 1 else "dispensable.one", effects=names))
 
 
 def horizon_sentence(fitted: float | None, horizon: float | None) -> Iterator[str]:
     """Over what errors are those of the diagnosis, where these are not the windows of the fit."""
-    over = "whole runs" if horizon is None else f"windows of {horizon:.3g} s"
-    yield (
-        f"These are errors over {over}, where the fit was made over windows of {fitted or 0.0:.3g} s: chosen without "
-        "what was found, those forgave what it adds up to."
-    )
+    if horizon is None:
+        yield str(message("horizon.runs", fitted=fitted or 0.0))
+    else:
+        yield str(message("horizon.windows", horizon=horizon, fitted=fitted or 0.0))
 
 
 def delay_sentence(late: TotalDelay, described: Callable[[str], str] = title, without: Sequence[str] = ()) -> str:
     """How late the machine answers `without` some effects, and what the data cannot tell it from, in a sentence."""
-    names = ", ".join((f"{late.parameter.name} ({late.parameter.meaning})", *map(described, late.in_place)))
-    before = f", {_seconds(late.before)} by the fitted model" if late.before else ""
-    begin = f"Without {', '.join(map(title, without))} a slow" if without else "A slow"
-    return (
-        f"{begin} command is answered {_seconds(late.fitted)} late{before}; "
-        f"by which lag or delay these data cannot tell: {names}."
-    )
+    constant = message("parameter", name=late.parameter.name, meaning=late.parameter.meaning)
+    values = {"time": _seconds(late.fitted), "names": [constant, *map(described, late.in_place)]}
+    if late.before and without:
+        return str(message("delay.without_before", before=_seconds(late.before), without=without, **values))
+    if late.before:
+        return str(message("delay.before", before=_seconds(late.before), **values))
+    return str(message("delay.without", without=without, **values) if without else message("delay", **values))
 
 
-def _seconds(of: Combination) -> str:
-    return f"{of.value:.3g} ± {of.std_error:.2g} {'samples' if of.unit == SAMPLE else 's'}"
+def _seconds(of: Combination) -> Message:
+    return message("late.samples" if of.unit == SAMPLE else "late.seconds", value=of.value, error=of.std_error)
 
 
-def _alternative(one: Explanation) -> str:
-    name = f"{one.machine} with {title(one.effects[-1])}" if one.effects else one.machine
-    return f"{name}, {error_said(one.error['fit'])}" if one.better else name
+def _alternative(one: Explanation) -> Message:
+    if one.better and one.effects:
+        return message("machine.effect_error", machine=one.machine, effect=one.effects[-1], error=one.error["fit"])
+    if one.better:
+        return message("machine.error", machine=one.machine, error=one.error["fit"])
+    if one.effects:
+        return message("machine.effect", machine=one.machine, effect=one.effects[-1])
+    return message("machine", machine=one.machine)
 
 
 def proposed_text(terms: Sequence[Proposal]) -> str:
-    """What a search beyond the catalogue proposes, in a sentence: no part of the verdict."""
-    said = "; ".join(one.equation + (f" ({one.meaning})" if one.meaning else "") for one in terms)
-    last = terms[-1]
-    on_verify = last.error_of("verify")
-    verify = f" ({on_verify.said()} on verify runs)" if on_verify.error is not None else ""
-    verify = f" ({on_verify.said()})" if on_verify.is_unstable else verify
-    doubt = ", a hypothesis" if any(one.hypothesis for one in terms) else ""
-    doubt += ", at last a free curve" if any(one.free_curve for one in terms) else ""
-    instead = f" in place of {', '.join(map(title, last.instead_of))}" if last.instead_of else ""
-    it = "it" if len(terms) == 1 else "them"
-    against = [
-        one.contradicted.sentence(one.equation)
-        for one in terms
-        if one.contradicted and not _later_terms_correct(one, last)
-    ]
-    return " ".join([
-        *against,
-        f"Beyond the catalogue a search proposes{doubt}{instead}: {said}.",
-        f"With {it} the error is {error_said(last.error['fit'])}{verify}.",
-        *(_alone(one) for one in terms if _later_terms_correct(one, last)),
-    ])  # fmt: skip
+    """What a search beyond the catalogue proposes, in sentences: no part of the verdict."""
+    return said(list(_proposed(terms)))
+
+
+def _proposed(terms: Sequence[Proposal]) -> Iterator[Message]:
+    last, listed = terms[-1], [_term(one) for one in terms]
+    for one in terms:
+        if one.contradicted and not _later_terms_correct(one, last):
+            yield one.contradicted.message(one.equation)
+    if last.instead_of:
+        yield message("proposed.instead", instead=last.instead_of, terms=listed)
+    else:
+        yield message("proposed", terms=listed)
+    if any(one.hypothesis for one in terms):
+        yield message("proposed.hypothesis")
+    if any(one.free_curve for one in terms):
+        yield message("proposed.free_curve")
+    error, on_verify = last.error["fit"], last.error_of("verify")
+    if on_verify.is_unstable:
+        yield message("proposed.error_unstable", terms=terms, error=error, runs=on_verify.unstable)
+    elif on_verify.error is not None:
+        yield message("proposed.error_verify", terms=terms, error=error, verify=on_verify.said())
+    else:
+        yield message("proposed.error", terms=terms, error=error)
+    for one in terms:
+        if one.contradicted and _later_terms_correct(one, last):
+            yield _alone(one.equation, one.contradicted)
+
+
+def _term(one: Proposal) -> Message:
+    if one.meaning:
+        return message("term.meaning", equation=one.equation, meaning=one.meaning)
+    return message("term", equation=one.equation)
 
 
 def _later_terms_correct(one: Proposal, last: Proposal) -> bool:
@@ -236,20 +252,20 @@ def _later_terms_correct(one: Proposal, last: Proposal) -> bool:
     return one.contradicted is not None and left is not None and left < one.contradicted.before
 
 
-def _alone(one: Proposal) -> str:
-    against = one.contradicted
-    assert against is not None
-    return f"With {one.equation} but without those after it {against.rise}."
+def _alone(equation: str, against: Contradiction) -> Message:
+    if against.after is None:
+        return message("alone.unstable", equation=equation, runs=against.unstable, before=against.before)
+    return message("alone.rises", equation=equation, before=against.before, after=against.after)
 
 
 def _described_once(described: Callable[[str], str]) -> Callable[[str], str]:
-    """The name of an effect with what it is told by the first time, bare then."""
-    said: set[str] = set()
+    """The name of an effect with what it is seen by the first time, bare then."""
+    seen: set[str] = set()
 
     def named(effect: str) -> str:
-        if effect in said:
+        if effect in seen:
             return title(effect)
-        said.add(effect)
+        seen.add(effect)
         return described(effect)
 
     return named

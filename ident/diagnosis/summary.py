@@ -3,87 +3,97 @@
 from __future__ import annotations
 
 from ident.diagnosis.result import Diagnosis
-from ident.words.error import error_said
-from ident.words.listed import all_of
-from ident.words.percent import percent
-from ident.words.plus_minus import plus_minus
-from ident.words.probability import probability_said
-from ident.words.run_name import run_name
+from ident.words.message import Message, message
 from ident.words.shown import in_brief
 from ident.words.titles import title
 
-_USES = (("verify", "validation data"), ("held_out", "held-out data"), ("fit", "estimation data"))
+_USES = ("verify", "held_out", "fit")
+"""Of which data the error says most, the first that there are."""
 
 
 @in_brief.register
-def summary(found: Diagnosis) -> tuple[str, str, str]:
+def summary(found: Diagnosis) -> tuple[str, ...]:
     """A sentence or two each; from what is stored alone, so that a diagnosis of any version has them."""
-    return _missing(found), _error(found), f"Next: {_next(found)}"
+    return tuple(map(str, summary_messages(found)))
 
 
-def _missing(found: Diagnosis) -> str:
+def summary_messages(found: Diagnosis) -> tuple[Message, Message, Message]:
+    """The same as messages."""
+    return _missing(found), _error(found), _next(found)
+
+
+def _missing(found: Diagnosis) -> Message:
     verdict = found.verdict
     if verdict.effects:
-        names = all_of([_named(found, name) for name in verdict.effects])
-        doubt = ", but validation data contradict it" if verdict.standing == "contradicted" else ""
-        return f"Missing: {names}{doubt}."
+        named = [_named(found, name) for name in verdict.effects]
+        contradicted = verdict.standing == "contradicted"
+        return message("summary.contradicted" if contradicted else "summary.missing", effects=named)
     if not found.complete:
-        return "Nothing was found so far: the search was stopped."
+        return message("summary.stopped")
     if verdict.unexplained:
-        return f"Missing: something that no listed effect explains{_sure(found, 'unlisted')}."
-    return f"Nothing is missing{_sure(found, 'nothing')}."
+        return _probable(found, "unlisted", "summary.unlisted", "summary.unlisted_probable")
+    return _probable(found, "nothing", "summary.nothing", "summary.nothing_probable")
 
 
-def _named(found: Diagnosis, name: str) -> str:
+def _probable(found: Diagnosis, what: str, bare: str, with_probability: str) -> Message:
+    probability = found.verdict.probabilities.get(what)
+    return message(bare) if probability is None else message(with_probability, probability=probability)
+
+
+def _named(found: Diagnosis, name: str) -> Message:
     """An effect or its group, with its strength and its probability."""
     verdict = found.verdict
     group = next((group for group in verdict.indistinguishable if name in group), ())
     others = [title(other) for other in group if other != name and other not in verdict.effects]
     probability = dict(zip(verdict.indistinguishable, verdict.group_probabilities, strict=False)).get(group)
     probability = verdict.probabilities.get(name) if probability is None else probability
-    said = [_strength(found, name)] if not others else []
-    said += [] if probability is None else [f"probability {probability_said(probability)}"]
-    return " or ".join([title(name), *others]) + (f" ({', '.join(filter(None, said))})" if any(said) else "")
+    strength = None if others else _strength(found, name)
+    names = [title(name), *others]
+    if strength is None and probability is None:
+        return message("effect", names=names)
+    if strength is None:
+        return message("effect.probable", names=names, probability=probability)
+    if probability is None:
+        return message("effect.strength", names=names, strength=strength)
+    return message("effect.strength_probable", names=names, strength=strength, probability=probability)
 
 
-def _strength(found: Diagnosis, name: str) -> str:
-    """The strength on the last step; nothing where it was not told."""
+def _strength(found: Diagnosis, name: str) -> tuple[float, float, str] | None:
+    """The strength on the last step, its standard error and unit; None where it was not told."""
     last = found.ladder[-1].parameters if found.ladder else {}
     strength = next((p for parameter, p in last.items() if parameter.startswith(f"{name}.")), None)
     if strength is None or strength.std_error is None:
-        return ""
-    return plus_minus(strength.value, strength.std_error, strength.unit)
+        return None
+    return strength.value, strength.std_error, strength.unit
 
 
-def _sure(found: Diagnosis, what: str) -> str:
-    probability = found.verdict.probabilities.get(what)
-    return "" if probability is None else f" (probability {probability_said(probability)})"
-
-
-def _error(found: Diagnosis) -> str:
+def _error(found: Diagnosis) -> Message:
     """The error on the data that say most, before and after, and the noise floor."""
     steps = found.ladder or (found.baseline,)
-    use, data = next(((use, data) for use, data in _USES if steps[0].error.get(use) is not None), _USES[-1])
-    before, after = (error_said(step.error.get(use)) for step in (steps[0], steps[-1]))
+    use = next((use for use in _USES if steps[0].error.get(use) is not None), _USES[-1])
+    before, after = (step.error.get(use) for step in (steps[0], steps[-1]))
     floor = found.noise_floor.get(use) or found.noise_floor.get("fit")
-    noise = "the noise floor is not known" if floor is None else f"the noise floor is {percent(floor)}"
     if not found.verdict.effects or len(steps) == 1:
-        return f"The error on {data} is {before}; {noise}."
-    return f"The error on {data} goes from {before} to {after}; {noise}."
+        if floor is None:
+            return message("summary.error_floor_unknown", use=use, before=before)
+        return message("summary.error", use=use, before=before, floor=floor)
+    if floor is None:
+        return message("summary.change_floor_unknown", use=use, before=before, after=after)
+    return message("summary.change", use=use, before=before, after=after, floor=floor)
 
 
-def _next(found: Diagnosis) -> str:
+def _next(found: Diagnosis) -> Message:
     verdict = found.verdict
-    them = "it" if len(verdict.effects) == 1 else "them"
     if verdict.suspects:
-        return f"correct the label of {run_name(verdict.suspects[0].run)}, and fit again."
+        return message("next.label", run=verdict.suspects[0].run)
     if not found.complete:
-        return "search again with more time."
+        return message("next.time")
     if verdict.standing == "contradicted":
-        return f"compare the validation runs with and without {title(verdict.contradicted_by[0])}."
+        return message("next.compare", effect=verdict.contradicted_by[0])
     if verdict.indistinguishable and found.next_experiment is not None:
-        return "record the proposed run, which tells apart what these data do not."
+        return message("next.distinguish")
+    if verdict.unexplained and verdict.effects:
+        return message("next.add_and_propose", effects=verdict.effects)
     if verdict.unexplained:
-        added = f"add {them}, and " if verdict.effects else ""
-        return f"{added}look at the proposed terms, or record the proposed run."
-    return f"add {them} to the model, and compare the fits." if verdict.effects else "use the model as it is."
+        return message("next.propose")
+    return message("next.add", effects=verdict.effects) if verdict.effects else message("next.use")

@@ -18,8 +18,7 @@ from ident.noise.effective_sample_size import independent_samples
 from ident.plain import WHERE_KNOWN
 from ident.run import Run, over_runs
 from ident.unstable import UNSTABLE
-from ident.words.error import error_said, unstable_on
-from ident.words.titles import title
+from ident.words.message import Message, message
 
 Array = NDArray[np.float64]
 Standing = Literal["found", "stand_in", "contradicted", "nothing"]
@@ -42,18 +41,16 @@ class Contradiction:
     instead_of: tuple[str, ...] = ()
     unstable: tuple[str, ...] = field(default=(), metadata=WHERE_KNOWN)
 
-    def sentence(self, named: str) -> str:
-        """In a sentence on what is `named`."""
-        others = f" in place of {', '.join(map(title, self.instead_of))}" if self.instead_of else ""
-        sure = "" if self.deviations is None else f", {self.deviations:.1f} standard errors"
-        return f"With {named}{others} {self.rise}{sure}: it may stand for something else."
-
-    @property
-    def rise(self) -> str:
-        """What becomes of the verify runs, in words."""
+    def message(self, named: str) -> Message:
+        """What speaks against what is `named`."""
+        of = message("effect.in_place", named=named, others=self.instead_of) if self.instead_of else named
         if self.after is None:
-            return f"the model is {unstable_on(self.unstable)}, the error on verify runs was {error_said(self.before)}"
-        return f"the error on verify runs rises from {error_said(self.before)} to {error_said(self.after)}"
+            return message("contradicted.unstable", named=of, runs=self.unstable, before=self.before)
+        if self.deviations is None:
+            return message("contradicted.rises", named=of, before=self.before, after=self.after)
+        return message(
+            "contradicted.rises_by", named=of, before=self.before, after=self.after, deviations=self.deviations
+        )
 
 
 @dataclass(frozen=True)

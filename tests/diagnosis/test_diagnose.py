@@ -80,7 +80,7 @@ def test_what_was_found_when_the_time_is_over_is_the_diagnosis():
     assert found.ladder == steps[0].ladder
     assert not found.complete
     assert found.next_experiment is None
-    assert "and what could stand in the place of what was found, was not looked at" in found.verdict.text
+    assert "and alternatives to those found, were not examined" in found.verdict.text
     with pytest.raises(Unusable, match="give the seconds"):
         diagnose(matrix, seconds=0.0)
 
@@ -183,7 +183,7 @@ def test_what_the_catalogue_does_not_hold_is_called_unexplained(full):
     found = diagnose(matrix_of(records, PLANT), **most(full))
     assert found.ladder[0].error["fit"] > 1.5 * found.noise_floor["fit"]
     assert found.verdict.unexplained
-    assert "a repeated run would tell" in found.verdict.text
+    assert "a repeated run would show" in found.verdict.text
 
 
 @pytest.mark.usefixtures("few_effects")

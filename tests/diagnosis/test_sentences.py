@@ -58,7 +58,7 @@ def test_a_verdict_says_what_an_effect_does_once(against):
     assert text.count("(the spool moves only above a breakaway signal, at the valve): with them") == 1
     assert text.count("spool stiction") == 2
     first = "cubic stiffness" if against else "cubic stiffness (stiffening or softening with position, at the load)"
-    assert f" is dead zone, {first} and" in text or f"lacks dead zone, {first} and" in text
+    assert f" by dead zone, {first} and" in text or f"lacks dead zone, {first} and" in text
 
 
 def test_a_stated_drive_is_a_description():
@@ -76,10 +76,10 @@ def test_what_later_terms_bring_down_is_not_said_first(last, mended):
         Proposal(place=("force",), equation="R = R + s * x", effect={}, error={"fit": 0.1, "verify": last}, terms=2),
     ]
     text = proposed_text(terms)
-    alone = "With R = R + s * v but without those after it the error on verify runs rises from 24.0 % to 31.0 %."
-    assert text.startswith("Beyond the catalogue") is mended
+    alone = "With R = R + s * v but without those after it the error on validation data rises from 24.0 % to 31.0 %."
+    assert text.startswith("Beyond the library") is mended
     assert text.endswith(alone) is mended
-    assert text.startswith("With R = R + s * v the error on verify runs rises") is not mended
+    assert text.startswith("With R = R + s * v the error on validation data rises") is not mended
 
 
 def found(share: float, losing: bool = False) -> Evidence:
@@ -95,9 +95,9 @@ def found(share: float, losing: bool = False) -> Evidence:
     ("evidence", "improves", "said", "unsaid"),
     [
         (found(0.4), True, "It shows as", "chance"),
-        (found(0.4), False, "no more than the best of all effects takes by chance", "It shows"),
-        (found(0.03), False, "it explains 3 ± 4.2 % of what is above the noise", "chance"),
-        (found(0.4, losing=True), False, "it rises on the second half of the records", "chance"),
+        (found(0.4), False, "no more than the best of all effects gains by chance", "It shows"),
+        (found(0.03), False, "explains 3 ± 4.2 % of the error above the noise floor", "chance"),
+        (found(0.4, losing=True), False, "The error rises on the second half of the records", "chance"),
     ],
 )
 def test_an_effect_says_why_it_helps_or_does_not(evidence, improves, said, unsaid):
@@ -117,7 +117,7 @@ def test_a_smaller_error_on_verify_runs_on_the_way_is_told_with_what_was_added_s
     assert fewer == (0.0405, ("dead_zone",))
     errors = {"fit": 0.0279, "verify": 0.0641}
     text = verdict_text(("flow_saturation", "dead_zone"), (), (), True, errors, 0.22, fewer=fewer)
-    assert "to 2.79 % (6.41 % on verify runs, 4.05 % without dead zone)." in text
+    assert "to 2.79 % (6.41 % on validation data, 4.05 % without dead zone)." in text
     assert better_with_fewer([*way[:2], ("dead_zone", refit(0.044))]) is None
     assert better_with_fewer([(None, refit(None)), ("dead_zone", refit(None))]) is None
     assert better_with_fewer([(None, refit(0.03)), *way[1:]]) == (0.03, ("flow_saturation", "dead_zone"))

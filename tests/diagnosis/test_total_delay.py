@@ -58,7 +58,7 @@ def test_a_clean_record_tells_a_lag_from_a_delay():
 @pytest.mark.usefixtures("few_effects")
 def test_a_diagnosis_says_it():
     found = diagnose(*fitted(3e-3), most=1, propose=False)
-    assert "by which lag or delay these data cannot tell: tau" in found.verdict.text
+    assert "These data cannot tell by which lag or delay: tau" in found.verdict.text
 
 
 def test_of_a_model_without_a_time_constant_of_its_own_nothing_is_said():
@@ -90,4 +90,7 @@ def test_a_pair_is_said_to_be_one():
     errors = {"fit": 0.0105, "held_out": 0.0105, "verify": None}
     two = ("command_delay", "sensor_lag")
     said = verdict_text(two, [(*two, "valve_second_order", "acquisition_lag")], [], False, errors, 0.05)
-    assert "cannot tell which two these are of: command delay, sensor lag, valve second order, acquisition lag" in said
+    assert (
+        "cannot tell which two of these are present: command delay, sensor lag, valve second order, acquisition lag"
+        in said
+    )

@@ -56,9 +56,9 @@ def test_a_run_that_cannot_be_followed_with_an_effect_is_a_contradiction_and_one
     assert found is not None
     assert (found.after, found.deviations) == (None, None)
     assert found.before == pytest.approx(0.1, rel=0.05)
-    assert found.sentence("lead") == (
-        f"With lead the model is unstable on run {runs[1].id}, the error on verify runs was {percent(found.before)}: "
-        "it may stand for something else."
+    assert str(found.message("lead")) == (
+        f"With lead the model is unstable on run {runs[1].id}; the error on validation data was "
+        f"{percent(found.before)}. It may stand for another effect."
     )
     assert judged("lead", runs, lost, before) is None
     assert judged("lead", runs, lost, lost) is None
@@ -84,7 +84,7 @@ def test_what_the_runs_to_verify_speak_against_is_contradicted_and_said_first(ot
     assert other.verdict.effects == ("dead_zone",)
     assert other.verdict.standing == "contradicted"
     assert other.verdict.contradicted_by == ("dead_zone",)
-    assert other.verdict.text.startswith("With dead zone the error on verify runs rises from ")
+    assert other.verdict.text.startswith("With dead zone the error on validation data rises from ")
     assert "The model lacks" not in other.verdict.text
 
 

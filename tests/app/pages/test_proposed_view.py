@@ -41,7 +41,7 @@ def test_what_it_stands_instead_of_is_said_with_what_that_leaves(names, verify, 
 def test_runs_to_verify_that_speak_against_it_are_said_first():
     against = Contradiction("proposed_1", 0.0158, 0.026, 3.1, ("dead_zone",))
     told = card(0.0158, instead_of=("dead_zone",), contradicted=against).against
-    assert told.startswith("With it in place of dead zone the error on verify runs rises from 1.58 % to 2.6")
+    assert told.startswith("With it in place of dead zone the error on validation data rises from 1.58 % to 2.6")
     assert card(0.0158).against == ""
 
 

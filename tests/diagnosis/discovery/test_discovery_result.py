@@ -52,8 +52,10 @@ def test_a_verify_error_above_the_catalogues_is_said_first_with_both() -> None:
     assert against.instead_of == ("play", "dead_zone")
     assert (against.before, against.after) == pytest.approx((0.16, 0.26), rel=0.05)
     text = proposed_text(told.found)
-    assert text.startswith("With R = R + s * (v**3) in place of play, dead zone the error on verify runs rises from 16")
-    assert "Beyond the catalogue a search proposes in place of play, dead zone: R = R + s * (v**3)." in text
+    assert text.startswith(
+        "With R = R + s * (v**3) in place of play and dead zone the error on validation data rises from 16"
+    )
+    assert "Beyond the library a search proposes in place of play and dead zone: R = R + s * (v**3)." in text
 
 
 @pytest.mark.parametrize("share", [0.155, 0.10])
@@ -61,7 +63,7 @@ def test_one_that_is_no_worse_only_says_what_it_stands_instead_of(share: float) 
     told = found(share).instead(cast(FittedModel, Leaving(0.16)), ("play",), verify())
     assert told.found[-1].contradicted is None
     assert told.found[-1].instead_of == ("play",)
-    assert proposed_text(told.found).startswith("Beyond the catalogue a search proposes in place of play: ")
+    assert proposed_text(told.found).startswith("Beyond the library a search proposes in place of play: ")
 
 
 def test_without_runs_to_verify_nothing_is_known() -> None:
@@ -115,7 +117,7 @@ def test_what_the_terms_do_without_is_named_no_more() -> None:
     assert (after.standing, after.contradicted_by) == ("stand_in", ())
     assert after.indistinguishable == (("entrained_air", "backlash"),)
     assert conclude(replace(before, dispensable=named)).standing == "nothing"
-    told = "one way leakage and gain asymmetry are not needed: they stood for that."
+    told = "one way leakage and gain asymmetry are not needed: they stood for them."
     assert next(dispensable_sentence(needless)).endswith(told)
 
 

@@ -1,0 +1,78 @@
+"""A sentence as one message: a key, and named values. :mod:`ident.words.messages` has its text.
+
+The library gives both; only here they become words, so that texts can be changed or translated without it. A value is
+printed by the kind that the text names for it, ``{before:error}``, else as Python formats it, ``{hertz:.3g}``.
+"""
+
+from __future__ import annotations
+
+import string
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from ident.words.error import error_said, unstable_on
+from ident.words.listed import all_of
+from ident.words.messages import MESSAGES
+from ident.words.percent import percent
+from ident.words.plus_minus import plus_minus
+from ident.words.probability import probability_said
+from ident.words.run_name import run_name
+from ident.words.titles import title
+from ident.words.uses import data
+
+
+@dataclass(frozen=True)
+class Message:
+    """What is said: the key of a text, and the values that it names; a value may be a message, or several."""
+
+    key: str
+    values: Mapping[str, Any]
+
+    def __str__(self) -> str:
+        """Its text, with the values in words."""
+        return str(_WORDS.vformat(MESSAGES[self.key], (), self.values))
+
+
+def message(key: str, **values: Any) -> Message:
+    """A message by its key and values."""
+    return Message(key, values)
+
+
+def said(messages: Sequence[Message]) -> str:
+    """Some sentences, one after the other."""
+    return " ".join(map(str, messages))
+
+
+def _strings(values: Sequence[Any]) -> list[str]:
+    return [str(value) for value in values]
+
+
+KINDS: Mapping[str, Callable[[Any], str]] = {
+    "error": error_said,
+    "percent": percent,
+    "probability": probability_said,
+    "unstable": unstable_on,
+    "estimate": lambda one: plus_minus(*one),
+    "run": run_name,
+    "data": data,
+    "title": title,
+    "titles": lambda names: all_of(list(map(title, names))),
+    "all": lambda values: all_of(_strings(values)),
+    "or": lambda values: " or ".join(_strings(values)),
+    "listed": lambda values: ", ".join(_strings(values)),
+    "terms": lambda values: "; ".join(_strings(values)),
+    "them": lambda values: "it" if len(values) == 1 else "them",
+}
+"""How a value of a kind is put into words; the last says what stands for one or for several."""
+
+
+class _Words(string.Formatter):
+    """Values by kind."""
+
+    def format_field(self, value: Any, format_spec: str) -> str:
+        """The value in words."""
+        return KINDS[format_spec](value) if format_spec in KINDS else format(value, format_spec)
+
+
+_WORDS = _Words()

@@ -1,0 +1,114 @@
+"""A sentence is one message: its text stands in one place, whole, and its values are named."""
+
+from __future__ import annotations
+
+import ast
+import re
+import string
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from ident.words.message import KINDS, Message, message, said
+from ident.words.messages import MESSAGES
+
+ROOT = Path(__file__).parents[2]
+CHECKS = ("band", "clipping", "copied", "feedback", "flat", "offset", "passivity", "ranges", "timing")
+ROOMS = ("ident/diagnosis/sentences.py", "ident/diagnosis/summary.py", *(f"ident/checks/{one}.py" for one in CHECKS))
+"""Files that say everything by messages: no prose stands in them."""
+PROSE = re.compile(r"[A-Za-z]{2,},? [a-z]|^[,;:.]? [a-z]{2}|[a-z] $")
+"""Words in a row, or a piece that is to be joined to words."""
+
+
+def fields(key: str) -> dict[str, str]:
+    """The values that a text names, with the kind of each."""
+    return {name: kind for _, name, kind, _ in string.Formatter().parse(MESSAGES[key]) if name}
+
+
+def calls() -> Iterator[tuple[str, list[str], set[str], bool]]:
+    """Every message in the library: where, the keys it may have, its named values, and whether these are all."""
+    for path in sorted((ROOT / "ident").rglob("*.py")):
+        source = path.read_text(encoding="utf-8")
+        if "message(" not in source:
+            continue
+        for node in ast.walk(ast.parse(source)):
+            if (
+                isinstance(node, ast.Call)
+                and isinstance(node.func, ast.Name)
+                and node.func.id == "message"
+                and node.args
+            ):
+                names = [one.value for one in ast.walk(node.args[0]) if isinstance(one, ast.Constant)]
+                given = {one.arg for one in node.keywords if one.arg}
+                whole = all(one.arg for one in node.keywords)
+                yield f"{path.name}:{node.lineno}", [n for n in names if isinstance(n, str)], given, whole
+
+
+def test_every_message_has_a_text_that_names_its_values_and_no_others():
+    for where, keys, given, whole in calls():
+        for key in keys:
+            assert key in MESSAGES, where
+            wanted = set(fields(key))
+            assert (given == wanted) if whole else (given <= wanted), f"{where}: {key}"
+
+
+def test_every_text_is_said_somewhere():
+    sources = [p.read_text("utf-8") for p in (ROOT / "ident").rglob("*.py") if p.name not in ("messages.py",)]
+    unsaid = [key for key in MESSAGES if not any(f'"{key}"' in source for source in sources)]
+    assert not unsaid
+
+
+def test_every_value_is_of_a_kind_that_is_known():
+    for key in MESSAGES:
+        for name, kind in fields(key).items():
+            assert not kind or kind in KINDS or re.fullmatch(r"[+#]?(\.\d+)?[gfed%]?", kind), f"{key}: {name}"
+
+
+def pieces(source: str) -> list[str]:
+    """What of a file is prose: strings with words in a row, but for docstrings and those of a type."""
+    tree = ast.parse(source)
+    documents = {
+        id(node.value) for node in ast.walk(tree)
+        if isinstance(node, ast.Expr) and isinstance(node.value, ast.Constant)
+    }  # fmt: skip
+    texts = [n for n in ast.walk(tree) if isinstance(n, ast.Constant) and isinstance(n.value, str)]
+    return [one.value for one in texts if id(one) not in documents and PROSE.search(one.value)]
+
+
+@pytest.mark.parametrize("room", ROOMS)
+def test_no_sentence_is_joined_from_parts(room):
+    assert pieces((ROOT / room).read_text(encoding="utf-8")) == []
+
+
+@pytest.mark.parametrize(
+    "source",
+    [
+        'said = f"with {them} the error falls"',
+        'text = "The model" + " lacks " + name',
+        'parts.append("Something is left")',
+        'found = "{} ({} on verify runs)".format(a, b)',
+    ],
+)
+def test_what_is_joined_from_parts_is_seen(source):
+    assert pieces(source)
+
+
+def test_a_key_a_channel_and_a_docstring_are_no_prose():
+    assert pieces('"""What a run says, in words."""\nkey = "verdict.lacks"\nname = "load_pressure"\n') == []
+
+
+def test_a_value_is_put_into_words_by_its_kind_and_may_be_a_message():
+    effects = [
+        message("effect.probable", names=["dead zone", "underlap"], probability=0.874),
+        message("effect", names=["play"]),
+    ]
+    assert (
+        str(message("summary.missing", effects=effects))
+        == "Missing: dead zone or underlap (probability 87 %) and play."
+    )
+    late = message("late.seconds", value=0.0123, error=0.001)
+    assert said([message("delay", time=late, names=["a"]), Message("next.use", {})]) == (
+        "A slow command is answered 0.0123 ± 0.001 s late. These data cannot tell by which lag or delay: a. "
+        "Next: use the model as it is."
+    )
