@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 from ident.diagnosis.result import Diagnosis
 from ident.words.message import Message, message
 from ident.words.shown import in_brief
@@ -26,13 +28,47 @@ def _missing(found: Diagnosis) -> Message:
     verdict = found.verdict
     if verdict.effects:
         named = [_named(found, name) for name in verdict.effects]
-        contradicted = verdict.standing == "contradicted"
-        return message("summary.contradicted" if contradicted else "summary.missing", effects=named)
+        if verdict.standing == "contradicted":
+            return message("summary.contradicted", effects=named)
+        return _missing_and_helping(found, named)
     if not found.complete:
         return message("summary.stopped")
     if verdict.unexplained:
         return _probable(found, "unlisted", "summary.unlisted", "summary.unlisted_probable")
     return _probable(found, "nothing", "summary.nothing", "summary.nothing_probable")
+
+
+def _missing_and_helping(found: Diagnosis, named: Sequence[Message]) -> Message:
+    """What is missing, and apart from it what helps though it is less probable than not."""
+    improbable = [_is_improbable(found, name) for name in found.verdict.effects]
+    missing = [one for one, doubted in zip(named, improbable, strict=True) if not doubted]
+    helping = [one for one, doubted in zip(named, improbable, strict=True) if doubted]
+    several = len(helping) > 1
+    if not helping:
+        return message("summary.missing", effects=missing)
+    if not missing:
+        return message("summary.several_helping" if several else "summary.helping", helping=helping)
+    key = "summary.missing_and_several_helping" if several else "summary.missing_and_helping"
+    return message(key, effects=missing, helping=helping)
+
+
+def _is_improbable(found: Diagnosis, name: str) -> bool:
+    """Whether an effect, with all of its group, is less probable than not: the median model leaves it out."""
+    probability = _probability(found, name)
+    return probability is not None and probability < 0.5
+
+
+def _probability(found: Diagnosis, name: str) -> float | None:
+    """That of an effect, or of its group, where one is told."""
+    verdict = found.verdict
+    group = _group(found, name)
+    of_group = dict(zip(verdict.indistinguishable, verdict.group_probabilities, strict=False)).get(group)
+    return verdict.probabilities.get(name) if of_group is None else of_group
+
+
+def _group(found: Diagnosis, name: str) -> tuple[str, ...]:
+    """The effects that the data cannot tell apart from one, itself included; none where there are no others."""
+    return next((group for group in found.verdict.indistinguishable if name in group), ())
 
 
 def _probable(found: Diagnosis, what: str, bare: str, with_probability: str) -> Message:
@@ -42,11 +78,8 @@ def _probable(found: Diagnosis, what: str, bare: str, with_probability: str) -> 
 
 def _named(found: Diagnosis, name: str) -> Message:
     """An effect or its group, with its strength and its probability."""
-    verdict = found.verdict
-    group = next((group for group in verdict.indistinguishable if name in group), ())
-    others = [title(other) for other in group if other != name and other not in verdict.effects]
-    probability = dict(zip(verdict.indistinguishable, verdict.group_probabilities, strict=False)).get(group)
-    probability = verdict.probabilities.get(name) if probability is None else probability
+    others = [title(other) for other in _group(found, name) if other != name and other not in found.verdict.effects]
+    probability = _probability(found, name)
     strength = None if others else _strength(found, name)
     names = [title(name), *others]
     if strength is None and probability is None:
