@@ -73,8 +73,8 @@ def _joined(files: Mapping[str, BinaryIO]) -> Mapping[str, BinaryIO]:
         check_size(len(contents[name]), LIMITS.file, "the file", name)
         files[name].seek(0)
     runs = dict(with_runs_joined(list(contents.items())))
-    kept = {name: content for name, content in files.items() if name not in contents or name in runs}
-    return kept | {name: io.BytesIO(data) for name, data in runs.items() if name not in kept}
+    others = {name: content for name, content in files.items() if name not in contents or name in runs}
+    return others | {name: io.BytesIO(data) for name, data in runs.items() if name not in others}
 
 
 def look(context: Context, draft: str, asked: AnswersRequest) -> DraftView:

@@ -107,11 +107,11 @@ def _without_first_state(Z: Array, responses: Array, p: int) -> tuple[Array, Arr
 
     Z = [J, N, 1, r] holds the p sensitivities J, and N to the first state, of which a run that begins at rest has none.
     """
-    kept = np.column_stack([Z[-1], Z[:p].T, Z[-2], responses])
+    signals = np.column_stack([Z[-1], Z[:p].T, Z[-2], responses])
     if len(Z) > p + 2:
         first_state, _ = np.linalg.qr(Z[p:-2].T)
-        kept = kept - first_state @ (first_state.T @ kept)
-    return kept[:, 0], kept[:, 1 : p + 2], kept[:, p + 2 :]
+        signals = signals - first_state @ (first_state.T @ signals)
+    return signals[:, 0], signals[:, 1 : p + 2], signals[:, p + 2 :]
 
 
 def _response_of_each(given: _Sensitivities, base: FittedModel, names: Sequence[str]) -> dict[str, Array]:

@@ -41,8 +41,8 @@ def _missing(found: Diagnosis) -> Message:
 def _missing_and_helping(found: Diagnosis, named: Sequence[Message]) -> Message:
     """What is missing, and apart from it what helps though it is less probable than not."""
     improbable = [_is_improbable(found, name) for name in found.verdict.effects]
-    missing = [one for one, doubted in zip(named, improbable, strict=True) if not doubted]
-    helping = [one for one, doubted in zip(named, improbable, strict=True) if doubted]
+    missing = [effect for effect, doubted in zip(named, improbable, strict=True) if not doubted]
+    helping = [effect for effect, doubted in zip(named, improbable, strict=True) if doubted]
     several = len(helping) > 1
     if not helping:
         return message("summary.missing", effects=missing)

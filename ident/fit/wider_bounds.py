@@ -59,8 +59,10 @@ def beyond_bounds(
 
 def wider_at(space: Space, point: Array, names: Collection[str]) -> Space:
     """The space, with the axes of these parameters reaching ten times as far on the side at which a point lies."""
-    pairs = zip(space.axes, point, strict=True)
-    return replace(space, axes=tuple(_wider(one, bool(at > 0.5)) if one.name in names else one for one, at in pairs))
+    places = zip(space.axes, point, strict=True)
+    return replace(
+        space, axes=tuple(_wider(axis, bool(at > 0.5)) if axis.name in names else axis for axis, at in places)
+    )
 
 
 def _starts(best: Optimum, wider: Space, values: Mapping[str, float], names: Iterable[str]) -> Iterator[Array]:
