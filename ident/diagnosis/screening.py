@@ -105,7 +105,7 @@ def gain_by_chance(models: CandidateModels, base: FittedModel, names: Sequence[s
 def _without_first_state(Z: Array, responses: Array, p: int) -> tuple[Array, Array, Array]:
     """Residual (n,), sensitivities (n, p+1) and responses (n, k) of a run, less what its own first state explains.
 
-    Z = [J, N, 1, r] holds the p sensitivities J, and N to the first state, which is known of a run that begins standing.
+    Z = [J, N, 1, r] holds the p sensitivities J, and N to the first state, none where that is known.
     """
     signals = np.column_stack([Z[-1], Z[:p].T, Z[-2], responses])
     if len(Z) > p + 2:

@@ -1,4 +1,4 @@
-"""Probabilities against the truth: the four numbers fitted to trials, and judged on others.
+"""Probabilities against the truth: the numbers fitted to trials, and judged on others.
 
 python -m tests.blind.calibration --fit FILE …      rows of trials to fit to
 python -m tests.blind.calibration FILE …            rows of trials to judge by the numbers as they are
@@ -24,7 +24,8 @@ from scipy.optimize import minimize
 from ident.diagnosis.evidence.criteria import EVIDENCE_CRITERIA, EvidenceCriteria
 from ident.diagnosis.evidence.probability import NOTHING, SetGains, probabilities
 
-NUMBERS = ("learning_rate", "effect_prior", "unlisted_share", "unlisted_prior")
+NUMBERS = ("learning_rate", "effect_prior", "unlisted_prior")
+"""Those that are fitted; the share of something unlisted follows from sets of several effects."""
 _OFF = "off the list"
 OFF_THE_LIST = 0.25
 """Weight of a trial with its truth off the list: so something unlisted acts in one case of five."""

@@ -97,7 +97,7 @@ def test_five_periods_and_a_hundred_give_the_same_evidence_against_a_wrong_model
     assert wrong[100].share.mean == pytest.approx(wrong[5].share.mean, abs=0.02)
     assert wrong[5].gain < right[5].gain < right[100].gain < 1.5 * right[5].gain
     few, many = (_said(wrong[periods], right[periods]) for periods in (5, 100))
-    assert many == pytest.approx(few, abs=0.05)
+    assert many == pytest.approx(few, abs=0.03)
 
 
 def _said(wrong: Evidence, right: Evidence) -> dict[str, float]:
@@ -400,9 +400,15 @@ def test_probabilities_are_those_of_the_models_and_sum_to_one() -> None:
 
 def test_of_two_structures_that_explain_as_much_the_one_with_fewer_parameters_is_more_probable() -> None:
     """Each parameter is charged as an effect is; what gains more than that is more probable."""
-    assert structure_probabilities([10.0, 10.0], [3, 5])[0] > 0.97
-    assert structure_probabilities([0.0, 10.0], [3, 5])[1] > 0.85
+    assert structure_probabilities([10.0, 10.0], [3, 5])[0] > 0.94
+    assert structure_probabilities([0.0, 10.0], [3, 5])[1] > 0.75
     assert sum(structure_probabilities([0.0, 4.0, 5.0], [1, 2, 3])) == pytest.approx(1.0)
+
+
+def test_several_effects_that_leave_only_noise_do_not_lose_to_something_unlisted() -> None:
+    """Three that gain all of 300 nats, each a hundred, are more probable than one thing that nobody lists."""
+    found = probabilities(gaining(300.0, a=100.0, ab=200.0, abc=299.0))
+    assert found.of(["a", "b", "c"]) > 0.9
 
 
 def test_probabilities_are_frozen() -> None:
@@ -411,7 +417,7 @@ def test_probabilities_are_frozen() -> None:
     assert (found.effects["a"], found.effects["b"], found.unlisted, found.nothing) == pytest.approx(FROZEN, abs=5e-4)
 
 
-FROZEN = (0.7462, 0.1372, 0.1220, 0.0001)
+FROZEN = (0.5064, 0.1532, 0.3487, 0.0082)
 
 
 def test_what_reaches_the_noise_passes_where_one_harmonic_is_all_there_is() -> None:
