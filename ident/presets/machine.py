@@ -226,7 +226,7 @@ def _force_scale(of: Description) -> str:
         return ""
     if of["load"] == "none":
         return "A*Ka*U"
-    if of.hydraulic:
+    if of.hydraulic or of["load"] == "measured_force":
         return "(c0 + m0*W)*W*L"
     return "Kt*Kp*U" if of.closed else "abs(Kt)*M"  # what drives it: what holds more stands still
 

@@ -59,7 +59,10 @@ def fastest_mode(
     known = {name: values[name] for name in followed.symbols}
     moved = {} if followed.is_linear else {name: far for name, far in (motion or {}).items() if name in followed.states}
     points = [followed.operating_point(known, at) for at in ({}, *({name: far} for name, far in moved.items()))]
-    rest, *others = (_fastest(followed.linearise(known, output, point).A) for point in points)
+    with np.errstate(
+        divide="ignore", invalid="ignore", over="ignore"
+    ):  # where no machine is: slopes there count as none
+        rest, *others = [_fastest(followed.linearise(known, output, point).A) for point in points]
     for other in others:
         rest = np.where(np.abs(other) > _FASTER * np.abs(rest), other, rest)
     return rest

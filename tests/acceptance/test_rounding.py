@@ -31,7 +31,7 @@ SHORT = Settings("kononykhin", bounds=NEAR, options={"population": 16.0, "genera
 def simulated(model: str, values: dict[str, float], output: str = "displacement", **of_matrix: object) -> Matrix:
     """Two runs of a linear model with 1 % of noise."""
     rng = np.random.default_rng(6)
-    driven = "command" if of_matrix else PRESETS[model].driven_by
+    driven = "command" if of_matrix else PRESETS[model].data.driven_by
     runs = [
         Run(f"run-{i}", "", RATE, {driven: band_limited_noise(2048, 1e-3, rng), output: np.zeros(2048)}, output=output,
             specimen=Specimen(mass=i * 2.0))
