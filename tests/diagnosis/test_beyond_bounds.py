@@ -11,12 +11,12 @@ from ident.run import Run
 from tests.reference.periodic_reference import Law, driven
 
 LOOP = "machine:controller=p,load=mass_spring_damper,sensor=displacement"
-LAW = Law(m=1.2, c=28.0, Kt=41.0, Kp=4.0, backlash_b=0.021)
+LAW = Law(m=1.2, c=28.0, Kt=41.0, Kp=4.0, backlash_b=0.046)
 NOISE = 3e-5
 
 
 def matrix() -> Matrix:
-    """A position loop whose play is larger than any zone of a motion so small usually is; seed 5."""
+    """A position loop whose play is wider than the drive signal of so small a motion usually is; seed 5."""
     rate = 200.0
     command = 0.013 * np.sin(2 * np.pi * 0.7 * np.arange(2000) / rate)
     x = driven(LAW, command, rate, "linear", 64, "displacement")

@@ -47,12 +47,12 @@ def test_a_delay_of_a_part_of_a_step_is_found():
     assert found.ladder[-1].error["fit"] == pytest.approx(0.01, rel=0.05)
 
 
-def test_a_strength_at_the_bound_of_its_search_is_not_called_found():
-    """Of a delay of more than half a step nobody can say where it would end, though it looks like noise."""
+def test_a_delay_of_more_than_half_a_step_is_searched_beyond_the_range_of_its_search():
+    """The usual range ends at half of the time for which a command is held: 0.25 s."""
     matrix = late(27, noise=0.3)
     assert CandidateModels.of(matrix, Settings(model="motor")).floor is None
     found = diagnose(matrix, settings=Settings(model="motor"), most=1, propose=False)
-    assert found.verdict.at_bound == ("command_delay",)
-    assert found.verdict.standing == "stand_in"
-    assert "ended at the bound of its search" in found.verdict.text
+    assert found.verdict.effects == ("command_delay",)
+    assert found.ladder[-1].parameters["command_delay.delay"].value == pytest.approx(0.27, rel=0.01)
+    assert not found.verdict.at_bound
     assert type(found).from_json(found.to_json()).verdict == found.verdict

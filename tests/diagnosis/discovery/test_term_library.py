@@ -38,7 +38,7 @@ def signals() -> dict[str, np.ndarray]:
 @cache
 def every() -> tuple[Term, ...]:
     """The whole library."""
-    library = TermLibrary(_PLACES, _there(MODEL, _PLACES, _SIGNALS), signals(), UNITS, BAND, SECONDS, ("Kp", "mL", "k"))
+    library = TermLibrary(_PLACES, _there(MODEL, _PLACES, _SIGNALS, signals()), signals(), UNITS, BAND, SECONDS, ("Kp", "mL", "k"))
     return tuple(library.terms())
 
 
@@ -104,7 +104,7 @@ def test_what_a_controller_makes_of_its_error_is_worked_out_by_hand_and_has_a_st
     assert dimensions.of(definition("p", (changing,), (1.0,), 1e-3, known, UNITS)["strength"]["unit"]) == dimensions.of(
         "s"
     )
-    bare = TermLibrary(_PLACES, _there(MODEL, _PLACES, _SIGNALS), known, {"e": "m"}, BAND, SECONDS)
+    bare = TermLibrary(_PLACES, _there(MODEL, _PLACES, _SIGNALS, signals()), known, {"e": "m"}, BAND, SECONDS)
     assert not list(error_terms(bare, "controller", "e"))  # a machine in open loop has no error
 
 
