@@ -47,7 +47,6 @@ def the_next_run_is_proposed(page):
 
 def an_own_effect_is_tried(page, watch):
     """Refused at its character, then shown as mathematics; with a curve as well."""
-    page.get_by_role("heading", name="Define your own effect").click()
     own = page.locator("form[data-own]")
     for label, text in (("Name", "overlap"), ("Strength, symbol", "h"), ("Unit", "mm"), ("Largest", "1")):
         own.get_by_label(label, exact=True).fill(text)
