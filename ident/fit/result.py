@@ -153,12 +153,14 @@ class FitResult(Shown):
 
     `error_with_mean` is RMS(x − x_m)/std(x_m), which sees the means that eq. (17) does not, `rmse` RMS(x − x_m) in
     `rmse_unit`, None where the outputs have several units; both are averaged as the error is. Earlier versions wrote
-    the first as `anchored_error` alone, which is the same. `aic` is Akaike's criterion on the runs to fit, see
+    the first as `anchored_error` alone, which is the same. `fit_percent` is 100 less the first in per cent: 100 (1 −
+    ‖x − x_m‖/‖x_m − mean x_m‖) of the free simulation. `aic` is Akaike's criterion on the runs to fit, see
     :mod:`ident.fit.information`, None of a fit over windows. `window` is there where the fit was made over windows.
     `evolution` belongs to the parameters `searched`, in that order. `actuator` is what was stated of the machine;
-    earlier versions did not keep it. The search of one that `ended_early` ran out of its time. Runs that are `left_out`
-    were not fitted, and are in no mean over the runs to fit; they stand in `runs`. `preprocessing` has what became of
-    each step of it, which earlier versions did not tell. `matrix` holds the data, where the fit was made here.
+    earlier versions did not keep it. The search of one that `ended_early` ran out of its time. Runs that are
+    `left_out` were not fitted, and are in no mean over the runs to fit; they stand in `runs`. `preprocessing` has
+    what became of each step of it, which earlier versions did not tell. `matrix` holds the data, where the fit was
+    made here.
     """
 
     model: str
@@ -183,6 +185,7 @@ class FitResult(Shown):
     error_with_mean: Mapping[str, float | None] = field(default_factory=dict, metadata=WHERE_KNOWN)
     rmse: Mapping[str, float | None] = field(default_factory=dict, metadata=WHERE_KNOWN)
     rmse_unit: str = field(default="", metadata=WHERE_KNOWN)
+    fit_percent: Mapping[str, float | None] = field(default_factory=dict, metadata=WHERE_KNOWN)
     aic: float | None = field(default=None, metadata=WHERE_KNOWN)
     window: Window | None = field(default=None, metadata=WHERE_KNOWN)
     starts: Starts | None = field(default=None, metadata=WHERE_KNOWN)
@@ -212,16 +215,6 @@ class FitResult(Shown):
         return ErrorOf(self.error.get(use), with_mean, unstable, quantity(size, self.rmse_unit) if size else "")
 
     @property
-    def fit_percent(self) -> dict[str, float | None]:
-        """The fit to the data of each use, 100 (1 − ‖x − x_m‖/‖x_m − mean x_m‖), of the free simulation, mean counted.
-
-        Averaged over runs; None where there are none, or the model is unstable on one.
-        """
-        known = {use: self.error_of(use) for use in USES}
-        return {use: None if of.with_mean is None or of.is_unstable else 100.0 * (1.0 - of.with_mean)
-                for use, of in known.items()}  # fmt: skip
-
-    @property
     def values(self) -> dict[str, float]:
         """Parameter values by name, SI."""
         return {name: estimate.value for name, estimate in self.parameters.items()}
@@ -234,7 +227,7 @@ class FitResult(Shown):
     def to_json(self) -> dict[str, Any]:
         """As plain JSON data (no NaN, no infinity), with the stages of a machine; what is not known is left out."""
         machine = description(self.model)
-        return {**written(self), "fit_percent": self.fit_percent, **({"machine": machine} if machine else {})}
+        return {**written(self), **({"machine": machine} if machine else {})}
 
     @classmethod
     def from_json(cls, data: object) -> FitResult:

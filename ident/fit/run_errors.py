@@ -59,3 +59,13 @@ def rmse_of(errors: Sequence[RunError], shares: Mapping[str, Sequence[float]]) -
         told = bool(known) and len(known) == len(sizes) and len(units) == 1
         found[use] = float(np.average(known, weights=of)) if told else None
     return Rmse(rmse=found, rmse_unit=units.pop() if len(units) == 1 else "")
+
+
+def fit_percent(errors: Sequence[RunError], with_mean: Mapping[str, float | None]) -> dict[str, float | None]:
+    """The fit to the data of each use, 100 (1 − RMS(x − x_m)/std(x_m)), from the mean error `with_mean` over its runs.
+
+    None where there are none, or the model is unstable on one.
+    """
+    unstable = {one.use for one in errors if one.unstable}
+    return {use: None if error is None or use in unstable else 100.0 * (1.0 - error)
+            for use, error in with_mean.items()}  # fmt: skip

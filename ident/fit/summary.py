@@ -20,7 +20,7 @@ from ident.fit.multistart import Optimum
 from ident.fit.normal_matrices import NormalMatrices
 from ident.fit.reduction import excited_band
 from ident.fit.result import Combination, Estimate, FitResult, RunError, Starts, Undetermined, Window
-from ident.fit.run_errors import rmse_of, run_error
+from ident.fit.run_errors import fit_percent, rmse_of, run_error
 from ident.fit.search import evolution
 from ident.fit.settings import Settings
 from ident.fit.simulated_fitness import SimulatedFitness
@@ -129,6 +129,7 @@ def summarise(
             (*mean_errors, *verify_errors),
             {"fit": [run.share for run in mean_runs], "verify": [run.share for run in verify_runs]},
         ),
+        fit_percent=fit_percent((*mean_errors, *verify_errors), with_mean),
         aic=None
         if window
         else aic([one.error for one in mean_errors], [own[i].length for i in meant], len(space.names)),

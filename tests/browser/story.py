@@ -23,8 +23,13 @@ def upload(page: Page, site: Service, archive: Path) -> None:
 def fit(page: Page) -> str:
     """One button; the address of the finished fit."""
     page.get_by_role("button", name="Start the fit").click()
-    expect(page.get_by_role("button", name="Search for missing effects")).to_be_visible(timeout=LONG)
+    expect(page.locator("#next")).to_be_visible(timeout=LONG)
     return page.url
+
+
+def section(page: Page, name: str) -> None:
+    """One of the sections of a fit."""
+    page.get_by_role("navigation", name="Sections of the fit").get_by_role("link", name=name).click()
 
 
 def search(page: Page, searching: Path | None = None, patience: float = LONG) -> Locator:

@@ -98,6 +98,8 @@ def another_actuator_has_it_in_the_list(page, site, screenshots):
 
 def a_written_one_is_kept_too(page, site):
     """The form of an own effect has a button for it, which leaves the page as it is."""
+    story.section(page, "Model")
+    page.get_by_text("Define your own effect").click()
     own = page.locator("form[data-own]")
     for label, text in (("Name", "lapped"), ("Strength, symbol", "h"), ("Unit", "mm"), ("Largest", "1")):
         own.get_by_label(label, exact=True).fill(text)

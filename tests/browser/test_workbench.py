@@ -47,6 +47,8 @@ def the_next_run_is_proposed(page):
 
 def an_own_effect_is_tried(page, watch):
     """Refused at its character, then shown as mathematics; with a curve as well."""
+    story.section(page, "Model")
+    page.get_by_text("Define your own effect").click()
     own = page.locator("form[data-own]")
     for label, text in (("Name", "overlap"), ("Strength, symbol", "h"), ("Unit", "mm"), ("Largest", "1")):
         own.get_by_label(label, exact=True).fill(text)
@@ -117,6 +119,7 @@ def test_a_new_user_finds_what_is_missing_adds_it_and_sees_the_error_fall(page, 
         page.locator("#missing").screenshot(path=screenshots / "cards.png")
     the_next_run_is_proposed(page)
     an_own_effect_is_tried(page, watch)
+    story.section(page, "Missing effects")
     everywhere(page, screenshots, "missing")
 
     first, second = story.add(page, page.locator("#missing"), "coulomb friction, dead zone")
@@ -127,6 +130,7 @@ def test_a_new_user_finds_what_is_missing_adds_it_and_sees_the_error_fall(page, 
     assert re.search(
         r"coulomb friction, (59\.[89]|60\.[0-2])\d* ± 0\.\d+ N; dead zone, (39\d|40\d)\S* ± \S+ µm", added
     ), added
+    story.section(page, "History")
     page.locator("#figure-ladder").scroll_into_view_if_needed()
     expect(page.locator("#figure-ladder canvas")).to_be_visible(timeout=story.LONG)
     everywhere(page, screenshots, "mended")
@@ -147,6 +151,7 @@ def test_a_measured_actuator_goes_the_same_way(page, site, measured_data, full, 
     story.upload(page, site, packed(measured_data / "mts_actuator", tmp_path))
     (serial,) = page.locator(".crumbs a:last-child").all_inner_texts()
     story.fit(page)
+    story.section(page, "Residuals")
     expect(page.get_by_role("heading", name="Residual analysis")).to_be_visible()
     page.locator("#figure-residual-map").scroll_into_view_if_needed()
     expect(page.locator("#figure-residual-map canvas")).to_be_visible(timeout=story.LONG)

@@ -10,6 +10,7 @@ import pytest
 
 from ident.fit.information import aic, aic_change, same_samples
 from ident.fit.result import FitResult, RunError
+from ident.fit.run_errors import fit_percent
 from ident.unstable import UNSTABLE
 
 
@@ -53,10 +54,12 @@ def test_only_fits_to_the_same_samples_are_compared():
 def test_the_fit_to_the_data_counts_the_mean_and_goes_into_the_json():
     """100 % less RMS(x − x_m)/std(x_m): 1 − 0.25."""
     found = fit([0.1])
-    assert found.fit_percent == {"fit": pytest.approx(90.0), "verify": pytest.approx(75.0)}
+    fits = fit_percent(found.runs, found.error_with_mean)
+    assert fits == {"fit": pytest.approx(90.0), "verify": pytest.approx(75.0)}
+    found = replace(found, fit_percent=fits)
     assert found.to_json()["fit_percent"] == found.fit_percent
     assert FitResult.from_json(found.to_json()) == found
     assert found.error_of("verify").fit() == "75.0 %"
     unstable = replace(found, runs=(RunError("v", "verify", UNSTABLE, 0.0, UNSTABLE),))
-    assert unstable.fit_percent["verify"] is None
+    assert fit_percent(unstable.runs, unstable.error_with_mean)["verify"] is None
     assert unstable.error_of("verify").fit() == "unstable on run v"
