@@ -5,6 +5,8 @@ from __future__ import annotations
 import json
 import re
 from dataclasses import replace
+from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -32,6 +34,8 @@ from schemas.result import FitResultView
 
 LARGE = re.compile(r"(?<![\d.])\d{4,}(\.\d*)?\s*%|e\+\d+\s*%")
 OFFSET = 830.0  # m
+UNSURVEYED: Any = SimpleNamespace(budget=None, white={})
+"""What is known of a residual that nobody looked at."""
 
 
 @pytest.fixture(scope="module")
@@ -93,7 +97,9 @@ def test_offset_stands_in_the_first_line_in_tables_json_page_figures_and_report(
     for text in (first, str(off).splitlines()[0], ident.compare(shifted, off).headline):
         assert re.search(r"0\.\d+ % \(with the mean .+ times, RMSE 830\.0 m\)", text)
     errors = next(i for i, line in enumerate(rest) if line.startswith("error "))
-    assert [line.split("  ")[0] for line in rest[errors + 1 : errors + 4]] == ["RMSE", "with the mean", "eq. (17)"]
+    assert [line.split("  ")[0] for line in rest[errors + 1 : errors + 5]] == [
+        "RMSE", "with the mean", "NRMSE fit", "eq. (17)",
+    ]  # fmt: skip
     assert "830.0 m" in rest[errors + 1]
     (table,) = [one for one in ident.compare(shifted, off).listings() if not isinstance(one, str)]
     assert table.header[2:5] == ("RMSE", "with the mean", "eq. (17)")
@@ -104,7 +110,7 @@ def test_offset_stands_in_the_first_line_in_tables_json_page_figures_and_report(
     said = off.error_of("fit").in_print()
     assert said in error_rows(off)[0].error
     assert error_rows(off)[0].size == "830.0 m"
-    assert said in str(list(_error(off, None)))
+    assert said in str(list(_error(off, UNSURVEYED)))
     assert said in next(_errors(off, off)).first
     assert words.error(off.error_of("fit")) in words.verdict(off)
     studied = study(shifted, off)
@@ -127,7 +133,7 @@ def test_a_run_on_which_the_model_is_unstable_is_named_wherever_the_error_stands
     assert error_rows(stored)[-1].error == told
     assert (error_rows(stored)[-1].ratio, error_rows(stored)[-1].offset) == ("–", "–")
     assert f"{told} (validation)" in words.verdict(stored)
-    assert told in str(list(_error(stored, None)))
+    assert told in str(list(_error(stored, UNSURVEYED)))
     assert any(one.said_second and one.said_second.in_print() == told for one in _runs(fit, stored))
     assert told in str(of_fits([fit, stored]))
 

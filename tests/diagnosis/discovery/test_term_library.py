@@ -38,7 +38,9 @@ def signals() -> dict[str, np.ndarray]:
 @cache
 def every() -> tuple[Term, ...]:
     """The whole library."""
-    library = TermLibrary(_PLACES, _there(MODEL, _PLACES, _SIGNALS, signals()), signals(), UNITS, BAND, SECONDS, ("Kp", "mL", "k"))
+    library = TermLibrary(
+        _PLACES, _there(MODEL, _PLACES, _SIGNALS, signals()), signals(), UNITS, BAND, SECONDS, ("Kp", "mL", "k")
+    )
     return tuple(library.terms())
 
 
