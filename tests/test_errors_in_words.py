@@ -102,7 +102,7 @@ def test_offset_stands_in_the_first_line_in_tables_json_page_figures_and_report(
     ]  # fmt: skip
     assert "830.0 m" in rest[errors + 1]
     (table,) = [one for one in ident.compare(shifted, off).listings() if not isinstance(one, str)]
-    assert table.header[2:5] == ("RMSE", "with the mean", "eq. (17)")
+    assert table.header[2:6] == ("RMSE", "with the mean", "NRMSE fit", "eq. (17)")
     assert table.rows[0][2] == "830.0 m"
     data = FitResultView(**off.to_json()).model_dump()
     assert data["rmse"]["fit"] == pytest.approx(OFFSET, rel=1e-3)
