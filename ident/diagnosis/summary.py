@@ -43,13 +43,11 @@ def _missing_and_helping(found: Diagnosis, named: Sequence[Message]) -> Message:
     improbable = [_is_improbable(found, name) for name in found.verdict.effects]
     missing = [effect for effect, doubted in zip(named, improbable, strict=True) if not doubted]
     helping = [effect for effect, doubted in zip(named, improbable, strict=True) if doubted]
-    several = len(helping) > 1
     if not helping:
         return message("summary.missing", effects=missing)
     if not missing:
-        return message("summary.several_helping" if several else "summary.helping", helping=helping)
-    key = "summary.missing_and_several_helping" if several else "summary.missing_and_helping"
-    return message(key, effects=missing, helping=helping)
+        return message("summary.helping", helping=helping)
+    return message("summary.missing_and_helping", effects=missing, helping=helping)
 
 
 def _is_improbable(found: Diagnosis, name: str) -> bool:

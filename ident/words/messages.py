@@ -7,11 +7,8 @@ from collections.abc import Mapping
 SUMMARY: Mapping[str, str] = {
     "summary.missing": "Missing: {effects:all}.",
     "summary.missing_and_helping":
-        "Missing: {effects:all}. {helping:all} also lowers the error, but something else is probably the cause.",
-    "summary.missing_and_several_helping":
-        "Missing: {effects:all}. {helping:all} also lower the error, but something else is probably the cause.",
-    "summary.helping": "{helping:all} lowers the error, but something else may be the cause.",
-    "summary.several_helping": "{helping:all} lower the error, but something else may be the cause.",
+        "Missing: {effects:all}. The error also falls with {helping:all}, but something else is probably the cause.",
+    "summary.helping": "The error falls with {helping:all}, but something else may be the cause.",
     "summary.contradicted": "Missing: {effects:all}, but validation data contradict it.",
     "summary.stopped": "Nothing was found so far: the search was stopped.",
     "summary.unlisted": "Missing: something that no listed effect explains.",

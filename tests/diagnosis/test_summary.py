@@ -51,12 +51,12 @@ def test_what_is_less_probable_than_not_is_told_apart_from_what_is_missing():
     said = {"dead_zone": 0.97, "lead": 0.05}
     both = lines(effects=("dead_zone", "lead"), standing="stand_in", unexplained=True, probabilities=said)
     assert both[0] == (
-        "Missing: dead zone (80.00 ± 0.20 µm, probability 97 %). lead (probability 5 %) also lowers the error, but "
+        "Missing: dead zone (80.00 ± 0.20 µm, probability 97 %). The error also falls with lead (probability 5 %), but "
         "something else is probably the cause."
     )
     one = lines(standing="stand_in", unexplained=True, probabilities={"dead_zone": 0.3})
     assert one[0] == (
-        "dead zone (80.00 ± 0.20 µm, probability 30 %) lowers the error, but something else may be the cause."
+        "The error falls with dead zone (80.00 ± 0.20 µm, probability 30 %), but something else may be the cause."
     )
     group = ("dead_zone", "underlap")
     grouped = lines(indistinguishable=(group,), group_probabilities=(0.8,), probabilities={"dead_zone": 0.3})
