@@ -51,9 +51,13 @@ def _missing_and_helping(found: Diagnosis, named: Sequence[Message]) -> Message:
 
 
 def _is_improbable(found: Diagnosis, name: str) -> bool:
-    """Whether an effect, with all of its group, is less probable than not: the median model leaves it out."""
+    """Whether an effect, with all of its group, is less probable than not, and something unlisted more probable.
+
+    The median model leaves it out. Where nothing unlisted acts, an effect is but one of several that may.
+    """
     probability = _probability(found, name)
-    return probability is not None and probability < 0.5
+    unlisted = found.verdict.probabilities.get("unlisted", 0.0)
+    return probability is not None and probability < 0.5 <= unlisted
 
 
 def _probability(found: Diagnosis, name: str) -> float | None:

@@ -48,16 +48,17 @@ def test_a_group_has_one_probability_and_the_run_that_tells_it_apart():
 
 def test_what_is_less_probable_than_not_is_told_apart_from_what_is_missing():
     """It lowers the error, and is in the recommended model; but that the machine lacks it is not said."""
-    said = {"dead_zone": 0.97, "lead": 0.05}
+    said = {"dead_zone": 0.97, "lead": 0.05, "unlisted": 0.9}
     both = lines(effects=("dead_zone", "lead"), standing="stand_in", unexplained=True, probabilities=said)
     assert both[0] == (
         "Missing: dead zone (80.00 ± 0.20 µm, probability 97 %). The error also falls with lead (probability 5 %), but "
         "something else is probably the cause."
     )
-    one = lines(standing="stand_in", unexplained=True, probabilities={"dead_zone": 0.3})
+    one = lines(standing="stand_in", unexplained=True, probabilities={"dead_zone": 0.3, "unlisted": 0.9})
     assert one[0] == (
         "The error falls with dead zone (80.00 ± 0.20 µm, probability 30 %), but something else may be the cause."
     )
+    assert lines(probabilities={"dead_zone": 0.4, "unlisted": 0.1})[0].startswith("Missing: dead zone")
     group = ("dead_zone", "underlap")
     grouped = lines(indistinguishable=(group,), group_probabilities=(0.8,), probabilities={"dead_zone": 0.3})
     assert grouped[0] == "Missing: dead zone or underlap (probability 80 %)."
