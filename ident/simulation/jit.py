@@ -11,6 +11,7 @@ from __future__ import annotations
 import pickle
 import sys
 from collections.abc import Callable, Iterator
+from operator import attrgetter
 from types import CodeType, FunctionType, ModuleType
 from typing import Any, TypeVar
 
@@ -29,6 +30,7 @@ from ident.simulation.kept import found, in_turn, keep
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 _bytes_of: Callable[[Any], bytes] = serialize.dumps
+_code_of = attrgetter("library")  # numba's name for the machine code of what it compiled
 VERSIONS = (numba.__version__, llvmlite.__version__, np.__version__, sys.version)
 
 
@@ -79,7 +81,7 @@ class _Kept(NullCache):
 
     def save_overload(self, sig: Any, data: Any) -> None:
         """Keep what was compiled, unless it holds addresses of this process."""
-        if not data.library.has_dynamic_globals and not any(not part.can_cache for part in data.lifted):
+        if not _code_of(data).has_dynamic_globals and all(part.can_cache for part in data.lifted):
             keep(self._text(sig, data.codegen), _bytes_of(data._reduce()))
 
     def _text(self, signature: Any, codegen: Any) -> str:
