@@ -26,7 +26,7 @@ from ident.fit.settings import Settings
 from ident.fit.simulated_fitness import SimulatedFitness, shortened
 from ident.fit.simulated_runs import SimulatedRuns
 from ident.fit.space import search_space
-from ident.fit.wider_bounds import wider_at
+from ident.fit.wider_bounds import ROUNDS, wider_at
 from ident.matrix import Matrix
 from ident.noise.floor import Floors, noise_floors
 from ident.parallel import each
@@ -332,7 +332,7 @@ class CandidateModels:
         point = fitness.space.point({**known, **fitness.space.fixed})
         way = way or (CRITERIA.estimation.trial if samples else CRITERIA.estimation.full)
         found = self._optimum(effects, fitness, point, way, samples)
-        for _ in range(CRITERIA.estimation.widened):
+        for _ in range(ROUNDS):
             ended = [
                 self.strength(name) for name in effects if name in self.effects and self._asks_farther(found, name)
             ]
@@ -360,24 +360,22 @@ class CandidateModels:
             return refit
         return self.refit(refit.effects, refit.values, samples, way)
 
-    def converged(self, refit: FittedModel) -> FittedModel:
-        """A refit on all records, gone on with until it stays: in a long narrow valley one is stopped on its way."""
+    def converged(self, refit: FittedModel, samples: int = 0, way: Way | None = None) -> FittedModel:
+        """A refit, gone on with until it stays: in a long narrow valley one is stopped on its way.
+
+        On all records, or on those of at most so many samples.
+        """
         for _ in range(CRITERIA.estimation.convergence_rounds):
-            further = self.refit(refit.effects, refit.values)
+            further = self.refit(refit.effects, refit.values, samples, way)
             if not further.finite or further.local.error > CRITERIA.estimation.new_optimum * refit.local.error:
                 break
             refit = further
         return refit
 
-    def gone_on_with(self, trial: FittedModel, aim: float = np.inf) -> FittedModel:
-        """A first refit, gone on with until its error stays, as long as it may come below `aim`."""
+    def converged_trial(self, trial: FittedModel, aim: float = np.inf) -> FittedModel:
+        """The same of a first refit, as long as it may come below `aim`."""
         way = replace(CRITERIA.estimation.trial, aim=aim)
-        for _ in range(CRITERIA.estimation.convergence_rounds if trial.finite else 0):
-            further = self.refit(trial.effects, trial.values, CRITERIA.estimation.trial_samples, way)
-            if not further.finite or further.local.error > CRITERIA.estimation.new_optimum * trial.local.error:
-                break
-            trial = further
-        return trial
+        return self.converged(trial, CRITERIA.estimation.trial_samples, way) if trial.finite else trial
 
     def best_optimum(self, refit: FittedModel) -> FittedModel:
         """The refit, or a better one from where else in the whole search space the error is least.

@@ -57,10 +57,6 @@ class Estimation:
     places_of_rest: int = 65
     """[places] Along its range, at which such a parameter is looked at. Why: eight a decade of an eight-decade range.
     Test: test_undetermined.py::test_a_mass_that_no_record_shows_rests_where_steps_are_few"""
-    widened: int = 3
-    """[times] That the range of a strength is made ten times wider while it ends at its bound. Why: ranges are
-    orders of magnitude of the signals; three more decades are beyond every machine.
-    Test: test_beyond_bounds.py::test_a_strength_beyond_its_range_is_found"""
     convergence_rounds: int = 5
     """[refits] To continue with while each is a new optimum. Why: in a long narrow valley one refit stops on its
     way."""

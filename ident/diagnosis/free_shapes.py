@@ -105,7 +105,7 @@ def trial_from_everywhere(
         if keeps(ends, prediction):
             break
         ends.append(models.trial(effects, [start], aim))
-    return models.gone_on_with(stable_minimum(ends, lambda end: end.local.error), aim)
+    return models.converged_trial(stable_minimum(ends, lambda end: end.local.error), aim)
 
 
 def determined(refit: FittedModel, effect: Effect) -> bool:

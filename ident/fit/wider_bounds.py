@@ -23,7 +23,8 @@ from ident.progress import Report
 Array = NDArray[np.float64]
 FURTHER = 10.0
 """Times as far reaches a range that was too narrow. Why: a decade is a step that a polish takes at once."""
-ROUNDS = 3  # of widening at most: a thousandfold; beyond it the parameter is not seen, and said to be at its bound
+ROUNDS = 3
+"""Times that a range is widened at most: a thousandfold. Why: beyond it the parameter is not seen, and at its bound."""
 WIDENED = ("kg", "s")
 """Units of what is searched beyond its bound: masses, lags and delays. A ratio at its bound says what it is."""
 

@@ -94,7 +94,7 @@ def test_first_steps_that_ended_far_from_what_they_have_to_reach_are_not_begun_a
 
 
 @pytest.mark.parametrize(("error", "aim"), [(0.1, 0.01), (0.1, 0.11), (0.1, 0.05)])
-def test_first_steps_whose_next_one_is_cut_at_a_bound_are_gone_on_with(error, aim):
+def test_first_steps_whose_next_one_is_cut_at_a_bound_are_converged_trial(error, aim):
     """What such a step promises is nothing, or less, and a shorter one may promise more."""
     curvature = np.array([[1.0, 0.99], [0.99, 1.0]])
     here = SimpleNamespace(error=error, gradient=np.array([-0.02, 0.0]), curvature=curvature)

@@ -135,13 +135,13 @@ def test_a_mass_next_to_nothing_makes_no_record_long():
     assert models.is_short(stiff)
 
 
-def test_a_trial_that_was_stopped_on_its_way_is_gone_on_with():
+def test_a_trial_that_was_stopped_on_its_way_is_converged_trial():
     """After one step from a friction of half the strength."""
     free, base, prediction = refitted(Damper())
     begun = {**prediction.starts[0], "presliding_friction__force": 20.0, "presliding_friction__displacement": 2e-3}
     first = free.refit(("presliding_friction",), begun, CRITERIA.estimation.trial_samples, Way(most=1))
-    assert free.gone_on_with(first).local.error < 0.7 * first.local.error
-    assert free.gone_on_with(first).local.error == pytest.approx(Damper().noise, rel=0.05)
+    assert free.converged_trial(first).local.error < 0.7 * first.local.error
+    assert free.converged_trial(first).local.error == pytest.approx(Damper().noise, rel=0.05)
     assert base.local.error > first.local.error
 
 
