@@ -55,7 +55,7 @@ def point(measured: Record) -> Response:
     drive = fit_sine(alpha, record.current, drift=True)
     count = int(np.floor(alpha[-1] / (2 * np.pi) + 0.01))
     if count < 1 or drive.a2 <= 0:
-        raise Unusable("no-period", f"the record holds no whole period of {frequency:g} Hz", f"{run_name(record.id)}",
+        raise Unusable("no-period", f"the record holds no whole period of {frequency:g} Hz", run_name(record.id),
                        "record at least two periods, or correct frequency")  # fmt: skip
     first = 1 if count > 1 else 0  # the first period holds the start
     edges = [round(i * record.rate / frequency) for i in range(first, count + 1)]

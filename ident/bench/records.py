@@ -145,16 +145,16 @@ def _current(run: Run) -> Array:
     """The current; a command where a bench has nothing else."""
     found = run.channels.get("current", run.channels.get("command"))
     if found is None:
-        raise Unusable("missing-channel", "no current channel", f"{run_name(run.id)}", "name the column of the current")
+        raise Unusable("missing-channel", "no current channel", run_name(run.id), "name the column of the current")
     return found
 
 
 def _record(run: Run, rated: float) -> Record:
     if run.time_unit != "s":
-        raise Unusable("clock", "the sample rate is unknown", f"{run_name(run.id)}", "state sample_rate in Hz")
+        raise Unusable("clock", "the sample rate is unknown", run_name(run.id), "state sample_rate in Hz")
     if "displacement" not in run.channels:
         raise Unusable(
-            "missing-channel", "no displacement channel", f"{run_name(run.id)}", "name the column of the position"
+            "missing-channel", "no displacement channel", run_name(run.id), "name the column of the position"
         )
     pressure = None
     if {"pressure_a", "pressure_b"} <= run.channels.keys():

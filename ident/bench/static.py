@@ -127,7 +127,7 @@ def by_groups(records: Sequence[Record]) -> tuple[float, float, float]:
     up, down = (np.concatenate(starts[sign]) for sign in (1, -1))
     if not len(up) or not len(down):
         raise Unusable("no-movement", "dead space and zero shift cannot be found: the link did not start both ways",
-                       f"{run_name(records[0].id)}", "let the set position go further than the dead space")  # fmt: skip
+                       run_name(records[0].id), "let the set position go further than the dead space")  # fmt: skip
     high, low = (float(np.median(np.concatenate(moving[sign]))) for sign in (1, -1))
     zero, width = 0.5 * float(np.median(up) + np.median(down)), 0.5 * float(np.median(up) - np.median(down))
     return zero, max(width, 1e-5), max(0.5 * (high - low), 1.0)
@@ -136,5 +136,5 @@ def by_groups(records: Sequence[Record]) -> tuple[float, float, float]:
 def _pressure(record: Record) -> Array:
     if record.pressure is None:
         raise Unusable("missing-channel", "kp, friction and hysteresis cannot be found without pressure_a, pressure_b",
-                       f"{run_name(record.id)}", "record both cavity pressures at the static test")  # fmt: skip
+                       run_name(record.id), "record both cavity pressures at the static test")  # fmt: skip
     return record.pressure

@@ -53,4 +53,4 @@ def refuse_unmeasured(symbols: Iterable[str], runs: Iterable[Run]) -> None:
     if found := unmeasured(symbols, runs):
         channel, run, what = found
         remedy = f"give the run its {channel}, leave the run out, or fit without the effect"
-        raise Unusable("missing-channel", what, f"{run_name(run)}", remedy)
+        raise Unusable("missing-channel", what, run_name(run), remedy)

@@ -97,7 +97,7 @@ def _window(run: Run, command: Real, start: float | None, seconds: float | None)
     first = start if start is not None else max(0.0, min(run.duration / 3, run.duration - length))
     if not (0 <= first < run.duration and length > 0):
         stretch = f"a stretch of {length:g} from {first:g}"
-        raise Unusable("outside-record", stretch, f"{run_name(run.id)}", f"stay within 0 to {run.duration:g}")
+        raise Unusable("outside-record", stretch, run_name(run.id), f"stay within 0 to {run.duration:g}")
     begin = round(first * run.sample_rate)
     return slice(begin, min(run.length, begin + max(2, round(length * run.sample_rate))))
 

@@ -86,7 +86,7 @@ def error(of: ErrorOf) -> str:
 
 def describe(run: Run) -> str:
     """A run in one line: id, gain, amplitude, specimen, as far as stated."""
-    parts = [f"{run_name(run.id)}"]
+    parts = [run_name(run.id)]
     if run.gain is not None:
         parts.append(gain(run.gain))
     if run.amplitude is not None:

@@ -282,7 +282,7 @@ def _refuse_undriven(preset: Preset, matrix: Matrix) -> None:
             others = [known.name for known in PRESETS.values() if known.data.driven_by in run.channels]
             what = f"no {preset.data.driven_by} channel, which drives the model {preset.name}"
             remedy = f"name its column, or use the model {' or '.join(others)}" if others else "name its column"
-            raise Unusable("missing-channel", what, f"{run_name(run.id)}", remedy)
+            raise Unusable("missing-channel", what, run_name(run.id), remedy)
 
 
 def _fed_back(preset: Preset, runs: Sequence[Run]) -> tuple[str, ...]:

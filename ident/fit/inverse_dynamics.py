@@ -100,7 +100,7 @@ def _has_channels(run: Run) -> bool:
 def _record(run: Run, cutoff: float) -> _Record:
     rate, ends = run.sample_rate, int(run.sample_rate / cutoff)
     too_short = Unusable("too-short", f"fewer than {_FEWEST} samples in motion at a cut-off of {cutoff:g} Hz",
-                         f"{run_name(run.id)}", "give a longer record of motion or leave the run out")  # fmt: skip
+                         run_name(run.id), "give a longer record of motion or leave the run out")  # fmt: skip
     if len(run.channels["displacement"]) <= 2 * ends + _FEWEST:
         raise too_short
     low_pass = scipy.signal.butter(4, cutoff, fs=rate, output="sos")
@@ -115,7 +115,7 @@ def _record(run: Run, cutoff: float) -> _Record:
         raise too_short
     design = np.column_stack([acceleration, speed, sign, np.ones(len(x))])[grid]
     if np.ptp(force[grid][moving]) <= 1e-9 * np.abs(force).max():
-        raise Unusable("zero-variance", "the drive's force does not change", f"{run_name(run.id)}", "check its column")
+        raise Unusable("zero-variance", "the drive's force does not change", run_name(run.id), "check its column")
     return _Record(design * moving[:, None], force[grid] * moving, moving)
 
 

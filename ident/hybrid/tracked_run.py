@@ -115,11 +115,11 @@ def sensor_noise(y: Array) -> float:
 def _samples(run: Run) -> tuple[Array, Array]:
     if "command" not in run.channels:
         raise Unusable(
-            "missing-channel", "no command channel, which a loop follows", f"{run_name(run.id)}", "name its column"
+            "missing-channel", "no command channel, which a loop follows", run_name(run.id), "name its column"
         )
     r, y = run.command, run.measured
     if len(r) < 2 or not (np.std(r) > 0 and np.std(y) > 0):
-        raise Unusable("no-motion", "command or output does not move", f"{run_name(run.id)}", "track a run that moves")
+        raise Unusable("no-motion", "command or output does not move", run_name(run.id), "track a run that moves")
     return r, y
 
 

@@ -135,7 +135,7 @@ def read_runs(
         tables: dict[int, Table] = {}
         for number, run in wanted:
             if run.skip_rows not in tables:
-                of_run = f"{run_name(run.labels.id)}"
+                of_run = run_name(run.labels.id)
                 tables[run.skip_rows] = read_table(parts[0], name, run.skip_rows, limits, of_run, near)
                 for notice in tables[run.skip_rows].notices:
                     notices.setdefault(notice.replace(name, "", 1), []).append(notice)

@@ -57,7 +57,7 @@ def describe_run(data: Any, where: str) -> RunDescription:
     """Read one run. Raises Unusable with the run's id and the field."""
     fields = Fields(data, where, RUN)
     name = describe_id(fields)
-    fields = Fields(data, f"{run_name(name)}", RUN)
+    fields = Fields(data, run_name(name), RUN)
     kind = fields.choice("kind", KINDS, "other")
     channels = describe_channels(fields.need("channels", "describe command and displacement"), fields.place("channels"))
     outputs = describe_outputs(fields, kind, channels)

@@ -48,7 +48,7 @@ def described(stated: Mapping[str, Any], file: str, name: str) -> RunDescription
     run = {key: list(value) if isinstance(value, tuple) else value for key, value in stated.items()}
     for key in _OF_NO_RUN:
         run.pop(key, None)
-    return describe_run({"id": name, "file": file, "channels": channels, **run}, f"{run_name(name)}")
+    return describe_run({"id": name, "file": file, "channels": channels, **run}, run_name(name))
 
 
 def of_file(
