@@ -9,7 +9,7 @@ runs/                   empty: what is measured goes here
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -19,10 +19,11 @@ from numpy.typing import NDArray
 
 from ident.bench.synthesis import RATE
 from ident.errors import Unusable
+from ident.matrix import Actuator
 from ident.planning.law import TEXTS
-from ident.planning.plan import Plan, PlannedRun
+from ident.planning.planned_run import PlannedRun
 from ident.progress import Progress, Report, silent
-from ident.rig.limits import UNITS
+from ident.rig.limits import UNITS, RigLimits
 from ident.words.nearest import did_you_mean
 
 Array = NDArray[np.float64]
@@ -32,8 +33,18 @@ _OF_LAW = {"time": (1.0, "s"), "set_position": (1e3, "mm"), "way": (1e3, "mm"), 
 _RECORDED = {"current": "%", "displacement": "mm", "pressure_a": "MPa", "pressure_b": "MPa"}
 
 
-def write_plan(plan: Plan, out: Path, formats: tuple[str, ...], report: Report = silent) -> None:
-    """Write a plan to the folder `out`, which must not exist or be empty. Raises Unusable."""
+def write_folder(
+    out: Path,
+    runs: Sequence[PlannedRun],
+    plan: Mapping[str, Any],
+    measured: str,
+    formats: tuple[str, ...],
+    report: Report = silent,
+) -> None:
+    """Write planned runs to the folder `out`, which must not exist or be empty. Raises Unusable.
+
+    `plan` is the JSON data of the plan, `measured` the text of matrix.yaml.
+    """
     if strange := [name for name in formats if name not in WRITERS]:
         raise Unusable("unknown-format", f"no command files as {strange[0]!r}", "format",
                        did_you_mean(strange[0], WRITERS))  # fmt: skip
@@ -41,14 +52,16 @@ def write_plan(plan: Plan, out: Path, formats: tuple[str, ...], report: Report =
         raise Unusable("folder-in-use", "the folder is not empty", str(out), "name a new one")
     for folder in ("commands", "runs"):
         (out / folder).mkdir(parents=True)
-    for number, run in enumerate(plan.runs):
-        report(Progress("write", number, len(plan.runs)))
+    for number, run in enumerate(runs):
+        report(Progress("write", number, len(runs)))
         columns, rate = columns_of(run)
         for name in formats:
             WRITERS[name](out / "commands" / f"{run.id}.{name}", columns, rate)
-    report(Progress("write", len(plan.runs), len(plan.runs)))
-    (out / "plan.json").write_text(json.dumps(about(plan), indent=2, allow_nan=False) + "\n", encoding="utf-8")
-    (out / "matrix.yaml").write_text(description(plan), encoding="utf-8")
+    report(Progress("write", len(runs), len(runs)))
+    (out / "plan.json").write_text(
+        json.dumps(explained(plan, runs), indent=2, allow_nan=False) + "\n", encoding="utf-8"
+    )
+    (out / "matrix.yaml").write_text(measured, encoding="utf-8")
 
 
 def columns_of(run: PlannedRun) -> tuple[dict[str, Array], float]:
@@ -63,18 +76,21 @@ def columns_of(run: PlannedRun) -> tuple[dict[str, Array], float]:
     return {"time_s": np.arange(len(command)) / rate, f"command_{unit}": command}, rate
 
 
-def about(plan: Plan) -> dict[str, Any]:
-    """The plan as plain JSON data, with what the control unit does for each law."""
-    data = plan.to_json()
-    for entry, run in zip(data["runs"], plan.runs, strict=True):
+def explained(plan: Mapping[str, Any], runs: Sequence[PlannedRun]) -> dict[str, Any]:
+    """The JSON data of a plan, with what the control unit does for each law, and the units."""
+    entries = [dict(data) for data in plan["runs"]]
+    for data, run in zip(entries, runs, strict=True):
         if run.law is not None:
-            entry["law"] |= {"named": run.law.named, "text": TEXTS[run.law.number]}
-    return {**data, "units": {"peaks": dict(UNITS), "currents": "rated currents", "lengths": "m", "times": "s"}}
+            data["law"] = {**data["law"], "named": run.law.named, "text": TEXTS[run.law.number]}
+    return {
+        **plan,
+        "runs": entries,
+        "units": {"peaks": dict(UNITS), "currents": "rated currents", "lengths": "m", "times": "s"},
+    }
 
 
-def description(plan: Plan) -> str:
-    """The matrix.yaml of what will be measured."""
-    own = plan.actuator
+def description(own: Actuator, limits: RigLimits, runs: Sequence[PlannedRun]) -> str:
+    """The matrix.yaml of what will be measured on an actuator, within the limits of its rig."""
     sizes = {"piston_area": "m^2", "stroke": "m", "supply_pressure": "Pa", "volume": "m^3"}
     actuator = {"serial": own.serial, "name": own.name, "batch": own.batch, "servo_valve": own.servo_valve}
     actuator = {name: text for name, text in actuator.items() if text}
@@ -82,9 +98,9 @@ def description(plan: Plan) -> str:
         name: f"{value:.12g} {unit}" for name, unit in sizes.items() if (value := getattr(own, name)) is not None
     }
     whole: dict[str, Any] = {"actuator": actuator}
-    if plan.limits:
-        whole["rig"] = {name: f"{value:.12g} {UNITS[name]}" for name, value in plan.limits.stated.items()}
-    whole["runs"] = [entry(run) for run in plan.runs]
+    if limits:
+        whole["rig"] = {name: f"{value:.12g} {UNITS[name]}" for name, value in limits.stated.items()}
+    whole["runs"] = [entry(run) for run in runs]
     head = "# Put what is measured at runs/, under these names and columns; then: servoident check, fit.\n"
     return head + yaml.safe_dump(whole, sort_keys=False, allow_unicode=True)
 

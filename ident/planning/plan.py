@@ -8,7 +8,7 @@ would have to shrink below a tenth of what the program asks, or whose loop is un
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -21,13 +21,14 @@ from ident.fit.result import FitResult
 from ident.matrix import Actuator
 from ident.plain import Misfit, read, written
 from ident.planning.bench_program import KONONYKHIN, UncertainBench, bench_plans, uncertain_bench
+from ident.planning.files import description, write_folder
 from ident.planning.law import Law
+from ident.planning.planned_run import PlannedRun, RefusedRun
 from ident.planning.programs import QIAN, Settings, program_of, qian_program, read_program
-from ident.planning.signal import AskedRun, Program, Signal
+from ident.planning.signal import AskedRun, Program
 from ident.progress import Progress, Report, silent
 from ident.rig.limits import RigLimits, Utilisation
-from ident.run import Run, Specimen
-from ident.words.conditions import amplitude
+from ident.run import Run
 from ident.words.listed import first_of
 from ident.words.number import count, plain
 from ident.words.percent import percent
@@ -40,55 +41,6 @@ LEAST = 0.1
 """Share of the amplitude that a program asks below which a run is refused: its answer would drown in the noise."""
 _TRIES = 8  # of a machine whose peaks do not grow in proportion
 _STAGE = "plan"
-
-
-@dataclass(frozen=True)
-class PlannedRun:
-    """One run as it is to be played: `signal`, or at a bench the `law` of its control unit.
-
-    `asked` is the amplitude that the program asks for, in the unit of the signal, of a law its current in rated ones.
-    `limit` is the tightest of the rig's and `share` what the run takes of it, `peaks` are all that are predicted, SI.
-    """
-
-    id: str
-    kind: str
-    use: str
-    asked: float
-    signal: Signal | None = None
-    law: Law | None = None
-    specimen: Specimen | None = None
-    gain: float | None = None
-    limit: str = ""
-    share: float | None = None
-    peaks: Mapping[str, float] = field(default_factory=dict)
-
-    @property
-    def size(self) -> float:
-        """The amplitude that is planned, as `asked` is given."""
-        if self.signal is not None:
-            return self.signal.amplitude
-        return 0.0 if self.law is None else self.law.size
-
-    @property
-    def scale(self) -> float:
-        """What is left of the amplitude that the program asks."""
-        return self.size / self.asked
-
-    @property
-    def words(self) -> str:
-        """The size in words."""
-        if self.signal is not None:
-            return f"{amplitude(float(f'{self.size:.4g}'), self.signal.unit)} RMS"
-        return amplitude(self.size, "m") if self.kind == "static" else percent(self.size)
-
-
-@dataclass(frozen=True)
-class RefusedRun:
-    """A run that cannot be: why, and the factor by which its amplitude would have to shrink, None where none helps."""
-
-    id: str
-    why: str
-    factor: float | None = None
 
 
 @dataclass(frozen=True)
@@ -159,10 +111,12 @@ class Plan(Shown):
             raise Unusable("bad-plan", f"not the JSON of a plan: {error}", "plan", "make the plan again") from None
 
     def write(self, out: Path | str, formats: Iterable[str] = ("csv",), report: Report = silent) -> None:
-        """The command files, plan.json and a matrix.yaml that the answers drop into: :mod:`ident.planning.files`."""
-        from ident.planning.files import write_plan  # noqa: PLC0415 - a plan is data, its files are beside it
+        """The command files, plan.json and a matrix.yaml that the answers drop into: :mod:`ident.planning.files`.
 
-        write_plan(self, Path(out), tuple(formats), report)
+        `out` must not exist or be empty; `formats` are among csv, mat, tdms. Raises Unusable.
+        """
+        measured = description(self.actuator, self.limits, self.runs)
+        write_folder(Path(out), self.runs, self.to_json(), measured, tuple(formats), report)
 
 
 def plan(
