@@ -253,21 +253,6 @@ class ProfileRequest(BaseModel):
     parameter: str = Field(min_length=1, max_length=200)
 
 
-class ProfileView(BaseModel):
-    """The profile likelihood of a parameter, SI: least error (eq. 17) and deviance at each value, 95 % interval.
-
-    An end is null where the data set no limit to that side.
-    """
-
-    parameter: str
-    unit: str
-    values: list[float]
-    errors: list[float]
-    deviance: list[float]
-    lower: float | None
-    upper: float | None
-
-
 class FitColumn(BaseModel):
     """One of several fits, under the letter that the runs name it by, and the serial number of its actuator."""
 

@@ -10,13 +10,13 @@ from app.access.roles import READERS
 from app.context import Here
 from app.errors import COMMON
 from app.fits import export, service, sizes
+from ident.residuals.budget import Budget
 from schemas.fit import (
     ComparisonView,
     ErrorSizesView,
     FitView,
     SideBySideView,
 )
-from schemas.result import ErrorBudget
 
 router = APIRouter(prefix="/fits", tags=["fits"], responses=COMMON)
 _EXPORTS: dict[str, dict[str, str]] = {media: {} for media in export.MEDIA.values()}
@@ -52,7 +52,7 @@ def get_error_sizes(here: Here, fit: str) -> ErrorSizesView:
 
 
 @router.get("/{fit}/budget", dependencies=[READERS])
-def get_error_budget(here: Here, fit: str) -> ErrorBudget:
+def get_error_budget(here: Here, fit: str) -> Budget:
     """What the error on the runs to fit is made of: noise, what a linear and what only a nonlinear model could take."""
     return service.budget_of(here, fit)
 

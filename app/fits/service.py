@@ -26,7 +26,7 @@ from ident.fit.settings import GENERAL, Settings
 from ident.plain import written
 from ident.preprocessing import off_steps, screen
 from ident.presets.suited import in_question
-from ident.residuals.budget import budget
+from ident.residuals.budget import Budget, budget
 from ident.residuals.survey import survey
 from ident.words.error import ErrorOf
 from ident.workflows import compare
@@ -42,7 +42,7 @@ from schemas.fit import (
     SideBySideView,
 )
 from schemas.matrix import MatrixView
-from schemas.result import ErrorBudget, EstimateView, FitResultView
+from schemas.result import EstimateView, FitResultView
 
 
 @dataclass(frozen=True)
@@ -199,10 +199,10 @@ def side_by_side(context: Context, fit_id: str, others: Sequence[str]) -> SideBy
     return SideBySideView(fits=fits, runs=runs)
 
 
-def budget_of(context: Context, fit_id: str) -> ErrorBudget:
+def budget_of(context: Context, fit_id: str) -> Budget:
     """What the error on the runs to fit is made of. Raises Unusable where the model is unstable at every run."""
     row = find(context, fit_id)
     fit = FitResult.from_json(row.result)
     matrix = screen(matrices.load(context, row.matrix), fit.settings.get("preprocessing", {}))
     fitted = replace(matrix, runs=matrix.of_use("fit") or matrix.runs)
-    return ErrorBudget(**budget(compare(fitted, fit)).to_json())
+    return budget(compare(fitted, fit))

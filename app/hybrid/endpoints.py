@@ -12,9 +12,10 @@ from app.errors import COMMON
 from app.hybrid import controllers, drawing, service, tracking, what_if
 from app.idempotency import Answer, Key, fingerprint, once
 from app.jobs.queueing import queued_once
+from ident.hybrid.what_if import WhatIf
 from schemas.fit import JobView
 from schemas.hybrid import ControllerRequest, HybridRequest, WhatIfRequest
-from schemas.hybrid_result import ControllerPage, ControllerView, HybridPage, HybridView, WhatIfView
+from schemas.hybrid_result import ControllerPage, ControllerView, HybridPage, HybridView
 from schemas.track_result import TrackView
 
 router = APIRouter(tags=["hybrid"], responses=COMMON)
@@ -120,9 +121,9 @@ def draw_hybrid_simulation(
 
 
 @router.post("/fits/{fit}/what-if", dependencies=[READERS])
-def ask_what_if(here: Here, fit: str, request: WhatIfRequest) -> WhatIfView:
+def ask_what_if(here: Here, fit: str, request: WhatIfRequest) -> WhatIf:
     """What a change of size, specimen or parameters would do to the machine of a fit. Nothing is stored."""
-    return what_if.answer(here, fit, request)
+    return what_if.what_if(here, fit, request)
 
 
 @router.get(

@@ -13,15 +13,9 @@ from ident.fit.result import FitResult
 from ident.hybrid import what_if as library
 from ident.hybrid.what_if import WhatIf
 from schemas.hybrid import WhatIfRequest
-from schemas.hybrid_result import WhatIfView
 
 _MOST = 16  # answers in memory, about 1 MB each: one with a peak takes seconds
 _answers: LRU[WhatIf] = LRU(_MOST)
-
-
-def answer(context: Context, fit: str, request: WhatIfRequest) -> WhatIfView:
-    """The machine of a fit after a change, as it is sent. Raises Unusable, and Failure 404."""
-    return WhatIfView(**what_if(context, fit, request).to_json())
 
 
 def what_if(context: Context, fit: str, request: WhatIfRequest) -> WhatIf:

@@ -13,7 +13,7 @@ from app.context import Here
 from app.pages import assets, use_page
 from app.pages.problems import PageRoute
 from app.pages.rendering import page
-from schemas.hybrid_result import WhatIfView
+from ident.hybrid.what_if import WhatIf
 
 pages = APIRouter(include_in_schema=False, route_class=PageRoute)
 parts = APIRouter(include_in_schema=False)
@@ -37,7 +37,7 @@ def use(request: Request, here: Here, fit: str) -> HTMLResponse:
 
 
 @parts.get("/fits/{fit}/use/what-if.json", dependencies=[READERS])
-def what_if(request: Request, here: Here, fit: str) -> WhatIfView:
+def what_if(request: Request, here: Here, fit: str) -> WhatIf:
     """All numbers of a what-if, as the API answers it."""
     return use_page.numbers(here, fit, dict(request.query_params))
 

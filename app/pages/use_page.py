@@ -19,11 +19,11 @@ from app.pages.use_view import UseView, use_view
 from app.pages.what_if_asked import asked
 from app.pages.what_if_view import WhatIfView, what_if_form, what_if_view
 from ident.errors import Unusable
+from ident.hybrid.what_if import WhatIf
 from ident.readers.strict_yaml import read_yaml
 from ident.words.sentence import sentence
 from schemas.hybrid_result import ControllerView as Controller
 from schemas.hybrid_result import HybridView as Simulation
-from schemas.hybrid_result import WhatIfView as Numbers
 
 Query = Mapping[str, str]
 _MOST = 50  # controllers or simulations in a list
@@ -97,9 +97,9 @@ def _tracking(context: Context, stored: fits.Stored, given: Query) -> TrackingVi
         return tracking_view(stored.matrix, runs, given, problem=_sentence(error))
 
 
-def numbers(context: Context, fit_id: str, given: Query) -> Numbers:
+def numbers(context: Context, fit_id: str, given: Query) -> WhatIf:
     """All numbers of a what-if, as the API answers it. Raises Failure 404, 422, Unusable."""
-    return what_if.answer(context, fit_id, asked(given))
+    return what_if.what_if(context, fit_id, asked(given))
 
 
 def read(text: str, where: str) -> Any:

@@ -11,15 +11,16 @@ from app.errors import COMMON
 from app.idempotency import Key, fingerprint
 from app.jobs.queueing import queued_once
 from app.profiles import service
-from schemas.fit import JobView, ProfileRequest, ProfileView
+from ident.comparison.profile import Profile
+from schemas.fit import JobView, ProfileRequest
 
 router = APIRouter(prefix="/fits", tags=["fits"], responses=COMMON)
 
 
 @router.get("/{fit}/profile", dependencies=[READERS])
-def get_profile(here: Here, fit: str, parameter: str) -> ProfileView:
+def get_profile(here: Here, fit: str, parameter: str) -> Profile:
     """The profile likelihood of a parameter, which holds at a bound too; with effects, once a job made it."""
-    return service.get(here, fit, parameter)
+    return service.found(here, fit, parameter)
 
 
 @router.post("/{fit}/profiles", dependencies=[LAB], status_code=202, response_model=JobView)

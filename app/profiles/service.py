@@ -12,8 +12,8 @@ from app.profiles import repository
 from ident.comparison.profile import Profile, check_profiled, profile
 from ident.custom.definition import preset_with
 from ident.fit.result import FitResult
-from ident.plain import read, written
-from schemas.fit import JobView, ProfileView
+from ident.plain import read
+from schemas.fit import JobView
 
 KIND = "profile"
 _MOST = 64  # profiles in memory, 1 kB each: fits and their data never change
@@ -27,11 +27,6 @@ def submit(context: Context, fit_id: str, parameter: str, job: str, who: str) ->
     check_profiled(fit, parameter)
     settings = {"model": fit.model, "effects": list(fit.effects), "parameter": parameter}
     return jobs.record(context, job, row.matrix, settings, fit_id, KIND, who)
-
-
-def get(context: Context, fit_id: str, parameter: str) -> ProfileView:
-    """The profile of a parameter as it is sent."""
-    return ProfileView(**written(found(context, fit_id, parameter)))
 
 
 def found(context: Context, fit_id: str, parameter: str) -> Profile:

@@ -8,8 +8,10 @@ from functools import cache
 from typing import Any
 
 import pytest
+from fastapi.openapi.utils import get_openapi
 
 from app.main import routed
+from app.openapi import RESULTS
 from tests.conftest import ROOT
 from tests.contract.breaking import breaks
 
@@ -58,3 +60,21 @@ def test_no_two_components_share_a_name() -> None:
 def test_a_call_says_how_it_is_authorised(path: str) -> None:
     assert now()["paths"][path]["post"]["security"][-1] == {"token": ["admin"]}
     assert now()["components"]["securitySchemes"]["token"]["scheme"] == "bearer"
+
+
+def test_a_result_of_the_library_is_what_a_client_without_the_library_reads() -> None:
+    """Each of them is served, and a model of the contract that has its name in the document has its fields."""
+    models = get_openapi(title="", version="", routes=routed().routes)["components"]["schemas"]
+    assert RESULTS.keys() <= models.keys()
+    for own, served in RESULTS.items():
+        if served in models:
+            assert fields(models[own]) == fields(models[served]), served
+
+
+def fields(model: dict[str, Any]) -> dict[str, Any]:
+    """What the fields of a model hold, without the defaults that a client may leave out."""
+    text = json.dumps({name: {**field, "default": None} for name, field in model["properties"].items()})
+    for own, served in RESULTS.items():
+        text = text.replace(f'/{own}"', f'/{served}"')
+    found: dict[str, Any] = json.loads(text)
+    return found
