@@ -6,12 +6,14 @@ from pydantic import BaseModel, ConfigDict, Field
 
 
 class FindingView(BaseModel):
-    """One doubt about a matrix, in words."""
+    """One doubt about a matrix, in words; `key` and `values` are its message as data, absent in older findings."""
 
     run: str | None
     severity: str
     code: str
     text: str
+    key: str = ""
+    values: dict[str, Any] = {}
 
 
 class RunView(BaseModel):

@@ -65,7 +65,8 @@ def description(matrix: Matrix) -> list[str]:
     lines = [actuator_line(matrix.actuator)]
     for use in ("fit", "verify"):
         runs = matrix.of_use(use)
-        lines.append(f"{data(use)}: {runs_line(runs) if runs else 'no runs'}")
+        said = runs_line(runs) if runs else "no runs"
+        lines.append(f"{data(use)}: {said}")
     return lines + [f"notice: {notice}" for notice in matrix.notices]
 
 

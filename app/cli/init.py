@@ -16,6 +16,7 @@ from app.cli.arguments import split
 from app.cli.check import description, line
 from app.cli.output import write_bytes
 from ident.errors import Unusable
+from ident.words.message import message
 from ident.words.nearest import did_you_mean
 from ident.words.number import count
 from ident.words.severity import levels
@@ -107,7 +108,7 @@ def _with_command(draft: Draft, files: list[Path], said: Mapping[str, object]) -
         for one in value if isinstance(value, list) else [value] if value else []:
             given += [option, str(one)]
     named = shlex.join(given) if len(shlex.join(given)) <= _LONGEST else f"FILES… {shlex.join(given[len(files) :])}"
-    what = "the files do not state: " + "; ".join(one.question for one in draft.missing)
+    what = str(message("draft.missing", questions=[one.question for one in draft.missing]))
     remedy = f"say it in one command: servoident init {' '.join((named.strip(), *draft.options))}"
     return Unusable("not-stated", what, "init", remedy)
 
@@ -131,7 +132,7 @@ def _among(names: list[str], name: str, where: str) -> str:
     wanted = Path(name).name
     found = [wanted] if wanted in names else [one for one in names if one.startswith(f"{wanted}.")]
     if len(found) != 1:
-        what = f"{name!r} is {'none' if not found else 'more than one'} of the files"
+        what = str(message("draft.no_file" if not found else "draft.several_files", name=name))
         remedy = f"name one of {', '.join(names[:_SHOWN])}"
         known = (*names, *(Path(one).stem for one in names))
         raise Unusable("missing-file", what, where, remedy if found else did_you_mean(wanted, known, remedy))

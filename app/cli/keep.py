@@ -10,6 +10,7 @@ import typer
 from app.cli.effects import Where
 from app.cli.remote import Token, request
 from ident.errors import Unusable
+from ident.words.message import message
 
 if TYPE_CHECKING:
     from app.own_effects.kept import Kept
@@ -36,11 +37,12 @@ def keep(
 
         kept = given(Path(source), name, proposal)
         new = keep_here(kept)
-        print(f"{kept.name} {'is saved' if new else 'was already saved'} in {folder()}")
+        print(message("kept.saved" if new else "kept.already", name=kept.name, where=folder()))
         return
     answer = request(server, token, "POST", "/own-effects", json=body(source, name, proposal))
     stored = answer.json()
-    print(f"{stored['name']} {'is saved' if answer.status_code == 201 else 'was already saved'} by {server}")
+    new = answer.status_code == 201
+    print(message("kept.saved_by" if new else "kept.already_by", name=stored["name"], where=server))
 
 
 def given(file: Path, name: str, proposal: int) -> Kept:

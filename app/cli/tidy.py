@@ -7,6 +7,7 @@ from typing import Annotated
 import typer
 
 from app.cli.data_options import Blobs, Data, Database, settings
+from ident.words.message import message
 
 
 def tidy(
@@ -28,4 +29,4 @@ def tidy(
         print(f"{blob.sha256}  {blob.size / 1e6:.3f} MB")
     if yes:
         service.remove(chosen, found)
-    print(f"{len(found)} raw uploads that no record names{' are removed' if yes else '; --yes removes them'}")
+    print(message("tidy.removed" if yes else "tidy.found", count=len(found)))

@@ -15,6 +15,7 @@ from app.parameters.error import USES, error_of
 from app.tables import LimitRow, SetRow
 from ident.words.engineering import quantity
 from ident.words.error import ErrorOf
+from ident.words.message import message
 from ident.words.percent import percent
 from ident.words.plus_minus import plus_minus
 
@@ -62,11 +63,12 @@ class Judged:
     def reason(self) -> str:
         """The outcome in words."""
         if self.value is None:
-            return f"{self.name}: the set has no such value"
+            return str(message("limit.absent", name=self.name))
         if self.std_error is None and self.error is None:
-            return f"{self.name} {self._shown(self.value)}: fixed or not identifiable, so not judged"
-        said = f"{self.name} {self._with_error} is {'within' if self.nearest >= 0 else 'outside'} {self._limits}"
-        return f"{said}, but uncertain: a limit is less than two standard errors away" if self.uncertain else said
+            return str(message("limit.not_judged", name=self.name, value=self._shown(self.value)))
+        values = {"name": self.name, "value": self._with_error, "limits": self._limits}
+        said = message("limit.inside" if self.nearest >= 0 else "limit.outside", **values)
+        return str(message("limit.uncertain", outcome=said) if self.uncertain else said)
 
     @property
     def _with_error(self) -> str:

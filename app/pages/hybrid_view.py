@@ -19,7 +19,7 @@ from ident.presets import preset
 from ident.presets.strano import STRANO
 from ident.stages import PLACES
 from ident.words.engineering import power_of, quantity, scaled_unit, with_unit
-from ident.words.number import fixed, trimmed
+from ident.words.number import count, fixed, trimmed
 from ident.words.percent import percent_in_print
 from ident.words.titles import title
 from schemas.hybrid_result import HybridView
@@ -207,7 +207,7 @@ def _facts(found: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
         yield "Largest pole of the sampled loop", f"{found['largest_pole']:.5f}"
     seconds = (found["samples"] - 1) / found["sample_rate"]
     yield "Simulated", f"{quantity(seconds, 's')} at {quantity(found['sample_rate'], 'Hz')}"
-    yield "Computing delay", f"{found['delay']} sample{'s' if found['delay'] > 1 else ''}"
+    yield "Computing delay", count(found["delay"], "sample")
     if found["effects"]:
         yield "Effects switched on", ", ".join(title(name.partition(".")[0]) for name in found["effects"])
     if one := found.get("feedforward"):

@@ -16,6 +16,7 @@ from ident.diagnosis.named import Named, named
 from ident.diagnosis.result import Rung
 from ident.equations.mathml import mathml
 from ident.words.error import ErrorOf
+from ident.words.message import message
 from ident.words.number import plain
 from ident.words.plus_minus import UNDETERMINED, determined, plus_minus
 from ident.words.titles import title
@@ -79,7 +80,7 @@ def _instead_of(one: Proposal, ladder: Sequence[Rung]) -> str:
     names = ", ".join(map(title, one.instead_of))
     left = ladder[-1].error_of("verify") if ladder else ErrorOf(None)
     if left.is_unstable:
-        return f"{names}, with which the model is {left.in_print()}"
+        return str(message("instead.unstable", names=names, unstable=left.in_print()))
     if not names or left.error is None:
         return names
-    return f"{names}, which {'leave' if len(one.instead_of) > 1 else 'leaves'} {left.in_print()} on validation data"
+    return str(message("instead.error", names=names, error=left.in_print()))

@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from ident.words.engineering import quantity
+from ident.words.message import message
 from ident.words.number import count, plain
 from schemas.statistics import StatisticsView
 
@@ -30,7 +31,7 @@ def _numbers(found: StatisticsView) -> Iterator[tuple[str, str]]:
     def of(value: float | None) -> str:
         return "–" if value is None else quantity(value, found.unit)
 
-    yield "Sets", f"{found.n}{', the newest' if found.left_out else ''}, of model {found.model}"
+    yield "Sets", str(message("sets.newest" if found.left_out else "sets", count=found.n, model=found.model))
     if found.unstable:
         yield "Unstable on a run", f"{count(found.unstable, 'set')}, in no number here"
     yield "Mean", of(found.mean)

@@ -40,7 +40,7 @@ from ident.parallel import each
 from ident.parameter import Parameter, Starts
 from ident.progress import Progress, Report, silent
 from ident.run import BENCH
-from ident.words.percent import percent
+from ident.words.message import message
 
 Array = NDArray[np.float64]
 _SEARCHED = 60.0  # Hz of the records during the search; the polish takes what each record needs
@@ -209,8 +209,7 @@ class BenchIdentification:
         if error is None or error < HARDLY:
             return []
         far = list(far_from(self.settings, self.preset, {}))
-        said = f"The model explains almost nothing: the error is {percent(error)} of the output."
-        return [f"{said} Likely cause: {'; '.join(far)}."] if far else []
+        return [str(message("hardly", error=error, causes=far))] if far else []
 
     @property
     def _doubts(self) -> list[str]:

@@ -21,4 +21,4 @@ def band(run: Run, response: Response | None) -> Iterator[Finding]:
     if LOWEST <= edge <= HIGHEST:
         return
     key = "check.band_narrow" if edge < LOWEST else "check.band_wide"
-    yield Finding(run.id, "doubt", "band", str(message(key, run=run.id, share=POWER, edge=edge)))
+    yield Finding.of(run.id, "doubt", "band", message(key, run=run.id, share=POWER, edge=edge))

@@ -39,7 +39,7 @@ def clipping(run: Run) -> Iterator[Finding]:
                 key = "check.clipped_high" if side == "highest" else "check.clipped_low"
                 unit = run.units.get(name, "")
                 text = message(key, channel=name, run=run.id, count=count, level=level, unit=unit)
-                yield Finding(run.id, "doubt", "clipping", str(text))
+                yield Finding.of(run.id, "doubt", "clipping", text)
 
 
 def _full_scale(level: float, unit: str | None) -> bool:

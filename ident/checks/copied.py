@@ -22,4 +22,4 @@ def copied(run: Run) -> Iterator[Finding]:
     residual = x - u * (float(u @ x) / float(u @ u))
     if not x.any() or float(np.std(residual)) > EXACT * float(np.std(x)):
         return
-    yield Finding(run.id, "doubt", "copied", str(message("check.copied", channel=run.output, run=run.id)))
+    yield Finding.of(run.id, "doubt", "copied", message("check.copied", channel=run.output, run=run.id))

@@ -12,7 +12,7 @@ from ident.checks.finding import Finding
 from ident.checks.local_response import LocalResponse, local_response
 from ident.checks.response import Response
 from ident.run import Run, Samples
-from ident.words.run_name import run_name
+from ident.words.message import Message
 
 POLES = 4  # of the chain: valve, pressure, mass
 SEARCHED = 24.0  # samples either way
@@ -55,15 +55,11 @@ def delays(measured: list[tuple[Run, Response | None]]) -> Iterator[Finding]:
     middle = float(np.median(told)) if told else 0.0
     apart = max(APART, _OUTLIER * float(np.median(np.abs(np.array(told) - middle)))) if told else APART
     if abs(middle) >= LEAST and len(told) > 1:
-        yield Finding(None, "doubt", "delay", f"displacement {lags(middle)} in {len(told)} runs alike{remedy(middle)}")
+        yield Finding.of(None, "doubt", "delay", late("check.delay_all", "check.lead_all", middle, count=len(told)))
     for run, estimate in found:
         if estimate.told and len(told) > 2 and estimate.apart(middle, apart):
-            text = (
-                f"displacement of {run_name(run.id)} {lags(estimate.samples)} where the runs in common show "
-                f"{middle:.1f}; look for a shift between the channels of this run (rows, other recorder) or a wrong "
-                "label"
-            )
-            yield Finding(run.id, "doubt", "skew", text)
+            values = {"run": run.id, "middle": middle}
+            yield Finding.of(run.id, "doubt", "skew", late("check.skew", "check.skew_lead", estimate.samples, **values))
         elif estimate.told and len(told) == 1 and estimate.apart(0.0, LEAST):
             yield alone(run, estimate.samples)
         elif not estimate.told and estimate.longest <= -LEAST:
@@ -72,22 +68,13 @@ def delays(measured: list[tuple[Run, Response | None]]) -> Iterator[Finding]:
 
 def alone(run: Run, samples: float) -> Finding:
     """The finding for one run that is judged by itself."""
-    return Finding(run.id, "doubt", "delay", f"displacement of {run_name(run.id)} {lags(samples)}{remedy(samples)}")
+    return Finding.of(run.id, "doubt", "delay", late("check.delay", "check.lead", samples, run=run.id))
 
 
-def lags(samples: float) -> str:
-    """A delay in words."""
-    word = "lags" if samples > 0 else "leads"
-    return f"{word} the command by {abs(samples):.1f} samples beyond what {POLES} poles explain"
-
-
-def remedy(samples: float) -> str:
-    """What to do about a delay."""
-    if samples < 0:
-        return ", which no actuator can; the channels are shifted or exchanged: correct columns or rows"
-    return (
-        "; channels sampled one after another, a filter, or a delay of the controller: shift it out or add the effect"
-    )
+def late(lags: str, leads: str, samples: float, **values: object) -> Message:
+    """One of two messages: that an output lags by more than its model explains, or that it leads."""
+    explained = {"poles": POLES} if samples > 0 else {}
+    return Message(lags if samples > 0 else leads, {"samples": abs(samples), **explained, **values})
 
 
 def delay(run: Run, response: Response | None) -> Delay | None:

@@ -33,7 +33,7 @@ def feedback(run: Run) -> Iterator[Finding]:
     found = shares(run) if run.closed_loop is None else None
     if found and _fed_back(*found):
         text = message("check.closed_loop", run=run.id, share=max(found))
-        yield Finding(run.id, "doubt", "closed-loop", str(text))
+        yield Finding.of(run.id, "doubt", "closed-loop", text)
 
 
 def closed_loop(run: Run) -> bool:

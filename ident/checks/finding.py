@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-from dataclasses import asdict, dataclass
+from collections.abc import Iterable, Mapping
+from dataclasses import asdict, dataclass, field
 from typing import Any, Literal
 
+from ident.words.message import Message, message
 from ident.words.severity import level
 from ident.words.shown import Listing, Shown
 
@@ -17,13 +18,21 @@ class Finding:
     """One thing that a person should know before a fit: about one run, or about the matrix where `run` is None.
 
     A note says what follows from the data as they are, a doubt that something is probably wrong, a fault that it is.
-    `code` is a stable slug; `text` says what, with its numbers, where, and the remedy.
+    `code` is a stable slug; `text` says what, with its numbers, where, and the remedy. `key` and `values` are the
+    message that the text puts into words: plain data, for a program, or for words of another language.
     """
 
     run: str | None
     severity: Severity
     code: str
     text: str
+    key: str = ""
+    values: Mapping[str, Any] = field(default_factory=dict, hash=False)
+
+    @classmethod
+    def of(cls, run: str | None, severity: Severity, code: str, message: Message) -> Finding:
+        """A finding that says this message."""
+        return cls(run, severity, code, str(message), message.key, message.record()["values"])
 
 
 class Findings(tuple[Finding, ...], Shown):
@@ -32,7 +41,7 @@ class Findings(tuple[Finding, ...], Shown):
     def listings(self) -> Iterable[Listing | str]:
         """A row a finding."""
         if not self:
-            yield "No errors, no warnings."
+            yield str(message("check.none"))
             return
         rows = [(level(one.severity), one.run or "all", one.text) for one in self]
         yield Listing("", ("level", "run", "finding"), rows)

@@ -35,7 +35,7 @@ def flat(run: Run) -> Iterator[Finding]:
             "check.flat", channel=name, run=run.id, first=first, last=end - 1,
             duration=(end - first) / run.sample_rate, unit=run.time_unit, other=other,
         )  # fmt: skip
-        yield Finding(run.id, "doubt", "flat", str(text))
+        yield Finding.of(run.id, "doubt", "flat", text)
 
 
 def starts_again_from_rest(signal: Samples, end: int) -> bool:

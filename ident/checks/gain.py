@@ -15,7 +15,10 @@ from ident.words.message import message
 BAND = (0.0, 0.1)  # of the command's power
 TURNED = 120.0  # degrees; the loop lags by less than 90 there
 LARGE, SMALL = 2.0, 1 / 7  # a closed position loop gives 0.5 to 1.2; stiff specimens and leakage lower it
-FACTORS = {2.54: "in for cm", 10.0: "cm for mm", 25.4: "in for mm", 100.0: "m for cm", 1000.0: "m for mm"}
+FACTORS = {
+    2.54: [("in", "cm")], 10.0: [("cm", "mm")], 25.4: [("in", "mm")], 100.0: [("m", "cm")], 1000.0: [("m", "mm")],
+}  # fmt: skip
+"""Factors of wrong units, with the two units that each lies between."""
 USUAL = 0.8  # gain of a position loop near the lowest frequencies of its band
 NEAR = 1.6  # either way; half the distance from 10 to 25.4
 NARROW = ("sine", "frequency")  # one frequency, at which a loop may well have turned by 180 degrees
@@ -34,18 +37,18 @@ def gain(run: Run, measured: Response | None) -> Iterator[Finding]:
     turn = degrees(abs(np.angle(value)))
     if turn > TURNED:
         text = message("check.sign", run=run.id, turn=turn, **_where(measured))
-        yield Finding(run.id, "doubt", "sign", str(text))
+        yield Finding.of(run.id, "doubt", "sign", text)
     if not SMALL < abs(value) < LARGE:
         values = {"run": run.id, "ratio": abs(value), **_where(measured)}
         factor = guess(abs(value))
-        like = {} if factor is None else {"factor": factor, "unit": FACTORS[factor]}
+        like = {} if factor is None else {"factor": factor, "units": FACTORS[factor]}
         text = message("check.unit_like", **values, **like) if like else message("check.unit", **values)
-        yield Finding(run.id, "doubt", "unit", str(text))
+        yield Finding.of(run.id, "doubt", "unit", text)
 
 
 def unrelated(run: Run, coherence: float) -> Finding:
     """The finding for two channels that have nothing to do with each other."""
-    return Finding(run.id, "doubt", "unrelated", str(message("check.unrelated", run=run.id, coherence=coherence)))
+    return Finding.of(run.id, "doubt", "unrelated", message("check.unrelated", run=run.id, coherence=coherence))
 
 
 def _where(measured: Response) -> dict[str, float]:
@@ -75,4 +78,4 @@ def force_sign(run: Run) -> Iterator[Finding]:
     power = float(np.sum((np.abs(needed) ** 2 * measured.uu)[used]))
     if agreement < -0.3 * power:
         text = message("check.force_sign", run=run.id, ratio=agreement / power)
-        yield Finding(run.id, "doubt", "force-sign", str(text))
+        yield Finding.of(run.id, "doubt", "force-sign", text)

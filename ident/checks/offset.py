@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from ident.checks.finding import Finding
 from ident.checks.response import rests
 from ident.run import Run
-from ident.words.message import message, said
+from ident.words.message import message
 
 SMALL = 0.05  # of the displacement's standard deviation; as large as the error that a good model leaves
 LARGE = 1.0
@@ -23,7 +23,7 @@ def offset(run: Run) -> Iterator[Finding]:
     share = abs(difference) / float(run.measured.std())
     if share <= SMALL:
         return
-    values = {"run": run.id, "millimetres": 1e3 * abs(difference), "share": share}
-    found = message("check.offset_above" if difference > 0 else "check.offset_below", **values)
     remedy = message("check.offset_large" if share > LARGE else "check.offset_small")
-    yield Finding(run.id, "doubt" if share > LARGE else "note", "offset", said([found, remedy]))
+    values = {"run": run.id, "millimetres": 1e3 * abs(difference), "share": share, "remedy": remedy}
+    text = message("check.offset_above" if difference > 0 else "check.offset_below", **values)
+    yield Finding.of(run.id, "doubt" if share > LARGE else "note", "offset", text)

@@ -13,4 +13,4 @@ from ident.words.message import message
 def turned_sign(run: Run) -> Iterator[Finding]:
     """Force times speed of a moved specimen, which takes work."""
     if gives_work_back(run):
-        yield Finding(run.id, "doubt", "turned-sign", str(message("check.active", run=run.id, work=work(run))))
+        yield Finding.of(run.id, "doubt", "turned-sign", message("check.active", run=run.id, work=work(run)))

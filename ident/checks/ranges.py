@@ -22,7 +22,7 @@ def ranges(run: Run, actuator: Actuator) -> Iterator[Finding]:
         extent = float(np.ptp(travel))
         if extent > MARGIN * actuator.stroke:
             text = message("check.beyond_stroke", run=run.id, extent=extent, stroke=actuator.stroke)
-            yield Finding(run.id, "fault", "beyond-stroke", str(text))
+            yield Finding.of(run.id, "fault", "beyond-stroke", text)
     for name in PRESSURES:
         pressure = run.channels.get(name)
         if actuator.supply_pressure is None or pressure is None or run.units.get(name) != "Pa":
@@ -31,4 +31,4 @@ def ranges(run: Run, actuator: Actuator) -> Iterator[Finding]:
         if highest > MARGIN * actuator.supply_pressure:
             supply = actuator.supply_pressure
             text = message("check.beyond_supply", channel=name, run=run.id, highest=highest, supply=supply)
-            yield Finding(run.id, "doubt", "beyond-supply", str(text))
+            yield Finding.of(run.id, "doubt", "beyond-supply", text)

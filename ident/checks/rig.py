@@ -8,9 +8,10 @@ import numpy as np
 
 from ident.checks.finding import Finding
 from ident.matrix import Actuator
+from ident.rig.limits import PEAKS, UNITS
 from ident.rig.motion import edge_of_band, motion_peaks
 from ident.run import BENCH, Run
-from ident.words.run_name import run_name
+from ident.words.message import message
 
 BEYOND = "beyond-rig"
 """The code of such a finding: it is said first."""
@@ -21,9 +22,12 @@ def beyond_rig(run: Run, actuator: Actuator) -> Iterator[Finding]:
     """A doubt for each limit of the rig that a record leaves; nothing where the matrix states none under `rig`."""
     if actuator.rig is None or run.time_unit != "s":
         return
-    for said in actuator.rig_limits.leaving(_peaks(run, actuator)):
-        text = f"{run_name(run.id)} is {said}; spare the machine, or correct the unit of the channel or the limit"
-        yield Finding(run.id, "doubt", BEYOND, text)
+    for each in actuator.rig_limits.utilisation(_peaks(run, actuator)):
+        if each.exceeded:
+            unit = UNITS[each.limit]
+            sizes = {"peak": (each.peak, unit), "allowed": (each.allowed, unit), "share": each.share}
+            values = {"run": run.id, "limit": each.limit, "what": PEAKS[each.limit], "kept": 1 / each.share, **sizes}
+            yield Finding.of(run.id, "doubt", BEYOND, message("check.beyond_rig", **values))
 
 
 def _peaks(run: Run, actuator: Actuator) -> dict[str, float]:

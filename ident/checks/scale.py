@@ -11,7 +11,7 @@ from ident.checks.finding import Finding
 from ident.checks.gain import FACTORS
 from ident.checks.response import RELATED, Response
 from ident.run import Run
-from ident.words.run_name import run_name
+from ident.words.message import message
 
 LEAST = 10.0  # a dead zone or dry friction makes small and large commands differ by less
 NEAR = 1.3  # either way, for a factor to be that of a wrong unit
@@ -30,12 +30,9 @@ def scale(measured: Sequence[tuple[Run, Response | None]]) -> Iterator[Finding]:
         size = float(np.median(found)) if found else 0.0
         factor = min((f for f in FACTORS if f >= LEAST), key=lambda each: abs(abs(size) - log(each)))
         if abs(abs(size) - log(factor)) < log(NEAR) and _as_far(run, [other for other, _ in others], size):
-            text = (
-                f"{run.output} of {run_name(run.id)} moves {exp(size):.3g} times as far for its command as that of "
-                f"{', '.join(other.id for other, _ in others[:3])}, as if {FACTORS[factor]}; correct the unit or scale "
-                "of one of its channels"
-            )
-            yield Finding(run.id, "doubt", "scale", text)
+            values = {"ratio": exp(size), "factor": factor, "units": FACTORS[factor]}
+            names = {"channel": run.output, "run": run.id, "others": [other.id for other, _ in others]}
+            yield Finding.of(run.id, "doubt", "scale", message("check.scale", **names, **values))
 
 
 def _as_far(run: Run, others: Sequence[Run], size: float) -> bool:

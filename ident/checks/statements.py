@@ -6,9 +6,8 @@ from collections.abc import Iterator
 
 from ident.checks.finding import Finding
 from ident.matrix import Matrix
-from ident.run import BENCH, Run
-from ident.words.listed import first_of
-from ident.words.run_name import run_name
+from ident.run import BENCH
+from ident.words.message import Message, message
 
 _TURNING = ("rad", "rad/s", "N*m")  # units of an output
 
@@ -27,53 +26,30 @@ def statements(matrix: Matrix) -> Iterator[Finding]:
     ]
     hydraulic = [run for run in runs if "drive_force" not in run.channels]
     if hydraulic and matrix.actuator.piston_area is None:
-        yield note(
-            "no-piston-area",
-            "piston_area is not given: only the ratios Z0/A^2, Ka/A^2 and Cl/A^2 are identifiable. State it to get "
-            "the parameters themselves",
-        )
-    yield from unstated(hydraulic, "gain", "no-gain", "Kp = 1 is assumed, so Z0 means Z0 times Kp. State the gain")
-    yield from unstated(
-        runs,
-        "specimen",
-        "no-specimen",
-        "its mass, stiffness and damping are included in m0 and c0. State the specimen",
-    )
+        yield note("no-piston-area", message("check.no_piston_area"))
+    if without := [run.id for run in hydraulic if run.gain is None]:
+        yield note("no-gain", message("check.no_gain", runs=without))
+    if without := [run.id for run in runs if run.specimen is None]:
+        yield note("no-specimen", message("check.no_specimen", runs=without))
     conditions = {(run.specimen, run.gain) for run in matrix.of_use("fit")}
     if len(conditions) == 1 and hydraulic:
-        yield note(
-            "one-condition",
-            "all estimation runs have the same specimen and gain: some parameters will be identifiable only in "
-            "combination. Measure other specimens and gains",
-        )
+        yield note("one-condition", message("check.one_condition"))
 
 
 def uses(matrix: Matrix) -> Iterator[Finding]:
-    """Runs to fit, runs to verify, and whether the second are like the first."""
+    """Estimation data, validation data, and whether the second are like the first."""
     fit, verify = matrix.of_use("fit"), matrix.of_use("verify")
     if not fit:
-        text = "every run is validation data, and none is left to fit. Set use: fit on some runs"
-        yield Finding(None, "fault", "no-fit-runs", text)
+        yield Finding.of(None, "fault", "no-fit-runs", message("check.no_fit_runs"))
     if not verify:
-        text = "there are no validation data, so a fit cannot be judged on data that it has not used. Set use: verify"
-        yield Finding(None, "doubt", "no-verify-runs", text)
+        yield Finding.of(None, "doubt", "no-verify-runs", message("check.no_verify_runs"))
     gains = [run.gain for run in fit if run.gain is not None]
     for run in verify:
         if gains and run.gain is not None and not min(gains) <= run.gain <= max(gains):
-            text = (
-                f"{run_name(run.id)} is validation data at Kp = {run.gain:g}, outside the {min(gains):g} to "
-                f"{max(gains):g} of the estimation data. Its error includes an extrapolation"
-            )
-            yield Finding(run.id, "note", "extrapolation", text)
+            values = {"run": run.id, "gain": run.gain, "lowest": min(gains), "highest": max(gains)}
+            yield Finding.of(run.id, "note", "extrapolation", message("check.extrapolation", **values))
 
 
-def unstated(runs: list[Run], name: str, code: str, follows: str) -> Iterator[Finding]:
-    """A note where runs do not state something: once, however many they are."""
-    without = [run.id for run in runs if getattr(run, name) is None]
-    if without:
-        yield note(code, f"{name} is not given for {first_of(without)}: {follows}")
-
-
-def note(code: str, text: str) -> Finding:
+def note(code: str, said: Message) -> Finding:
     """A note on the matrix."""
-    return Finding(None, "note", code, text)
+    return Finding.of(None, "note", code, said)

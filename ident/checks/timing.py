@@ -24,14 +24,14 @@ def timing(run: Run, response: Response | None) -> Iterator[Finding]:
     """Gaps and jitter of a time column; samples a cycle."""
     if run.gaps:
         key = "check.gaps_filled" if run.evened else "check.gaps"
-        yield Finding(run.id, "doubt", "gaps", str(message(key, run=run.id, missing=run.gaps)))
+        yield Finding.of(run.id, "doubt", "gaps", message(key, run=run.id, missing=run.gaps))
     if run.evened and run.clock_jitter > STRAY:
         key = "check.jitter_held" if run.hold == "zoh" else "check.jitter_interpolated"
         text = message(key, run=run.id, jitter=run.clock_jitter, rate=run.sample_rate)
-        yield Finding(run.id, "note", "clock-jitter", str(text))
+        yield Finding.of(run.id, "note", "clock-jitter", text)
     elif run.clock_jitter > STRAY:
         text = message("check.jitter", run=run.id, jitter=run.clock_jitter)
-        yield Finding(run.id, "doubt" if run.clock_jitter > JITTER else "note", "clock-jitter", str(text))
+        yield Finding.of(run.id, "doubt" if run.clock_jitter > JITTER else "note", "clock-jitter", text)
     if response is None or run.time_unit != "s":
         return
     if run.hold == "zoh":  # between the samples it is known
@@ -43,7 +43,7 @@ def timing(run: Run, response: Response | None) -> Iterator[Finding]:
             "check.few_samples", run=run.id, samples=run.sample_rate / highest, highest=highest, share=POWER,
             least=SAMPLES_A_CYCLE * highest,
         )  # fmt: skip
-        yield Finding(run.id, "doubt", "sample-rate", str(text))
+        yield Finding.of(run.id, "doubt", "sample-rate", text)
 
 
 def _too_quick(run: Run) -> Iterator[Finding]:
@@ -65,4 +65,4 @@ def _too_quick(run: Run) -> Iterator[Finding]:
     share = 1.0 - float(np.median(away))
     if share > MOST:
         text = message("check.too_quick", run=run.id, share=share, samples=QUICK, least=4 * run.sample_rate)
-        yield Finding(run.id, "doubt", "sample-rate", str(text))
+        yield Finding.of(run.id, "doubt", "sample-rate", text)

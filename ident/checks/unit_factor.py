@@ -7,7 +7,7 @@ on purpose does the opposite. A command of another size on purpose is told from 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from math import log, pi
 
@@ -17,13 +17,16 @@ from ident.cached import cached_property
 from ident.checks.finding import Finding
 from ident.checks.response import RELATED, Response, respond, response, rests
 from ident.run import Run
-from ident.words.listed import first_of
-from ident.words.run_name import run_name
+from ident.words.message import Message, message
 
 NEAR = 0.02  # a clock is right to 1e-4 and a repeated RMS to 1 %; by chance one ratio in 40 is so near to a factor
-FACTORS = {25.4: "in for mm", 60.0: "min for s", 180 / pi: "deg for rad", 9.80665: "kgf for N, or g for m/s^2"}
-TENS = {1: "cm for mm", 2: "m for cm", 3: "m for mm, s for ms"}
-"""Powers of ten with a name; the others count, too."""
+Units = Sequence[tuple[str, str]]
+FACTORS: Mapping[float, Units] = {
+    25.4: [("in", "mm")], 60.0: [("min", "s")], 180 / pi: [("deg", "rad")], 9.80665: [("kgf", "N"), ("g", "m/s^2")],
+}  # fmt: skip
+"""Factors with the units that they lie between."""
+TENS: Mapping[int, Units] = {1: [("cm", "mm")], 2: [("m", "cm")], 3: [("m", "mm"), ("s", "ms")]}
+"""Powers of ten that lie between units; the others count, too."""
 BAND = (0.02, 0.98)  # of the input's power: where a response is compared
 FEWEST = 3  # frequencies at which two responses are compared: two can agree by chance
 AGREE = 0.7  # nepers and radians, median: noise of 8 frames, another amplitude or gain come to 0.5
@@ -42,19 +45,20 @@ class Factor:
     """A factor that a wrong unit makes, and the units that make it."""
 
     value: float
-    units: str
+    units: Units
 
     @property
-    def told(self) -> str:
+    def message(self) -> Message:
         """The factor in words."""
-        return f"near {self.value:.4g}" + (f", as of {self.units}" if self.units else "")
+        values = {"value": self.value} | ({"units": self.units} if self.units else {})
+        return message("factor.units" if self.units else "factor", **values)
 
 
 def factor(ratio: float) -> Factor | None:
     """The factor, or reciprocal of one, that a ratio is within NEAR of."""
     size = max(ratio, 1 / ratio)
     n = round(log(size) / log(10))
-    known = {**FACTORS, **({10.0**n: TENS.get(n, "")} if n else {})}
+    known: dict[float, Units] = {**FACTORS, **({10.0**n: TENS.get(n, ())} if n else {})}
     nearest = min(known, key=lambda each: abs(log(size / each)))
     return Factor(nearest, known[nearest]) if abs(log(size / nearest)) <= log(1 + NEAR) else None
 
@@ -99,8 +103,8 @@ class _Doubt:
 
     run: str
     code: str
-    what: str
-    remedy: str
+    what: Message
+    remedy: Message
 
 
 def unit_factor(measured: Sequence[tuple[Run, Response | None]], scaled: Sequence[str | None]) -> Iterator[Finding]:
@@ -109,13 +113,13 @@ def unit_factor(measured: Sequence[tuple[Run, Response | None]], scaled: Sequenc
     `measured` are all runs with their responses to a command; `scaled` those whose output is doubted already.
     """
     for one in _doubts(measured, scaled):
-        yield Finding(one.run, "doubt", one.code, f"{one.what}; {one.remedy}")
+        yield Finding.of(one.run, "doubt", one.code, message("check.unit_factor", what=one.what, remedy=one.remedy))
 
 
-def unit_causes(runs: Sequence[Run]) -> list[str]:
+def unit_causes(runs: Sequence[Run]) -> list[Message]:
     """What units may have to do with a fit that explains hardly anything, as likely causes."""
-    found = [f"a wrong unit: {one.what}" for one in _doubts([(run, respond(run)) for run in runs], [])]
-    return found[:MOST_CAUSES] or ["a wrong unit of a channel or of the time"]
+    found = [message("cause.unit_of", what=one.what) for one in _doubts([(run, respond(run)) for run in runs], [])]
+    return found[:MOST_CAUSES] or [message("cause.unit")]
 
 
 def _doubts(measured: Sequence[tuple[Run, Response | None]], scaled: Sequence[str | None]) -> Iterator[_Doubt]:
@@ -148,18 +152,13 @@ def _clocks(records: Sequence[Record]) -> Iterator[_Doubt]:
         rate = run.sample_rate / sisters[0].run.sample_rate
         by_rate, by_duration = factor(rate), factor(run.duration / duration)
         if by_rate and _clock_is_off(record, sisters, 1 / rate):
-            what = (
-                f"{run_name(record.name)} is sampled at {run.sample_rate:.6g} Hz and lasts {run.duration:.4g} s: the "
-                f"rate is {rate:.4g} times that of {_named(sisters)} ({by_rate.told}), though sample by sample "
-                "it is like them"
-            )
-            yield _Doubt(run.id, "clock-factor", what, "correct the unit of its time or its sample rate")
+            values = {"rate": run.sample_rate, "ratio": rate, "factor": by_rate.message}
+            what = message("unit.rate", duration=run.duration, run=record.name, others=_names(sisters), **values)
+            yield _Doubt(run.id, "clock-factor", what, message("unit.correct_rate"))
         elif by_duration and factor(rate) is None and _answers_as(record, sisters, run.duration / duration) is True:
-            what = (
-                f"{run_name(record.name)} lasts {run.duration:.4g} s, {run.duration / duration:.4g} times as long as "
-                f"{_named(sisters)} ({by_duration.told}), and answers its command as much more slowly"
-            )
-            yield _Doubt(run.id, "clock-factor", what, "correct the unit of its time or resample")
+            values = {"duration": run.duration, "ratio": run.duration / duration, "factor": by_duration.message}
+            what = message("unit.duration", run=record.name, others=_names(sisters), **values)
+            yield _Doubt(run.id, "clock-factor", what, message("unit.correct_time"))
 
 
 def _clock_is_off(record: Record, sisters: Sequence[Record], scale: float) -> bool:
@@ -234,7 +233,7 @@ def _inputs(records: Sequence[Record]) -> Iterator[_Doubt]:
             continue
         off = _off(record, sisters, record.driver)
         if off and not _by_gain(record.run, [one.run for one in off.sisters], off.ratio):
-            yield _size(record, record.driver, off, ", or state the amplitude that was meant")
+            yield _size(record, record.driver, off, message("unit.correct_command"))
 
 
 def _outputs(records: Sequence[Record]) -> Iterator[_Doubt]:
@@ -252,7 +251,7 @@ def _outputs(records: Sequence[Record]) -> Iterator[_Doubt]:
         if len(sisters) == 1 and records.index(sisters[0]) > number:
             continue
         if off := _off(record, sisters, record.run.output):
-            yield _size(record, record.run.output, off, "")
+            yield _size(record, record.run.output, off, message("unit.correct_scale"))
 
 
 @dataclass(frozen=True)
@@ -292,12 +291,10 @@ def _levels(records: Sequence[Record], channel: str) -> list[list[Record]]:
     return found
 
 
-def _size(record: Record, channel: str, off: Off, otherwise: str) -> _Doubt:
-    what = (
-        f"{channel} of {run_name(record.name)} is {off.ratio:.4g} times as large as that of {_named(off.sisters)} "
-        f"({off.near.told})"
-    )
-    return _Doubt(record.run.id, "amplitude-factor", what, f"correct its unit or scale{otherwise}")
+def _size(record: Record, channel: str, off: Off, remedy: Message) -> _Doubt:
+    values = {"ratio": off.ratio, "factor": off.near.message}
+    what = message("unit.size", channel=channel, run=record.name, others=_names(off.sisters), **values)
+    return _Doubt(record.run.id, "amplitude-factor", what, remedy)
 
 
 def _by_gain(run: Run, sisters: Sequence[Run], ratio: float) -> bool:
@@ -337,5 +334,5 @@ def _conditions(run: Run) -> tuple[object, ...]:
     return run.specimen, run.gain
 
 
-def _named(records: Sequence[Record]) -> str:
-    return first_of(list(dict.fromkeys(record.name for record in records)))
+def _names(records: Sequence[Record]) -> list[str]:
+    return list(dict.fromkeys(record.name for record in records))

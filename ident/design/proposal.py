@@ -33,6 +33,7 @@ from ident.parallel import each
 from ident.preprocessing import prepare
 from ident.rig.limits import RigLimits
 from ident.run import Run
+from ident.words.message import message, said
 
 Array = NDArray[np.float64]
 _TRIAL = 4096  # samples on which runs are judged
@@ -232,18 +233,15 @@ def _so_far(rivals: Sequence[Rival]) -> float | None:
 
 
 def _text(found: Experiment, rivals: Sequence[Rival], tells_apart: bool) -> str:
-    names = [" + ".join(e.name for e in c.preset.effects) or "no effect" for c in rivals]
+    run = message("run.next", conditions=found.conditions)
     if tells_apart and found.separation is not None:
-        listed = " and ".join([", ".join(names[:-1]), names[-1]])
-        said = f"After a refit, {listed} differ by {found.separation:.3g} standard deviations of the noise."
-        said += f" A typical other run separates them by {found.typical or 0:.3g}."
-        if found.so_far is not None:
-            said += f" The runs so far separate them by {found.so_far:.3g}."
-        return f"Run a {found.conditions}. {said}"
+        names = [" + ".join(e.name for e in c.preset.effects) or "no effect" for c in rivals]
+        apart = message("run.separates", models=names, separation=found.separation)
+        usual = message("run.typical", typical=found.typical or 0.0)
+        so_far = [] if found.so_far is None else [message("run.so_far", so_far=found.so_far)]
+        return said([run, apart, usual, *so_far])
     best = sorted(found.std_errors.items(), key=lambda item: item[1])[:2]
-    left = " and ".join(f"{100 * share:.0f} % ({name})" for name, share in best)
-    why = " No feasible run separates the models." if len(rivals) > 1 else ""
-    return (
-        f"Run a {found.conditions}.{why} Expected information gain: {found.information:.2g} nats. "
-        f"The standard errors fall to {left} of their present values."
-    )
+    errors = [message("run.std_error", share=share, name=name) for name, share in best]
+    inseparable = [message("run.inseparable")] if len(rivals) > 1 else []
+    gain = message("run.information", information=found.information)
+    return said([run, *inseparable, gain, message("run.std_errors", errors=errors)])

@@ -15,9 +15,8 @@ from ident.fit.continued import settings_from
 from ident.fit.result import FitResult
 from ident.fit.settings import Settings
 from ident.fit.start import Start
+from ident.words.message import message, said
 from ident.words.number import count
-from ident.words.percent import percent
-from ident.words.titles import title
 
 
 @dataclass(frozen=True)
@@ -83,11 +82,8 @@ def next_command(found: Diagnosis, file: str = "D.json") -> str:
     if not proposals and not any(end.added for end in _rungs(found)):
         return ""
     end = recommended(found)
-    told = (
-        f"`servoident fit MATRIX --start {file}` makes the recommended fit, with {', '.join(map(title, end.added))}: "
-        f"it begins where the diagnosis ended, at {percent(end.error.get('fit'))}."
-    )
-    return told + (" --terms N takes the first N of the proposed terms, 0 none." if proposals else "")
+    command = message("recommended", file=file, effects=end.added, error=end.error.get("fit"))
+    return said([command, *([message("recommended.terms")] if proposals else [])])
 
 
 def end_with(found: Diagnosis, effects: Sequence[str]) -> End | None:

@@ -12,6 +12,7 @@ from typing import TypeVar
 
 from ident.diagnosis.budget import SearchBudget
 from ident.errors import TimeIsUp, Unusable
+from ident.words.message import Message, message
 
 EFFECTS, FURTHER = "effects of the catalogue", "further effects"
 LABELS, OTHERS, LAGS = "labels of the runs", "other models", "lags and delays"
@@ -57,24 +58,24 @@ class Stages:
     def miss(self, stage: str) -> None:
         """There was no time for a stage."""
         if stage in _GIVEN and stage not in self._missed:
-            self.notes.append(f"There was no time for the {stage}.")
+            self.notes.append(str(message("stage.no_time", stage=stage)))
         self._missed.add(stage)
 
     def _failed(self, stage: str, error: Exception) -> None:
         self._missed.add(stage)
-        self.notes.append(f"The stage {stage!r} failed: {_why(error)}. What was found before it stands.")
+        self.notes.append(str(message("stage.failed", stage=stage, why=_why(error))))
         if not isinstance(error, Unusable | MemoryError):
             _log.error("the %s of a diagnosis failed", stage, exc_info=error)
 
 
-def _why(error: Exception) -> str:
+def _why(error: Exception) -> Message:
     if isinstance(error, Unusable):
-        return str(error)
+        return message("stage.unusable", error=str(error))
     if isinstance(error, MemoryError):
-        return "it needs more memory than there is; use fewer or shorter runs"
-    return f"a defect of the program ({type(error).__name__}); its log has the details"
+        return message("stage.memory")
+    return message("stage.defect", error=type(error).__name__)
 
 
 def not_looked_at(stages: Sequence[str]) -> tuple[str, ...]:
     """The sentence that lists these stages; none where everything was looked at."""
-    return (f"Not looked at: {', '.join(stages)}.",) if stages else ()
+    return (str(message("stages.missed", stages=stages)),) if stages else ()

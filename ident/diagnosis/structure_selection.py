@@ -30,9 +30,7 @@ from ident.preprocessing.pipeline import ALL_ON
 from ident.presets import Preset, preset
 from ident.presets.suited import in_question, told_by_following, unusual
 from ident.progress import Progress, Report, silent
-from ident.words.error import error_said
-from ident.words.probability import probability_said
-from ident.words.titles import title
+from ident.words.message import Message, message
 
 
 @dataclass(frozen=True)
@@ -73,11 +71,13 @@ def _compared(
     models = in_question(matrix.runs, matrix.machine)
     if len(models) == 1:
         only = models[0]
-        shown = f"{only.name} is driven by {only.data.driven_by} and shows what was recorded"
-        if told_by_following(only, matrix.runs):
-            shown = f"{only.name}, a loop that compares both, since what was recorded is where the command is"
-        why = "the matrix describes it" if matrix.machine else shown
-        return (Structure(only.name, {"held_out": None}, len(only.parameters), why),), None
+        if matrix.machine:
+            why = message("structure.described")
+        elif told_by_following(only, matrix.runs):
+            why = message("structure.loop", machine=only.name)
+        else:
+            why = message("structure.driven", machine=only.name, driver=only.data.driven_by)
+        return (Structure(only.name, {"held_out": None}, len(only.parameters), str(why)),), None
     fitted = _all_fitted(models, matrix, report, preprocessing)
     over, tried = _judged(list(fitted.values()))
     least = min(one.error for one in tried)
@@ -90,7 +90,7 @@ def _compared(
     compared = [best, *others]
     probable = _probabilities(compared)
     said = (
-        model.structure(over, "" if number else why, probable.get(model.machine))
+        model.structure(over, None if number else why, probable.get(model.machine))
         for number, model in enumerate(compared)
     )
     return tuple(said), fitted[best.machine].fit
@@ -124,7 +124,7 @@ def _with_an_effect_each(
 
 def _preferred(
     first: _JudgedStructure, others: Collection[_JudgedStructure], strange: Collection[str]
-) -> tuple[_JudgedStructure, str]:
+) -> tuple[_JudgedStructure, Message]:
     """The one to take of models with an effect each, and why: the first, or a simpler one that says as much or more.
 
     Much less is left by one that nothing else tells of, less by one whose parameters have values in their bounds where
@@ -133,10 +133,10 @@ def _preferred(
     """
     least = min((one.error for one in others), default=first.error)
     if least <= CRITERIA.structure.much_less * first.error:
-        return _simplest(others), "much less with one effect"
+        return _simplest(others), message("structure.much_less")
     within = [one for one in others if one.error < first.error and not one.at_bound]
     if first.at_bound and within:
-        return _simplest(within), "less with one effect, and no parameter at its bound"
+        return _simplest(within), message("structure.within")
     simpler = [
         one
         for one in others
@@ -146,8 +146,8 @@ def _preferred(
         and not better(one.best, first.best)
     ]
     if first.with_effect is not None and simpler:
-        return min(simpler, key=lambda one: one.parameters), "as little with one effect, and simpler"
-    return first, "the simplest that is not worse"
+        return min(simpler, key=lambda one: one.parameters), message("structure.simpler")
+    return first, message("structure.simplest")
 
 
 def _simplest(models: Collection[_JudgedStructure]) -> _JudgedStructure:
@@ -156,8 +156,8 @@ def _simplest(models: Collection[_JudgedStructure]) -> _JudgedStructure:
     return min((one for one in models if one.error <= CRITERIA.structure.worse * least), key=lambda one: one.parameters)
 
 
-def _judged(fitted: Sequence[_FittedStructure]) -> tuple[str, list[_JudgedStructure]]:
-    """The models by one measure for all, and in words over what: the longest windows of one that is fitted so.
+def _judged(fitted: Sequence[_FittedStructure]) -> tuple[float | None, list[_JudgedStructure]]:
+    """The models by one measure for all, and over which time, s: the longest windows of one that is fitted so.
 
     What a machine integrated meanwhile is no matter of its structure. But where one that settles leaves less of whole
     runs than any leaves of windows, each begun anew where it was measured, nothing was integrated: whole runs count.
@@ -166,12 +166,12 @@ def _judged(fitted: Sequence[_FittedStructure]) -> tuple[str, list[_JudgedStruct
     longest = max(windows, key=lambda window: window.horizon, default=None)
     tried = [one.judged(longest) for one in fitted]
     if longest is None:
-        return "", tried
+        return None, tried
     if len(windows) < len(fitted):
         whole = [one.judged(None) for one in fitted]
         if min(one.error for one in whole) < min(one.error for one in tried):
-            return "", whole
-    return f" over {longest.horizon:.3g} s", tried
+            return None, whole
+    return longest.horizon, tried
 
 
 def _all_fitted(
@@ -205,8 +205,8 @@ def choose_structure(
     usual = first.machine in (Settings().model, matrix.machine) and not others
     if usual and (matrix.machine or not told_by_following(preset(first.machine), matrix.runs)):
         return StructureChoice(matrix, found, fit)
-    said = "; ".join(f"{one.machine} {one.why}" for one in found) if others else first.why
-    notice = f"No model was named: {said}."
+    compared = [message("structure.of", machine=one.machine, why=one.why) for one in found]
+    notice = str(message("structures", models=compared) if others else message("structures.one", why=first.why))
     return StructureChoice(replace(matrix, notices=(notice, *matrix.notices)), found, fit and noticed(fit, notice))
 
 
@@ -321,17 +321,22 @@ class _JudgedStructure:
         refits = [one.refit for one in ranking if one.refit is not None and one.improves]
         return replace(self, with_effect=min(refits, key=_held_out, default=None))
 
-    def structure(self, over: str, more: str, probability: float | None) -> Structure:
-        """What is told of it, and `more` why it was taken."""
+    def structure(self, over: float | None, more: Message | None, probability: float | None) -> Structure:
+        """What is told of it: its error over so many seconds, None for whole runs, and `more`, why it was taken."""
         alone = _held_out(self.refit)
-        what = f"leaves {error_said(alone)} of held-out data{over} with {self.parameters} parameters"
+        facts = [
+            message("structure.error", error=alone)
+            if over is None
+            else message("structure.error_over", error=alone, seconds=over),
+            message("structure.parameters", count=self.parameters),
+        ]
         if self.with_effect is not None:
-            what += f", {error_said(self.error)} with {title(self.with_effect.effects[-1])}"
+            facts.append(message("structure.effect", error=self.error, effect=self.with_effect.effects[-1]))
         if probability is not None:
-            what += f", probability {probability_said(probability)}"
-        why = f"{what}: {more}" if more else what
+            facts.append(message("structure.probability", probability=probability))
+        why = message("structure.facts", facts=facts) if more is None else message("structure", facts=facts, why=more)
         held_out = alone if self.refit.finite else None
-        return Structure(self.machine, {"held_out": held_out}, self.parameters, why, self.values, probability)
+        return Structure(self.machine, {"held_out": held_out}, self.parameters, str(why), self.values, probability)
 
 
 def _held_out(refit: FittedModel) -> float:

@@ -9,6 +9,7 @@ from ident.diagnosis.result import Diagnosis, Ranked
 from ident.diagnosis.summary import summary
 from ident.preprocessing.told import told
 from ident.words.error import error_said
+from ident.words.message import message
 from ident.words.percent import percent
 from ident.words.plus_minus import UNDETERMINED, plus_minus_si
 from ident.words.probability import probability_said
@@ -60,7 +61,7 @@ def proposal_rows(found: Diagnosis) -> Iterator[Row]:
     yield "0", f"(with {without.latest})" if without.latest else "(the fitted model)", "–", "–", *errors, "–", ""
     for choice, one in zip(rest, found.proposals or (), strict=True):
         errors = [one.error_of(use).said() for use in USES]
-        meant = one.meaning + (" (a hypothesis: too few runs to confirm it)" if one.hypothesis else "")
+        meant = str(message("term.hypothesis", meaning=one.meaning)) if one.hypothesis else one.meaning
         evidence = f"{one.nats:.3g} ({one.bar:.3g})"
         strength_is = _searched(one.strength, one.std_error, one.unit)
         yield str(choice.terms), one.equation, meant or "–", strength_is, *errors, evidence, ", ".join(one.alike[:3])

@@ -10,14 +10,14 @@ from ident.diagnosis.stages import EFFECTS, LATER, not_looked_at
 from ident.fit.result import FitResult
 from ident.fit.settings import Settings
 from ident.matrix import Matrix
+from ident.words.message import Message, message
 
 _STAGES = (EFFECTS, *LATER[1:])
 
 
 def unfitted(matrix: Matrix, settings: Settings, seconds: float) -> Diagnosis:
     """The diagnosis of no fit: there was no time to make one; `seconds` is what it took."""
-    text = "The search was not over: there was no time to fit a model first. Give more time, or a fit."
-    return _told(matrix, settings, Baseline(dict(NO_ERRORS)), dict(NO_ERRORS), text, seconds)
+    return _told(matrix, settings, Baseline(dict(NO_ERRORS)), dict(NO_ERRORS), message("verdict.unfitted"), seconds)
 
 
 def unranked(matrix: Matrix, fit: FitResult, seconds: float) -> Diagnosis:
@@ -25,20 +25,25 @@ def unranked(matrix: Matrix, fit: FitResult, seconds: float) -> Diagnosis:
     error, floor = ({**NO_ERRORS, **of} for of in (fit.error, fit.noise_floor))
     settings = Settings.from_json(dict(fit.settings)) if fit.settings else Settings(model=fit.model)
     baseline = Baseline(error, fit.offset.get("fit"))
-    text = "The search was not over: there was no time to look at any effect."
-    return replace(_told(matrix, settings, baseline, floor, text, seconds), preprocessing=fit.preprocessing)
+    told = _told(matrix, settings, baseline, floor, message("verdict.unranked"), seconds)
+    return replace(told, preprocessing=fit.preprocessing)
 
 
 def _told(
-    matrix: Matrix, settings: Settings, baseline: Baseline, floor: dict[str, float | None], text: str, seconds: float
-) -> Diagnosis:  # fmt: skip
+    matrix: Matrix,
+    settings: Settings,
+    baseline: Baseline,
+    floor: dict[str, float | None],
+    why: Message,
+    seconds: float,
+) -> Diagnosis:
     return Diagnosis(
         model=settings.model,
         effects=tuple(settings.effects),
         baseline=baseline,
         noise_floor=floor,
         candidates=(),
-        verdict=Verdict(unexplained=True, text=" ".join((text, *not_looked_at(_STAGES)))),
+        verdict=Verdict(unexplained=True, text=" ".join((str(why), *not_looked_at(_STAGES)))),
         proposals=(),
         complete=False,
         not_looked_at=_STAGES,

@@ -22,6 +22,7 @@ from ident.readers.table import MINUS, some_of
 from ident.run import CHANNELS
 from ident.units.quantity import shown
 from ident.words.listed import first_of
+from ident.words.message import message
 
 OUTPUTS = ("displacement", "velocity", "force", "load_pressure")
 """Channels that a model may have to reproduce; the first that there is, unless one is named."""
@@ -87,8 +88,11 @@ class Draft:
                 doubts.append(_contradicted(MINUS.join(one.name for one in columns), channel, answer.unit, stated))
             found[channel] = Answer(answer.column if columns else before.column, answer.unit or stated)
         found = {channel: answer for channel, answer in found.items() if answer.column != ""}
-        doubts += [f"{shown(a.column)!r} is used as {channel}, because of its name" for channel, a in found.items()
-                   if channel not in said.channels]  # fmt: skip
+        doubts += [
+            str(message("draft.named", column=shown(a.column), use=channel))
+            for channel, a in found.items()
+            if channel not in said.channels
+        ]
         time, rate, assumed = _clock(file, said)
         used = [answer.column for answer in (*found.values(), time) if answer.column != ""]
         if twice := {str(column) for column in used if used.count(column) > 1}:
@@ -187,8 +191,8 @@ class Draft:
     def description(self) -> dict[str, Any]:
         """What matrix.yaml says. Raises Unusable ``not-stated`` with everything that is missing."""
         if missing := self.missing:
-            what = "the files do not state: " + "; ".join(one.question for one in missing)
-            raise Unusable("not-stated", what, "init", "say it, as " + ", ".join(self.options))
+            what = str(message("draft.missing", questions=[one.question for one in missing]))
+            raise Unusable("not-stated", what, "init", str(message("draft.say", options=self.options)))
         runs = [self._run(file, name) for file, name in zip(self.files, run_ids(self.files), strict=True)]
         return {"actuator": {"serial": self.answers.serial, **self.answers.actuator}, "runs": runs}
 
@@ -268,13 +272,13 @@ def _clock(file: RawFile, said: FileAnswers) -> tuple[Answer, str, tuple[str, ..
         return Answer(answer.column, answer.unit or column.unit), "", tuple(_other_unit(column, answer.unit))
     named = [] if answer.column == NONE else [column for column in file.columns if is_time(column.name)]
     if len(named) == 1:
-        told = f"{shown(named[0].name)!r} is used as time, because of its name"
+        by_name = str(message("draft.named", column=shown(named[0].name), use="time"))
         found = Answer(named[0].name, answer.unit or named[0].unit)
-        return found, "", (told, *_other_unit(named[0], answer.unit))
+        return found, "", (by_name, *_other_unit(named[0], answer.unit))
     if (rate := file.rate) is None:
         return Answer(), "", ()
-    told = f"the sample rate {rate.value:g} Hz is that of the lines above the table"
-    return Answer(), f"{rate.value:g} Hz", (told + ("" if rate.stated else ", which name no unit"),)
+    told = message("draft.rate" if rate.stated else "draft.rate_without_unit", rate=rate.value)
+    return Answer(), f"{rate.value:g} Hz", (str(told),)
 
 
 def _other_unit(time: Column, said: str) -> Iterator[str]:
@@ -307,8 +311,9 @@ def _unit(columns: Sequence[Column]) -> str:
 
 def _listed(file: RawFile) -> str:
     more = len(file.left_out) - _LEFT_OUT
-    left_out = "".join(f"; {why}" for why in file.left_out[:_LEFT_OUT]) + (f"; so are {more} more" if more > 0 else "")
-    return f"{file.name} ({some_of([column.name for column in file.columns])}{left_out})"
+    columns = message("draft.columns", columns=some_of([column.name for column in file.columns]))
+    left_out = [columns, *file.left_out[:_LEFT_OUT], *([message("draft.more", count=more)] if more > 0 else [])]
+    return str(message("draft.file", file=file.name, parts=left_out))
 
 
 def run_ids(files: Sequence[RawFile]) -> list[str]:

@@ -13,6 +13,7 @@ from ident.figures.look import Look
 from ident.figures.render import Chart, Panel, datasets
 from ident.figures.subjects import Charted
 from ident.statistics import ControlChart
+from ident.words.message import message
 
 Limits = tuple[float | None, float | None]
 _WIDTH = 620
@@ -42,10 +43,8 @@ def control_chart(
     sets = len(chart.values)
     above = _panel("individuals", words.axis(quantity, shown), sets, 230, look)
     below = _panel("ranges", words.axis("moving range", shown), sets, 110, look)
-    said = (
-        f"dashed: 3 σ limits{', dotted: limits of the product' if given else ''}; marked: {len(broken)} out of control"
-    )
-    title = alt.TitleParams(f"{quantity}, {where}: {len(chart.values)} sets", subtitle=[said])
+    said = message("chart.with_limits" if given else "chart.limits", marked=len(broken))
+    title = alt.TitleParams(f"{quantity}, {where}: {len(chart.values)} sets", subtitle=[str(said)])
     made: Chart = alt.vconcat(above, below, title=title, datasets=datasets(tables)).configure(**look.config())
     return made
 

@@ -12,18 +12,17 @@ from ident.figures.look import Look
 from ident.figures.render import Chart, Panel
 from ident.figures.subjects import Simulated
 from ident.hybrid.followed import Followed, rounded
+from ident.words.message import message
 
 REFERENCE, ALONE, BOTH, BAND = "reference", "feedback alone", "with feedforward", "band of 90 % of the draws"
 
 
 def feedforward_figure(followed: Followed, look: Look, title: str = "") -> Chart:
     """Positions (mm) above, errors (mm) with feedforward and their band below, against time (s)."""
-    said = (
-        f"gain {followed.gain:.3g} V/m, {followed.margin:.2g} dB below the stability limit of {followed.limit:.3g} V/m"
-    )
+    facts = [message("feedforward.gain", gain=followed.gain, margin=followed.margin, limit=followed.limit)]
     if followed.drawn_ratio is not None:
-        said += f"; error 1/{rounded(followed.drawn_ratio)} of the feedback's, median of {followed.draws} draws"
-    headed = alt.TitleParams(title or "Following a reference", subtitle=[said])
+        facts.append(message("feedforward.error", ratio=rounded(followed.drawn_ratio), draws=followed.draws))
+    headed = alt.TitleParams(title or "Following a reference", subtitle=["; ".join(map(str, facts))])
     panels = alt.vconcat(_positions(followed, look), _errors(followed, look), title=headed)
     chart: Chart = panels.configure(**look.config())
     return chart

@@ -63,7 +63,7 @@ def told(shown: Mapping[str, HybridResult]) -> list[str]:
         left = f"{words.percent(found.reference_rms)} off the reference"
         late = f"{round(1e3 * found.delay, 2) + 0.0:.2f} ms late"  # never a minus before nothing
         follows = f"{words.percent(found.tracking_rms)} off what was asked for, {late}"
-        said = f"{left}, {follows}{'' if one.stable else '; unstable'}"
+        said = ", ".join((left, follows) if one.stable else (left, follows, "unstable"))
         lines += [f"{name}: {said}"] if len(name) + len(said) < _LINE else [f"{name}:", said]
     return lines
 

@@ -37,7 +37,7 @@ def residual_correlation(
             continue
         tables[name] = _rows(shown, run)
         panels.append(_panel(name, title, shown.band, run, look))
-        told.append(f"{percent(shown.outside)} of the {'auto' if name == 'auto' else 'cross-'}correlation")
+        told.append(f"{percent(shown.outside)} of the {title.partition(' (')[0].lower()}")
     subtitle = [
         words.verdict(fit),
         words.describe(run),

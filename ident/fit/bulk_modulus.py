@@ -10,7 +10,9 @@ from dataclasses import dataclass, replace
 
 from ident.fit.result import Combination, Estimate, FitResult
 from ident.matrix import Actuator
+from ident.words.message import message, said
 from ident.words.plus_minus import plus_minus_si
+from ident.words.sentence import sentence
 
 COMPRESSIBILITY = "m^3/Pa"
 """The unit that tells the parameter Vt/(4 βe) from all others."""
@@ -53,10 +55,8 @@ class BulkModulus:
     @property
     def note(self) -> str:
         """What a reader has to know of it."""
-        told = f"{self}."
-        if self.std_error is None:
-            told += f" Its standard error is not known, as that of {self.compressibility} is not."
-        return f"{told[0].upper()}{told[1:]}"
+        unknown = [] if self.std_error is not None else [message("bulk.std_error", name=self.compressibility)]
+        return sentence(said([message("bulk", modulus=self), *unknown]))
 
 
 def oil_volume(actuator: Actuator) -> OilVolume | None:

@@ -13,6 +13,7 @@ from ident.fit.space import search_space
 from ident.matrix import Matrix
 from ident.presets import Preset
 from ident.units.quantity import si_scale
+from ident.words.message import Message, message
 
 Range = tuple[float, float]
 FAR = 30.0
@@ -30,7 +31,7 @@ _MEANT = {
 """By SI unit, the units in which a number may have been meant, the likeliest first, and in words."""
 
 
-def far_bounds(settings: Settings, preset: Preset, matrix: Matrix, band: float) -> Iterator[str]:
+def far_bounds(settings: Settings, preset: Preset, matrix: Matrix, band: float) -> Iterator[Message]:
     """What was given far from the ranges that are searched where nothing is given, as causes of a bad fit.
 
     `band` is the angular frequency up to which the command excites the machine, rad/s.
@@ -42,7 +43,7 @@ def far_bounds(settings: Settings, preset: Preset, matrix: Matrix, band: float) 
     yield from far_from(settings, preset, space.bounds({name: float(value[0]) for name, value in middle.items()}))
 
 
-def far_from(settings: Settings, preset: Preset, ranges: Mapping[str, Range]) -> Iterator[str]:
+def far_from(settings: Settings, preset: Preset, ranges: Mapping[str, Range]) -> Iterator[Message]:
     """The same, beside known `ranges` by the equations' names; where there is none a parameter's own bounds hold."""
     settings = of_model(settings, preset)
     given: dict[str, Range] = {**settings.bounds, **{name: (value, value) for name, value in settings.fixed.items()}}
@@ -52,11 +53,14 @@ def far_from(settings: Settings, preset: Preset, ranges: Mapping[str, Range]) ->
         ratio = _size(stated) / _size(own) if _size(own) else 1.0
         if not (ratio >= FAR or 0.0 < ratio <= 1.0 / FAR) or _overlap(stated, own):
             continue
-        times = f"{_rounded(ratio)} times" if ratio > 1.0 else f"1/{_rounded(1.0 / ratio)} of"
-        what = "bounds given for {} are" if name in settings.bounds else "value given for {} is"
-        yield f"the {what.format(name)} {_told(stated, parameter.unit)}: {times} the range of this machine" + (
-            _remedy(stated, own, parameter.unit)
-        )
+        remedy = _remedy(stated, own, parameter.unit)
+        large = ratio > 1.0
+        times = _rounded(ratio if large else 1.0 / ratio)
+        values = {"name": name, "given": _told(stated, parameter.unit), "times": times, "remedy": remedy}
+        if name in settings.bounds:
+            yield message("cause.bounds_large" if large else "cause.bounds_small", **values)
+        else:
+            yield message("cause.value_large" if large else "cause.value_small", **values)
 
 
 def _size(of: Range) -> float:
@@ -81,11 +85,11 @@ def _told(of: Range, unit: str, sign: str = " to ") -> str:
     return sign.join(f"{end:g}{shown}" for end in dict.fromkeys(of))
 
 
-def _remedy(stated: Range, own: Range, unit: str) -> str:
+def _remedy(stated: Range, own: Range, unit: str) -> Message:
     """The unit in which the numbers are of this machine's size, if there is one."""
     for meant, words in _MEANT.get(unit, {}).items():
         factor = si_scale(meant, "bounds").factor
         ratio = factor * _size(stated) / _size(own)
         if 1.0 / FAR < ratio < FAR:
-            return f"; write {_told(stated, meant, ':')} if {words} were meant"
-    return f"; {_told(own, unit)} is searched without them"
+            return message("cause.write", value=_told(stated, meant, ":"), unit=words)
+    return message("cause.searched", range=_told(own, unit))

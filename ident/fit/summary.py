@@ -35,6 +35,8 @@ from ident.simulation.steps import FASTEST, MOST
 from ident.unstable import UNSTABLE
 from ident.words.engineering import quantity
 from ident.words.error import error_said
+from ident.words.message import message
+from ident.words.messages import MESSAGES
 from ident.words.plus_minus import determined
 from ident.words.run_name import run_name
 
@@ -43,7 +45,7 @@ _AT_BOUND = "the estimate is at its bound: the best value is outside it"
 _VAGUE = "its standard error is {:.3g} times its value"
 _FELT = 1.001  # times the error: a strength that is not off by chance
 HARDLY = 0.8  # of the output left: no fit to be trusted
-_HARDLY_SAID = "The model explains almost nothing"
+_HARDLY_SAID = MESSAGES["hardly"].partition("{")[0]
 Array = NDArray[np.float64]
 
 
@@ -328,17 +330,17 @@ def _hardly_explained(settings: Settings, objective: Fitness, error: float) -> I
     preset, runs = objective.preset, objective.runs
     far = list(far_bounds(settings, preset, objective.matrix, excited_band(runs)))
     if error >= UNSTABLE:
-        yield from [f"The model is unstable. Likely cause: {'; '.join(far)}."] if far else []
+        yield from [str(message("unstable", causes=far))] if far else []
         return
+    integrated = integrates(preset.chain, runs, objective.matrix.actuator)
     causes = [
         *far,
-        "a channel with the wrong sign, or from another run",
-        f"the wrong model (--model, now {preset.name})",
+        *([message("cause.offset")] if integrated else []),
+        message("cause.sign"),
+        message("cause.model", model=preset.name),
         *unit_causes(objective.matrix.runs),
     ]
-    if integrates(preset.chain, runs, objective.matrix.actuator):
-        causes.insert(len(far), "a command offset at rest, which the machine integrates (null_bias)")
-    yield f"{_HARDLY_SAID}: the error is {error_said(error)} of the output. Likely causes: {'; '.join(causes)}."
+    yield str(message("hardly", error=error, causes=causes))
 
 
 def _beyond(optimum: Optimum, values: Mapping[str, float], label: Mapping[str, tuple[str, str]]) -> Iterator[str]:

@@ -24,6 +24,7 @@ from ident.hybrid.robustness import (
 )
 from ident.hybrid.target import QIAN2014_TARGET, Target
 from ident.run import Specimen
+from ident.words.message import message
 from ident.words.shown import Listing, Shown
 
 LITTLE_MARGIN = 2.5
@@ -92,11 +93,11 @@ class ControllerDesign(Shown):
             ("command by sensor noise", f"{found.noise_gain:.0f}", "m/m RMS"),
         ]
         if judged is not None:
+            within = "design.nominal" if made.structure == "feedback" else "design.wanted"
             rows += [
                 ("drawn actuators that stay stable", f"{judged.stable} of {judged.draws}", ""),
-                (f"and within ± 1 dB, ± 10° to 25 Hz of {'nominal' if made.structure == 'feedback' else 'wanted'}",
-                 f"{judged.within} of {judged.draws}", ""),
-            ]  # fmt: skip
+                (str(message(within)), f"{judged.within} of {judged.draws}", ""),
+            ]
         return rows
 
 

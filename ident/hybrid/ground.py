@@ -151,7 +151,7 @@ def ground_of(data: Any, base: Path | None, default: Ground) -> Ground:
     kind = fields.choice("kind", KINDS, "record" if {"file", "text"} & set(fields.data) else "blwn")
     file, text = _record(fields, base)
     if kind == "record" and not (file or text):
-        raise Unusable("missing-field", "there is no record", "ground", f"give its {'file' if base else 'text'}")
+        raise Unusable("missing-field", "there is no record", "ground", "give its file" if base else "give its text")
     factor = default.factor
     if "unit" in fields:
         factor = unit_scale(fields.text("unit"), "acceleration", "ground unit").factor

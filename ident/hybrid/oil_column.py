@@ -21,6 +21,7 @@ from ident.hybrid.peak_problem import PeakProblem, PeakTarget, free_parameters
 from ident.hybrid.peaks import Peak
 from ident.plain import written
 from ident.progress import Progress, Report, silent
+from ident.words.message import message
 from ident.words.number import trimmed
 
 Array = NDArray[np.float64]
@@ -202,9 +203,11 @@ def _words(
     others: Mapping[str, FactorRange], starts: Starts | None,
 ) -> Iterator[str]:  # fmt: skip
     """What was found, in sentences."""
-    where = f"a peak at {trimmed(target.frequency)} ± {trimmed(target.tolerance)} Hz"
-    if target.axes:
-        where += " inside the axes"
+    where = message(
+        "peak.inside" if target.axes else "peak",
+        frequency=trimmed(target.frequency),
+        tolerance=trimmed(target.tolerance),
+    )
     if already:
         yield f"The response has {where} as it is."
         return

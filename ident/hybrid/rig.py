@@ -22,6 +22,7 @@ from ident.hybrid.substructure import numerical, reference
 from ident.progress import Progress, Report, silent
 from ident.simulation.stepper import Stepper, stepper
 from ident.words.engineering import quantity
+from ident.words.message import message
 from ident.words.percent import percent
 from ident.words.shown import Listing, Shown
 
@@ -105,9 +106,9 @@ class HybridResult(Shown):
         critical = "none" if self.critical_delay is None else quantity(self.critical_delay, "s")
         rows.append(("critical_delay", "of an otherwise perfect machine", critical))
         yield Listing("", (f"case {self.case.name}", "displacement", "value"), rows, ("value",))
-        said = "stable" if self.stable else "unstable"
+        said = message("rig.stable" if self.stable else "rig.unstable")
         if self.ended is not None:
-            said += f": ran away after {quantity(self.ended, 's')}"
+            said = message("rig.ran_away", after=(self.ended, "s"))
         yield f"{said}; controller {self.controller}; {self.case.ground.name}; {self.seconds:.2f} s of computing"
         for note in self.notes:
             yield f"note: {note}"

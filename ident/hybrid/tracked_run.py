@@ -15,6 +15,7 @@ from ident.hybrid.verdict import Verdict
 from ident.matrix import Matrix
 from ident.run import Run
 from ident.words.engineering import quantity
+from ident.words.message import message
 from ident.words.nearest import did_you_mean
 from ident.words.number import plain, trimmed
 from ident.words.run_name import run_name
@@ -54,7 +55,7 @@ class Track(Shown):
         mean = "unknown" if said.nis_mean is None else plain(said.nis_mean)
         noise = quantity(self.noise.measurement, unit)
         yield f"noise of the sensor {noise}; mean normalised innovation squared {mean}"
-        yield f"{'holds' if said.holds else 'does not hold'}: {said.reason}"
+        yield str(message("track.holds" if said.holds else "track.fails", reason=said.reason))
 
     @property
     def shown(self) -> slice:

@@ -170,7 +170,7 @@ def read_table(
     """
     ending = ending_of(name)
     if ending not in ENDINGS:
-        remedy = "use one of " + ", ".join(ENDINGS)
+        remedy = f"use one of {', '.join(ENDINGS)}"
         raise Unusable("unknown-type", f"files ending in {ending or 'nothing'!r} cannot be read", name, remedy)
     if not data:
         raise Unusable("empty-file", "the file is empty", name, "give a record")

@@ -57,7 +57,8 @@ def describe_channel(data: Any, name: str, where: str) -> ChannelDescription:
     if isinstance(column, list | dict) or (isinstance(column, int) and column < 0):
         raise Unusable("missing-column", f"{shown(column)!r} is not a column", fields.place("column"), "write a name")
     if "unit" not in fields:
-        remedy = f"add unit: {'mm' if 'length' in KINDS_OF_UNIT[name] else DIMENSIONS[KINDS_OF_UNIT[name][0]]}"
+        usual = "mm" if "length" in KINDS_OF_UNIT[name] else DIMENSIONS[KINDS_OF_UNIT[name][0]]
+        remedy = f"add unit: {usual}"
         raise Unusable("missing-unit", "the channel has no unit", fields.place("unit"), remedy)
     scale = channel_scale(fields.text("unit"), name, fields.place("unit"))
     factor = fields.number("scale")

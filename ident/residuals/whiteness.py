@@ -14,7 +14,7 @@ import numpy as np
 from ident.comparison.compare import Comparison, RunComparison
 from ident.residuals.correlation import SURE, correlation
 from ident.run import USES
-from ident.words.number import count
+from ident.words.message import message
 
 
 @dataclass(frozen=True)
@@ -30,7 +30,7 @@ class Whiteness:
 
     def __str__(self) -> str:
         """ "fail (white on 3 of 12 runs)"."""
-        return f"{'pass' if self.passed else 'fail'} (white on {self.white} of {count(self.runs, 'run')})"
+        return str(message("white.pass" if self.passed else "white.fail", white=self.white, runs=self.runs))
 
 
 def p_value(compared: RunComparison, lags: int | None = None) -> float:

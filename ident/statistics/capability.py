@@ -12,8 +12,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-_Z95 = 1.959964  # of the normal distribution: 95 % lie within ± so many standard deviations
+from ident.words.message import message
 
+_Z95 = 1.959964  # of the normal distribution: 95 % lie within ± so many standard deviations
 FEWEST_SETS = 10
 """Sets from which Cpk is given. At a true Cpk of 1.33 its 95 % interval is ±0.65 of 10 sets, ±0.97 of 5 and ±1.9 of 2:
 of fewer it does not say whether the process keeps to its limits, and an accidental s near 0 makes it as large as one
@@ -36,7 +37,7 @@ def withheld(values: Sequence[float], lower: float | None, upper: float | None) 
     if lower is None and upper is None:
         return "no limits are set"
     if len(values) < FEWEST_SETS:
-        return f"{len(values)} {'set' if len(values) == 1 else 'sets'}; given from {FEWEST_SETS} on"
+        return str(message("cpk.few", sets=len(values), least=FEWEST_SETS))
     return "" if float(np.std(values)) > 0 else "all values are the same"
 
 

@@ -11,9 +11,11 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
+from ident.words.engineering import quantity
 from ident.words.error import error_said, unstable_on
-from ident.words.listed import all_of
+from ident.words.listed import all_of, first_of
 from ident.words.messages import MESSAGES
+from ident.words.number import count
 from ident.words.percent import percent
 from ident.words.plus_minus import plus_minus
 from ident.words.probability import probability_said
@@ -33,6 +35,10 @@ class Message:
         """Its text, with the values in words."""
         return str(_WORDS.vformat(MESSAGES[self.key], (), self.values))
 
+    def record(self) -> dict[str, Any]:
+        """Its key and its values, messages within it likewise: plain data, as JSON has it."""
+        return {"key": self.key, "values": {name: _plain(value) for name, value in self.values.items()}}
+
 
 def message(key: str, **values: Any) -> Message:
     """A message by its key and values."""
@@ -42,6 +48,12 @@ def message(key: str, **values: Any) -> Message:
 def said(messages: Sequence[Message]) -> str:
     """Some sentences, one after the other."""
     return " ".join(map(str, messages))
+
+
+def _plain(value: Any) -> Any:
+    if isinstance(value, Message):
+        return value.record()
+    return [_plain(one) for one in value] if isinstance(value, list | tuple) else value
 
 
 def _strings(values: Sequence[Any]) -> list[str]:
@@ -55,6 +67,12 @@ KINDS: Mapping[str, Callable[[Any], str]] = {
     "unstable": unstable_on,
     "estimate": lambda one: plus_minus(*one),
     "run": run_name,
+    "first": first_of,
+    "samples": lambda number: count(number, "sample"),
+    "runs": lambda number: count(number, "run"),
+    "sets": lambda number: count(number, "set"),
+    "quantity": lambda one: quantity(*one),
+    "units": lambda pairs: ", or ".join(" and ".join(pair) for pair in pairs),
     "data": data,
     "title": title,
     "titles": lambda names: all_of(list(map(title, names))),

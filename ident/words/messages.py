@@ -4,243 +4,60 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-SUMMARY: Mapping[str, str] = {
-    "summary.missing": "Missing: {effects:all}.",
-    "summary.missing_and_helping":
-        "Missing: {effects:all}. The error also falls with {helping:all}, but something else is probably the cause.",
-    "summary.helping": "The error falls with {helping:all}, but something else may be the cause.",
-    "summary.contradicted": "Missing: {effects:all}, but validation data contradict it.",
-    "summary.stopped": "Nothing was found so far: the search was stopped.",
-    "summary.unlisted": "Missing: something that no listed effect explains.",
-    "summary.unlisted_probable":
-        "Missing: something that no listed effect explains (probability {probability:probability}).",
-    "summary.nothing": "Nothing is missing.",
-    "summary.nothing_probable": "Nothing is missing (probability {probability:probability}).",
-    "summary.error": "The error on {use:data} is {before:error}; the noise floor is {floor:percent}.",
-    "summary.error_floor_unknown": "The error on {use:data} is {before:error}; the noise floor is not known.",
-    "summary.change":
-        "The error on {use:data} goes from {before:error} to {after:error}; the noise floor is {floor:percent}.",
-    "summary.change_floor_unknown":
-        "The error on {use:data} goes from {before:error} to {after:error}; the noise floor is not known.",
-    "next.label": "Next: correct the label of {run:run}, and fit again.",
-    "next.time": "Next: search again with more time.",
-    "next.compare": "Next: compare the validation runs with and without {effect:title}.",
-    "next.distinguish": "Next: record the proposed run, which separates what these data do not.",
-    "next.add_and_propose":
-        "Next: add {effects:them}, and look at the proposed terms, or record the proposed run.",
-    "next.propose": "Next: look at the proposed terms, or record the proposed run.",
-    "next.add": "Next: add {effects:them} to the model, and compare the fits.",
-    "next.use": "Next: use the model as it is.",
-}  # fmt: skip
-"""The verdict of a diagnosis in three lines."""
+from ident.words.check_messages import CAUSES, CHECKS
+from ident.words.verdict_messages import EFFECTS, SEARCH, STRUCTURES, SUMMARY, VERDICT, WHY
 
-EFFECTS: Mapping[str, str] = {
-    "effect": "{names:or}",
-    "effect.strength": "{names:or} ({strength:estimate})",
-    "effect.probable": "{names:or} (probability {probability:probability})",
-    "effect.strength_probable": "{names:or} ({strength:estimate}, probability {probability:probability})",
-    "effect.in_place": "{named} in place of {others:titles}",
-    "machine": "{machine}",
-    "machine.effect": "{machine} with {effect:title}",
-    "machine.error": "{machine}, {error:error}",
-    "machine.effect_error": "{machine} with {effect:title}, {error:error}",
-    "parameter": "{name} ({meaning})",
-    "term": "{equation}",
-    "term.meaning": "{equation} ({meaning})",
-    "change": "from {before:error} to {after:error}",
-    "change.verify": "from {before:error} to {after:error} ({verify:error} on validation data)",
-    "change.fewer":
-        "from {before:error} to {after:error} ({verify:error} on validation data, {fewer:error} without "
-        "{without:titles})",
-    "change.unstable": "from {before:error} to {after:error} ({runs:unstable})",
-    "late.seconds": "{value:.3g} ± {error:.2g} s",
-    "late.samples": "{value:.3g} ± {error:.2g} samples",
+DRAFTS: Mapping[str, str] = {
+    "draft.missing": "the files do not state: {questions:terms}",
+    "draft.say": "say it, as {options:listed}",
+    "draft.named": "'{column}' is used as {use}, because of its name",
+    "draft.rate": "the sample rate {rate:g} Hz is from the lines above the table",
+    "draft.rate_without_unit":
+        "the sample rate {rate:g} Hz is from the lines above the table, which name no unit: Hz is assumed",
+    "draft.file": "{file} ({parts:terms})",
+    "draft.columns": "{columns}",
+    "draft.more": "so are {count} more",
+    "draft.no_file": "'{name}' is none of the files",
+    "draft.several_files": "'{name}' is more than one of the files",
+    "kept.saved": "{name} is saved in {where}",
+    "kept.already": "{name} was already saved in {where}",
+    "kept.saved_by": "{name} is saved by {where}",
+    "kept.already_by": "{name} was already saved by {where}",
+    "tidy.removed": "{count} raw uploads that no record names are removed",
+    "tidy.found": "{count} raw uploads that no record names; --yes removes them",
 }  # fmt: skip
-"""Members of a list within a sentence."""
+"""Files that are described, and what is kept."""
 
-VERDICT: Mapping[str, str] = {
-    "verdict.stopped":
-        "The search was not over: other missing effects, and alternatives to those found, were not examined.",
-    "verdict.lacks": "The model lacks {effects:all}: with {effects:them} the error falls {change}.",
-    "verdict.partly":
-        "On estimation data the error is partly explained by {effects:all}: with {effects:them} it falls {change}.",
-    "verdict.unconfirmed": "No effect was confirmed that lowers the error of {before:error}.",
-    "verdict.white":
-        "Nothing seems to be missing: the residual, {before:error}, is white. The noise floor is not known.",
-    "verdict.nothing": "Nothing is missing: the error of {before:error} is measurement noise.",
-    "verdict.nothing_probable":
-        "Nothing is missing (probability {probability:probability}): the error of {before:error} is measurement noise.",
-    "verdict.none": "No effect of the library lowers the error of {before:error} by more than chance.",
-    "verdict.bounded":
-        "The strength of {effect} ended at the bound of its search. It may be larger, or stand for another effect: "
-        "search within wider bounds.",
-    "verdict.group": "These data cannot distinguish {group:listed}: their refits differ by less than chance.",
-    "verdict.group_unexplained":
-        "These data cannot distinguish {group:listed}: their refits differ by less than chance, or than the "
-        "unexplained residual.",
-    "verdict.two":
-        "These data cannot tell which two of these are present: {group:listed}. Their refits differ by less than "
-        "chance.",
-    "verdict.two_unexplained":
-        "These data cannot tell which two of these are present: {group:listed}. Their refits differ by less than "
-        "chance, or than the unexplained residual.",
-    "verdict.label": "The label of {run:run} looks wrong ({what}): {evidence}.",
-    "verdict.unlisted": "Something remains that none of the listed effects explains.",
-    "verdict.unlisted_probable":
-        "Something remains that none of the listed effects explains (probability {probability:probability}).",
-    "verdict.remains": "Part of the error remains unexplained.",
-    "verdict.remains_probable":
-        "Part of the error remains unexplained (probability {probability:probability}).",
-    "verdict.not_repeated":
-        "No command was repeated: part of it may be noise in the band of the command, which a repeated run would show.",
-    "group": "These data cannot distinguish {group:listed}.",
-    "group.two": "These data cannot tell which two of these are present: {group:listed}.",
-    "contradicted.rises":
-        "With {named} the error on validation data rises from {before:error} to {after:error}: it may stand for "
-        "another effect.",
-    "contradicted.rises_by":
-        "With {named} the error on validation data rises from {before:error} to {after:error}, {deviations:.1f} "
-        "standard errors: it may stand for another effect.",
-    "contradicted.unstable":
-        "With {named} the model is {runs:unstable}; the error on validation data was {before:error}. It may stand for "
-        "another effect.",
-    "alone.rises":
-        "With {equation} but without those after it the error on validation data rises from {before:error} to "
-        "{after:error}.",
-    "alone.unstable":
-        "With {equation} but without those after it the model is {runs:unstable}; the error on validation data was "
-        "{before:error}.",
-    "alternative.better": "Another model explains more: {models:listed} (--model).",
-    "alternative.equal": "These data cannot distinguish it from other models: {models:listed}.",
-    "dispensable.one":
-        "With the terms that a search proposes beyond the library, {effects:titles} is not needed: it stood for them.",
-    "dispensable.several":
-        "With the terms that a search proposes beyond the library, {effects:titles} are not needed: they stood for "
-        "them.",
-    "horizon.runs":
-        "These are errors over whole runs, where the fit was made over windows of {fitted:.3g} s: within these, what "
-        "is missing adds up to little.",
-    "horizon.windows":
-        "These are errors over windows of {horizon:.3g} s, where the fit was made over windows of {fitted:.3g} s: "
-        "within these, what is missing adds up to little.",
-    "delay": "A slow command is answered {time} late. These data cannot tell by which lag or delay: {names:listed}.",
-    "delay.before":
-        "A slow command is answered {time} late, {before} by the fitted model. These data cannot tell by which lag or "
-        "delay: {names:listed}.",
-    "delay.without":
-        "Without {without:titles} a slow command is answered {time} late. These data cannot tell by which lag or "
-        "delay: {names:listed}.",
-    "delay.without_before":
-        "Without {without:titles} a slow command is answered {time} late, {before} by the fitted model. These data "
-        "cannot tell by which lag or delay: {names:listed}.",
-    "proposed": "Beyond the library a search proposes: {terms:terms}.",
-    "proposed.instead": "Beyond the library a search proposes in place of {instead:titles}: {terms:terms}.",
-    "proposed.hypothesis": "This is a hypothesis.",
-    "proposed.free_curve": "The last term is a free curve.",
-    "proposed.error": "With {terms:them} the error is {error:error}.",
-    "proposed.error_verify": "With {terms:them} the error is {error:error} ({verify} on validation data).",
-    "proposed.error_unstable": "With {terms:them} the error is {error:error} ({runs:unstable}).",
+FIGURES: Mapping[str, str] = {
+    "chart.limits": "dashed: 3 σ limits; marked: {marked} out of control",
+    "chart.with_limits": "dashed: 3 σ limits, dotted: limits of the product; marked: {marked} out of control",
+    "feedforward.gain": "gain {gain:.3g} V/m, {margin:.2g} dB below the stability limit of {limit:.3g} V/m",
+    "feedforward.error": "error 1/{ratio} of that with feedback alone, median of {draws} draws",
+    "rig.stable": "stable",
+    "rig.unstable": "unstable",
+    "rig.ran_away": "unstable: ran away after {after:quantity}",
+    "peak": "a peak at {frequency} ± {tolerance} Hz",
+    "peak.inside": "a peak at {frequency} ± {tolerance} Hz inside the axes",
+    "white.pass": "pass (white on {white} of {runs:runs})",
+    "white.fail": "fail (white on {white} of {runs:runs})",
+    "track.holds": "holds: {reason}",
+    "track.fails": "does not hold: {reason}",
+    "cpk.few": "{sets:sets}; given from {least} on",
+    "sets": "{count}, of model {model}",
+    "sets.newest": "{count}, the newest, of model {model}",
+    "design.nominal": "and within ± 1 dB, ± 10° to 25 Hz of nominal",
+    "design.wanted": "and within ± 1 dB, ± 10° to 25 Hz of wanted",
+    "limit.absent": "{name}: the set has no such value",
+    "limit.not_judged": "{name} {value}: fixed or not identifiable, so not judged",
+    "limit.inside": "{name} {value} is within {limits}",
+    "limit.outside": "{name} {value} is outside {limits}",
+    "limit.uncertain": "{outcome}, but uncertain: a limit is less than two standard errors away",
+    "bulk": "{modulus}.",
+    "bulk.std_error": "Its standard error is not known, because that of {name} is not.",
 }  # fmt: skip
-"""The verdict of a diagnosis in full."""
+"""Captions, and what stands with a result."""
 
-WHY: Mapping[str, str] = {
-    "why.predicted":
-        "Predicted to lower the error by {share:.2g} %, less than others; it was not refitted.",
-    "why.change": "On held-out data the error goes from {before:error} to {after:error}.",
-    "why.change_floor":
-        "On held-out data the error goes from {before:error} to {after:error}, with the noise floor at "
-        "{floor:percent}.",
-    "why.best": "No other effect does better.",
-    "why.little":
-        "The effect explains {share:.2g} ± {error:.2g} % of the error above the noise floor. It counts from "
-        "{least:.2g} % on, beyond the standard error.",
-    "why.half": "The error rises on the {part} of the records: what only part of the data ask for is not added.",
-    "why.condition": "The error rises on one condition of the tests: what only part of the data ask for is not added.",
-    "why.chance": "That is no more than the best of all effects gains by chance.",
-    "why.shows": "It shows as: {looks}.",
-    "why.would_show": "It would show as: {looks}.",
+MESSAGES: Mapping[str, str] = {
+    **SUMMARY, **EFFECTS, **VERDICT, **WHY, **STRUCTURES, **SEARCH, **CHECKS, **CAUSES, **DRAFTS, **FIGURES,
 }  # fmt: skip
-"""Why the data speak for or against an effect."""
-
-CHECKS: Mapping[str, str] = {
-    "check.band_narrow":
-        "the command of {run:run} is called blwn, but {share:.0%} of its power lies below {edge:.3g} Hz instead of "
-        "about 76 Hz; higher frequencies are not excited and not identifiable: check the generator, the sample rate "
-        "and kind",
-    "check.band_wide":
-        "the command of {run:run} is called blwn, but {share:.0%} of its power lies below {edge:.3g} Hz instead of "
-        "about 76 Hz; the model is made for 0-80 Hz: check the generator, the sample rate and kind",
-    "check.copied":
-        "{channel} of {run:run} is a copy of its command, without delay, dynamics or noise, which no sensor gives; "
-        "check that its column is that of the sensor",
-    "check.clipped_high":
-        "{channel} of {run:run} seems clipped: {count} peaks end at its highest value {level:.4g} {unit}; look at the "
-        "range of the sensor or amplifier and repeat the run",
-    "check.clipped_low":
-        "{channel} of {run:run} seems clipped: {count} peaks end at its lowest value {level:.4g} {unit}; look at the "
-        "range of the sensor or amplifier and repeat the run",
-    "check.flat":
-        "{channel} of {run:run} is flat from sample {first} to {last} ({duration:.3g} {unit}) while {other} moves; "
-        "look for a stuck sensor or a filled gap and cut it out with rows",
-    "check.sign":
-        "displacement of {run:run} moves against the command ({turn:.0f} degrees at {low:.2g}-{high:.2g} Hz); set "
-        "invert: true on the channel whose sign is wrong",
-    "check.unit":
-        "displacement of {run:run} is {ratio:.3g} times the command at {low:.2g}-{high:.2g} Hz; correct the unit or "
-        "scale of the channel",
-    "check.unit_like":
-        "displacement of {run:run} is {ratio:.3g} times the command at {low:.2g}-{high:.2g} Hz, near {factor:g}, as if "
-        "{unit}; correct the unit or scale of the channel",
-    "check.unrelated":
-        "displacement of {run:run} hardly follows the command (coherence {coherence:.2f} where it is excited); check "
-        "that both columns are the right ones and of this run",
-    "check.force_sign":
-        "force of {run:run} is {ratio:.2g} times what its specimen needs: the sign is wrong; set invert: true on "
-        "force, which is positive on the specimen along +x",
-    "check.offset_above":
-        "the mean displacement of {run:run} is {millimetres:.3g} mm above the command ({share:percent} of its "
-        "standard deviation). The error of eq. (17) ignores constant offsets.",
-    "check.offset_below":
-        "the mean displacement of {run:run} is {millimetres:.3g} mm below the command ({share:percent} of its "
-        "standard deviation). The error of eq. (17) ignores constant offsets.",
-    "check.offset_large": "Zero the sensor, or state the offset",
-    "check.offset_small": "Possible causes: null bias, static load, sensor zero",
-    "check.active":
-        "in {run:run} the mean of force times speed is {work:.2f} of their deviations. A passive specimen cannot "
-        "produce work, so one of the two has the wrong sign. Set invert: true on it",
-    "check.beyond_stroke":
-        "displacement of {run:run} travels {extent:.3g} m where the stroke is {stroke:.3g} m; correct the unit of the "
-        "channel or the stroke",
-    "check.beyond_supply":
-        "{channel} of {run:run} reaches {highest:.3g} Pa where the supply is {supply:.3g} Pa; correct the unit of the "
-        "channel or supply_pressure",
-    "check.gaps":
-        "the time of {run:run} has gaps: {missing} samples are missing, and the phase after a gap is shifted. Use the "
-        "longest part without a gap (rows), or repeat the run",
-    "check.gaps_filled":
-        "the time of {run:run} has gaps: {missing} samples are missing, and they were interpolated. Use the longest "
-        "part without a gap (rows), or repeat the run",
-    "check.jitter":
-        "the clock of {run:run} has a jitter of up to {jitter:.2g} samples, and a constant sample rate is assumed. "
-        "Record with a hardware clock, or print the time with more digits",
-    "check.jitter_held":
-        "the clock of {run:run} has a jitter of up to {jitter:.2g} samples. The record was resampled to {rate:.6g} Hz "
-        "by its time column, with the steps of the held command at their time",
-    "check.jitter_interpolated":
-        "the clock of {run:run} has a jitter of up to {jitter:.2g} samples. The record was resampled to {rate:.6g} Hz "
-        "by its time column, by interpolation",
-    "check.few_samples":
-        "{run:run} has {samples:.2g} samples per cycle at {highest:.3g} Hz, and {share:.0%} of the power of the "
-        "command is below that. Use at least {least:.3g} Hz",
-    "check.too_quick":
-        "the sample rate of {run:run} is too low: {share:.0%} of the step response happens within {samples} samples. "
-        "Use at least {least:.3g} Hz",
-    "check.closed_loop":
-        "the command of {run:run} depends on the measured output, so a controller made it: the output predicts "
-        "{share:percent} of the innovations of the command. Use the reference of the controller as the command and "
-        "state controller or gain, or set closed_loop: false if there is no feedback",
-}  # fmt: skip
-"""Findings of the data check."""
-
-MESSAGES: Mapping[str, str] = {**SUMMARY, **EFFECTS, **VERDICT, **WHY, **CHECKS}
 """Every text by its key."""

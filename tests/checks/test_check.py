@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from dataclasses import replace
 
 import numpy as np
@@ -14,6 +15,7 @@ from ident.checks.response import respond
 from ident.matrix import Actuator, Matrix
 from ident.readers import read_matrix
 from ident.run import Run
+from ident.words.messages import MESSAGES
 
 from .conftest import SPECIMENS, displacement_of, noise_of
 
@@ -301,6 +303,8 @@ def test_every_finding_is_a_line_that_names_its_run(faulty):
     for finding in found:
         assert "\n" not in finding.text
         assert finding.run is None or finding.run in finding.text
+        assert finding.key in MESSAGES
+        assert json.loads(json.dumps(finding.values)) == finding.values
 
 
 def test_very_short_and_unitless_records_are_checked_without_error(healthy):

@@ -66,7 +66,7 @@ def test_a_time_in_seconds_that_is_called_milliseconds_is_doubted():
     """With the factor, the rate, the duration, the sister, and what to correct."""
     (found,) = (one for one in check(misread()) if one.code == "clock-factor")
     assert (found.run, found.severity) == ("units_b", "doubt")
-    for told in ("1e+06 Hz", "0.0015", "1000 times that of units_a", "s for ms", "correct the unit of its time"):
+    for told in ("1e+06 Hz", "0.0015", "1000 times that of units_a", "s and ms", "Correct the unit of its time"):
         assert told in found.text
 
 
@@ -210,9 +210,9 @@ def test_one_run_of_machines_drawn_at_random_is_found(full):
 
 def test_a_fit_that_explains_hardly_anything_names_the_unit():
     """Of the run that is doubted; where none is, that a unit may be wrong."""
-    causes = "; ".join(unit_causes(misread().runs))
+    causes = "; ".join(map(str, unit_causes(misread().runs)))
     assert causes.startswith("a wrong unit: run units_b is sampled at 1e+06 Hz")
-    assert unit_causes(noise()) == ["a wrong unit of a channel or of the time"]
+    assert list(map(str, unit_causes(noise()))) == ["a wrong unit of a channel or of the time"]
 
 
 def test_a_fit_of_a_run_whose_time_has_a_wrong_unit_says_so_first():

@@ -265,7 +265,7 @@ def lagging(seed: int, gain: float = 1.0, beside: float = 0.0, wander: float = 0
 def test_in_unknown_units_a_loop_is_known_by_where_its_output_is(seed):
     matrix = lagging(seed)
     assert [model.name for model in in_question(matrix.runs)] == ["qian2014"]
-    said = "No model was named: qian2014, a loop that compares both, since what was recorded is where the command is."
+    said = "No model was named: qian2014 is used, a position loop, because the recorded output follows the command."
     assert said in choose_structure(matrix).matrix.notices
     of_force = replace(matrix.runs[0], output="force", units={"command": "1", "force": "1"},
                        channels={"command": matrix.runs[0].command, "force": matrix.runs[0].measured})  # fmt: skip

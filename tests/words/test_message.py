@@ -14,11 +14,16 @@ from ident.words.message import KINDS, Message, message, said
 from ident.words.messages import MESSAGES
 
 ROOT = Path(__file__).parents[2]
-CHECKS = ("band", "clipping", "copied", "feedback", "flat", "offset", "passivity", "ranges", "timing")
-ROOMS = ("ident/diagnosis/sentences.py", "ident/diagnosis/summary.py", *(f"ident/checks/{one}.py" for one in CHECKS))
+CHECKS = tuple(sorted(str(path.relative_to(ROOT)) for path in (ROOT / "ident/checks").glob("*.py")))
+ROOMS = ("ident/diagnosis/sentences.py", "ident/diagnosis/summary.py", *CHECKS)
 """Files that say everything by messages: no prose stands in them."""
 PROSE = re.compile(r"[A-Za-z]{2,},? [a-z]|^[,;:.]? [a-z]{2}|[a-z] $")
 """Words in a row, or a piece that is to be joined to words."""
+
+
+def program() -> list[Path]:
+    """The files of the library and of the service."""
+    return sorted(path for folder in ("ident", "app") for path in (ROOT / folder).rglob("*.py"))
 
 
 def fields(key: str) -> dict[str, str]:
@@ -27,8 +32,8 @@ def fields(key: str) -> dict[str, str]:
 
 
 def calls() -> Iterator[tuple[str, list[str], set[str], bool]]:
-    """Every message in the library: where, the keys it may have, its named values, and whether these are all."""
-    for path in sorted((ROOT / "ident").rglob("*.py")):
+    """Every message of the program: where, the keys it may have, its named values, and whether these are all."""
+    for path in program():
         source = path.read_text(encoding="utf-8")
         if "message(" not in source:
             continue
@@ -54,7 +59,12 @@ def test_every_message_has_a_text_that_names_its_values_and_no_others():
 
 
 def test_every_text_is_said_somewhere():
-    sources = [p.read_text("utf-8") for p in (ROOT / "ident").rglob("*.py") if p.name not in ("messages.py",)]
+    sources = [
+        p.read_text("utf-8")
+        for folder in ("ident", "app")
+        for p in (ROOT / folder).rglob("*.py")
+        if p.name != "messages.py"
+    ]
     unsaid = [key for key in MESSAGES if not any(f'"{key}"' in source for source in sources)]
     assert not unsaid
 
@@ -94,8 +104,76 @@ def test_what_is_joined_from_parts_is_seen(source):
     assert pieces(source)
 
 
+KEPT = {
+    "ident/export/fmu.py": "names of a platform",
+    "app/pages/manual.py": "HTML",
+    "ident/words/arguments.py": "a type in words, of its parts",
+    "ident/design/experiment.py": "the unit of a time",
+    "ident/fit/result.py": "the unit of a time",
+    "ident/comparison/side_by_side.py": "a list: model, and what was held",
+}
+"""Files in which strings are joined that are no sentences, and what they are."""
+_WORD = re.compile(r"[A-Za-z]{2,}")
+
+
+def joined(source: str) -> list[int]:
+    """The lines where words are added to words, or a part of a text depends on a condition within it."""
+    found = []
+    for node in ast.walk(ast.parse(source)):
+        parts: list[ast.AST] = []
+        if isinstance(node, ast.JoinedStr):
+            parts = [one.value for one in node.values if isinstance(one, ast.FormattedValue)]
+            parts = [one for one in parts if isinstance(one, ast.IfExp)]
+        elif isinstance(node, ast.BinOp) and isinstance(node.op, ast.Add):
+            parts = [node.left, node.right]
+        elif isinstance(node, ast.AugAssign) and isinstance(node.op, ast.Add):
+            parts = [node.value]
+        within = isinstance(node, ast.JoinedStr)
+        walked = [list(ast.walk(part)) for part in parts]
+        walked = [
+            nodes for nodes in walked if not any(isinstance(n, ast.List | ast.Tuple | ast.ListComp) for n in nodes)
+        ]
+        texts = [one.value for nodes in walked for one in nodes if isinstance(one, ast.Constant)]
+        if any(isinstance(text, str) and _WORD.search(text) and (within or " " in text) for text in texts):
+            found.append(node.lineno)
+    return found
+
+
+def test_no_sentence_of_the_program_is_joined_from_parts():
+    """Everywhere in the library and the service, but where no sentence is made."""
+    files = {str(path.relative_to(ROOT)): joined(path.read_text(encoding="utf-8")) for path in program()}
+    found = {name: lines for name, lines in files.items() if lines}
+    assert {name: lines for name, lines in found.items() if name not in KEPT} == {}
+    assert not set(KEPT) - set(found)
+
+
+@pytest.mark.parametrize(
+    "source",
+    [
+        'said = "The model" + " lacks " + name',
+        'said += f" The runs separate them by {so_far}."',
+        """said = f"{name} {'is saved' if new else 'was saved'}" """,
+    ],
+)
+def test_a_sentence_that_is_joined_is_seen_anywhere(source):
+    assert joined(source)
+
+
+@pytest.mark.parametrize("source", ['x = [*names] + ["a word here"]', 'size += "mm"', 'f"{one if one else two}"'])
+def test_a_list_a_unit_and_a_choice_of_names_are_no_joined_sentences(source):
+    assert not joined(source)
+
+
 def test_a_key_a_channel_and_a_docstring_are_no_prose():
     assert pieces('"""What a run says, in words."""\nkey = "verdict.lacks"\nname = "load_pressure"\n') == []
+
+
+def test_a_message_is_plain_data_with_those_within_it():
+    inner = message("factor.units", value=10.0, units=[("cm", "mm")])
+    size = message("unit.size", channel="force", run="b", ratio=10.1, factor=inner, others=["a"])
+    assert str(size) == "force of run b is 10.1 times as large as that of a (near 10, the factor between cm and mm)"
+    values = size.record()["values"]
+    assert values["factor"] == {"key": "factor.units", "values": {"value": 10.0, "units": [["cm", "mm"]]}}
 
 
 def test_a_value_is_put_into_words_by_its_kind_and_may_be_a_message():

@@ -10,8 +10,7 @@ from ident.diagnosis.fitted_model import FittedModel
 from ident.diagnosis.verdict import contradiction
 from ident.diagnosis.verification import verify_change
 from ident.run import Run
-from ident.words.error import error_said
-from ident.words.titles import title
+from ident.words.message import message, said
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -26,15 +25,17 @@ class RejectedTerm:
 
     def sentences(self, looked_at: int) -> str:
         """In sentences."""
-        beside = f" beside {', '.join(map(title, self.beside))}" if self.beside else ""
         verify = self.error["verify"]
-        of_verify = "" if verify is None else f" ({error_said(verify)} on verify runs)"
-        but = ", but not from run to run: some lose by it" if self.log_likelihood_gain > self.bar else ""
-        return (
-            f"Of {looked_at} terms that were looked at the best that was refused is {self.equation}{beside}: "
-            f"{self.log_likelihood_gain:.3g} nats on data that it was not fitted to, {self.bar:.3g} are asked for"
-            f"{but}. "
-            f"It would leave {error_said(self.error['fit'])}{of_verify}."
+        term = {"equation": self.equation, "looked_at": looked_at}
+        evidence = {"gain": self.log_likelihood_gain, "bar": self.bar}
+        return said(
+            [
+                message("refused.given", effects=self.beside, **term) if self.beside else message("refused", **term),
+                message("refused.some_runs" if self.log_likelihood_gain > self.bar else "refused.little", **evidence),
+                message("refused.error", error=self.error["fit"])
+                if verify is None
+                else message("refused.error_verify", error=self.error["fit"], verify=verify),
+            ]
         )
 
 
@@ -68,16 +69,13 @@ class DiscoveryResult:
     def notes(self, asked: bool | None) -> Iterator[str]:
         """What is said of a search that was stopped, left terms out, or ended below its bar; `asked`: it was wanted."""
         if not self.complete:
-            yield "The search for terms that no list holds was stopped before its end."
+            yield str(message("terms.stopped"))
         if self.left_out:
-            yield (
-                f"Of {self.looked_at} terms that were looked at {self.left_out} were left out: no model can hold them, "
-                "or what they add is not finite."
-            )
+            yield str(message("terms.left_out", looked_at=self.looked_at, left_out=self.left_out))
         if self.rejected is not None:
             yield self.rejected.sentences(self.looked_at)
         elif asked and not self.looked_at:
-            yield "No term was looked for: the error is the noise's."
+            yield str(message("terms.noise"))
 
     def error_with_terms(self, before: float, what: str = "fit") -> float:
         """The error with all of it on the fitted runs, or "held_out" from the fit in turn; `before` without."""

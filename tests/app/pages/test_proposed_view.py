@@ -28,8 +28,8 @@ def card(verify: float | None, **of_term: object):
 @pytest.mark.parametrize(
     ("names", "verify", "said"),
     [
-        (("dead_zone",), 0.0158, "dead zone, which leaves 1.58 % on validation data"),
-        (("dead_zone", "lead"), 0.0158, "dead zone, lead, which leave 1.58 % on validation data"),
+        (("dead_zone",), 0.0158, "dead zone (error 1.58 % on validation data)"),
+        (("dead_zone", "lead"), 0.0158, "dead zone, lead (error 1.58 % on validation data)"),
         (("dead_zone",), None, "dead zone"),
         ((), 0.0158, ""),
     ],

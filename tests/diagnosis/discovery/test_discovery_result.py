@@ -86,19 +86,24 @@ def test_of_two_searches_what_was_refused_and_would_leave_less_is_told() -> None
             assert (told.rejected, told.looked_at) == (plain.rejected, 8000)
     assert plain.rejected is not None
     assert beside.rejected is not None
-    assert "max(Q, 0) * w): 10.3 nats" in plain.rejected.sentences(8000)
-    assert plain.rejected.sentences(8000).endswith("13.4 are asked for. It would leave 30.0 % (40.0 % on verify runs).")
-    assert "s * (x) beside dead zone: 6.9 nats" in beside.rejected.sentences(8000)
+    assert "max(Q, 0) * w). Its evidence on data left out of its fit is 10.3 nats" in plain.rejected.sentences(8000)
+    assert plain.rejected.sentences(8000).endswith(
+        "13.4 are needed. With it the error is 30.0 % (40.0 % on validation data)."
+    )
+    assert (
+        "in addition to dead zone the best was rejected: R = R + s * (x). Its evidence on"
+        in beside.rejected.sentences(8000)
+    )
     assert found(0.1).or_rejected(plain).rejected is None
     unsteady = refused("w = w + s * (w * abs(v))", 1291.0).rejected
     assert unsteady is not None
-    assert "13.4 are asked for, but not from run to run: some lose by it. It would" in unsteady.sentences(8000)
+    assert "(13.4 are needed), but some runs get worse. With it the" in unsteady.sentences(8000)
 
 
 def test_where_a_verify_run_cannot_be_followed_a_refused_term_tells_no_error_of_it() -> None:
     best = refused("R = R + s * (x)", 6.9, verify=None).rejected
     assert best is not None
-    assert best.sentences(1).endswith("It would leave 30.0 %.")
+    assert best.sentences(1).endswith("With it the error is 30.0 %.")
 
 
 def test_what_the_terms_do_without_is_named_no_more() -> None:

@@ -1,0 +1,225 @@
+"""The texts of a diagnosis by key: its verdict, why an effect or a model was chosen, and what a search says."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+SUMMARY: Mapping[str, str] = {
+    "summary.missing": "Missing: {effects:all}.",
+    "summary.missing_and_helping":
+        "Missing: {effects:all}. The error also falls with {helping:all}, but something else is probably the cause.",
+    "summary.helping": "The error falls with {helping:all}, but something else may be the cause.",
+    "summary.contradicted": "Missing: {effects:all}, but validation data contradict it.",
+    "summary.stopped": "Nothing was found so far: the search was stopped.",
+    "summary.unlisted": "Missing: something that no listed effect explains.",
+    "summary.unlisted_probable":
+        "Missing: something that no listed effect explains (probability {probability:probability}).",
+    "summary.nothing": "Nothing is missing.",
+    "summary.nothing_probable": "Nothing is missing (probability {probability:probability}).",
+    "summary.error": "The error on {use:data} is {before:error}; the noise floor is {floor:percent}.",
+    "summary.error_floor_unknown": "The error on {use:data} is {before:error}; the noise floor is not known.",
+    "summary.change":
+        "The error on {use:data} goes from {before:error} to {after:error}; the noise floor is {floor:percent}.",
+    "summary.change_floor_unknown":
+        "The error on {use:data} goes from {before:error} to {after:error}; the noise floor is not known.",
+    "next.label": "Next: correct the label of {run:run}, and fit again.",
+    "next.time": "Next: search again with more time.",
+    "next.compare": "Next: compare the validation runs with and without {effect:title}.",
+    "next.distinguish": "Next: record the proposed run, which separates what these data do not.",
+    "next.add_and_propose":
+        "Next: add {effects:them}, and look at the proposed terms, or record the proposed run.",
+    "next.propose": "Next: look at the proposed terms, or record the proposed run.",
+    "next.add": "Next: add {effects:them} to the model, and compare the fits.",
+    "next.use": "Next: use the model as it is.",
+}  # fmt: skip
+"""The verdict of a diagnosis in three lines."""
+
+EFFECTS: Mapping[str, str] = {
+    "effect": "{names:or}",
+    "effect.strength": "{names:or} ({strength:estimate})",
+    "effect.probable": "{names:or} (probability {probability:probability})",
+    "effect.strength_probable": "{names:or} ({strength:estimate}, probability {probability:probability})",
+    "effect.in_place": "{named} in place of {others:titles}",
+    "machine": "{machine}",
+    "machine.effect": "{machine} with {effect:title}",
+    "machine.error": "{machine}, {error:error}",
+    "machine.effect_error": "{machine} with {effect:title}, {error:error}",
+    "parameter": "{name} ({meaning})",
+    "term": "{equation}",
+    "term.meaning": "{equation} ({meaning})",
+    "change": "from {before:error} to {after:error}",
+    "change.verify": "from {before:error} to {after:error} ({verify:error} on validation data)",
+    "change.fewer":
+        "from {before:error} to {after:error} ({verify:error} on validation data, {fewer:error} without "
+        "{without:titles})",
+    "change.unstable": "from {before:error} to {after:error} ({runs:unstable})",
+    "late.seconds": "{value:.3g} ± {error:.2g} s",
+    "late.samples": "{value:.3g} ± {error:.2g} samples",
+}  # fmt: skip
+"""Members of a list within a sentence."""
+
+VERDICT: Mapping[str, str] = {
+    "verdict.stopped":
+        "The search was not over: other missing effects, and alternatives to those found, were not examined.",
+    "verdict.lacks": "The model lacks {effects:all}: with {effects:them} the error falls {change}.",
+    "verdict.partly":
+        "On estimation data the error is partly explained by {effects:all}: with {effects:them} it falls {change}.",
+    "verdict.unconfirmed": "No effect was confirmed that lowers the error of {before:error}.",
+    "verdict.white":
+        "Nothing seems to be missing: the residual, {before:error}, is white. The noise floor is not known.",
+    "verdict.nothing": "Nothing is missing: the error of {before:error} is measurement noise.",
+    "verdict.nothing_probable":
+        "Nothing is missing (probability {probability:probability}): the error of {before:error} is measurement noise.",
+    "verdict.none": "No effect of the library lowers the error of {before:error} by more than chance.",
+    "verdict.bounded":
+        "The strength of {effect} ended at the bound of its search. It may be larger, or stand for another effect: "
+        "search within wider bounds.",
+    "verdict.group": "These data cannot distinguish {group:listed}: their refits differ by less than chance.",
+    "verdict.group_unexplained":
+        "These data cannot distinguish {group:listed}: their refits differ by less than chance, or than the "
+        "unexplained residual.",
+    "verdict.two":
+        "These data cannot tell which two of these are present: {group:listed}. Their refits differ by less than "
+        "chance.",
+    "verdict.two_unexplained":
+        "These data cannot tell which two of these are present: {group:listed}. Their refits differ by less than "
+        "chance, or than the unexplained residual.",
+    "verdict.label": "The label of {run:run} looks wrong ({what}): {evidence}.",
+    "verdict.unlisted": "Something remains that none of the listed effects explains.",
+    "verdict.unlisted_probable":
+        "Something remains that none of the listed effects explains (probability {probability:probability}).",
+    "verdict.remains": "Part of the error remains unexplained.",
+    "verdict.remains_probable":
+        "Part of the error remains unexplained (probability {probability:probability}).",
+    "verdict.not_repeated":
+        "No command was repeated: part of it may be noise in the band of the command, which a repeated run would show.",
+    "group": "These data cannot distinguish {group:listed}.",
+    "group.two": "These data cannot tell which two of these are present: {group:listed}.",
+    "contradicted.rises":
+        "With {named} the error on validation data rises from {before:error} to {after:error}: it may stand for "
+        "another effect.",
+    "contradicted.rises_by":
+        "With {named} the error on validation data rises from {before:error} to {after:error}, {deviations:.1f} "
+        "standard errors: it may stand for another effect.",
+    "contradicted.unstable":
+        "With {named} the model is {runs:unstable}; the error on validation data was {before:error}. It may stand for "
+        "another effect.",
+    "alone.rises":
+        "With {equation} but without those after it the error on validation data rises from {before:error} to "
+        "{after:error}.",
+    "alone.unstable":
+        "With {equation} but without those after it the model is {runs:unstable}; the error on validation data was "
+        "{before:error}.",
+    "alternative.better": "Another model explains more: {models:listed} (--model).",
+    "alternative.equal": "These data cannot distinguish it from other models: {models:listed}.",
+    "dispensable.one":
+        "With the terms that a search proposes beyond the library, {effects:titles} is not needed: it stood for them.",
+    "dispensable.several":
+        "With the terms that a search proposes beyond the library, {effects:titles} are not needed: they stood for "
+        "them.",
+    "horizon.runs":
+        "These are errors over whole runs, where the fit was made over windows of {fitted:.3g} s: within these, what "
+        "is missing adds up to little.",
+    "horizon.windows":
+        "These are errors over windows of {horizon:.3g} s, where the fit was made over windows of {fitted:.3g} s: "
+        "within these, what is missing adds up to little.",
+    "delay": "A slow command is answered {time} late. These data cannot tell by which lag or delay: {names:listed}.",
+    "delay.before":
+        "A slow command is answered {time} late, {before} by the fitted model. These data cannot tell by which lag or "
+        "delay: {names:listed}.",
+    "delay.without":
+        "Without {without:titles} a slow command is answered {time} late. These data cannot tell by which lag or "
+        "delay: {names:listed}.",
+    "delay.without_before":
+        "Without {without:titles} a slow command is answered {time} late, {before} by the fitted model. These data "
+        "cannot tell by which lag or delay: {names:listed}.",
+    "proposed": "Beyond the library a search proposes: {terms:terms}.",
+    "proposed.instead": "Beyond the library a search proposes in place of {instead:titles}: {terms:terms}.",
+    "proposed.hypothesis": "This is a hypothesis.",
+    "proposed.free_curve": "The last term is a free curve.",
+    "proposed.error": "With {terms:them} the error is {error:error}.",
+    "proposed.error_verify": "With {terms:them} the error is {error:error} ({verify} on validation data).",
+    "proposed.error_unstable": "With {terms:them} the error is {error:error} ({runs:unstable}).",
+}  # fmt: skip
+"""The verdict of a diagnosis in full."""
+
+WHY: Mapping[str, str] = {
+    "why.predicted":
+        "Predicted to lower the error by {share:.2g} %, less than others; it was not refitted.",
+    "why.change": "On held-out data the error goes from {before:error} to {after:error}.",
+    "why.change_floor":
+        "On held-out data the error goes from {before:error} to {after:error}, with the noise floor at "
+        "{floor:percent}.",
+    "why.best": "No other effect does better.",
+    "why.little":
+        "The effect explains {share:.2g} ± {error:.2g} % of the error above the noise floor. It counts from "
+        "{least:.2g} % on, beyond the standard error.",
+    "why.half": "The error rises on the {part} of the records: what only part of the data ask for is not added.",
+    "why.condition": "The error rises on one condition of the tests: what only part of the data ask for is not added.",
+    "why.chance": "That is no more than the best of all effects gains by chance.",
+    "why.shows": "It shows as: {looks}.",
+    "why.would_show": "It would show as: {looks}.",
+}  # fmt: skip
+"""Why the data speak for or against an effect."""
+
+STRUCTURES: Mapping[str, str] = {
+    "structures": "No model was named. Of these the first was chosen: {models:terms}.",
+    "structures.one": "No model was named: {why}.",
+    "structure.of": "{machine}, {why}",
+    "structure": "{facts:listed} ({why})",
+    "structure.facts": "{facts:listed}",
+    "structure.error": "held-out error {error:error}",
+    "structure.error_over": "held-out error {error:error} over {seconds:.3g} s",
+    "structure.parameters": "{count} parameters",
+    "structure.effect": "{error:error} with {effect:title}",
+    "structure.probability": "probability {probability:probability}",
+    "structure.much_less": "the error is much smaller with one effect",
+    "structure.within": "the error is smaller with one effect, and no parameter is at its bound",
+    "structure.simpler": "the error is as small with one effect, and the model is simpler",
+    "structure.simplest": "the simplest whose error is not larger",
+    "structure.described": "the data set describes the machine",
+    "structure.loop":
+        "{machine} is used, a position loop, because the recorded output follows the command",
+    "structure.driven": "{machine} is used, because {driver} drives it and it shows what was recorded",
+}  # fmt: skip
+"""Why a model was chosen where none was named."""
+
+SEARCH: Mapping[str, str] = {
+    "verdict.unfitted": "The search was not over: there was no time to fit a model first. Give more time, or a fit.",
+    "verdict.unranked": "The search was not over: there was no time to examine any effect. Give more time.",
+    "stage.no_time": "There was no time for the {stage}.",
+    "stage.failed": "The stage '{stage}' failed: {why}. What was found before it is valid.",
+    "stage.unusable": "{error}",
+    "stage.memory": "it needs more memory than there is; use fewer or shorter runs",
+    "stage.defect": "a defect of the program ({error}); its log has the details",
+    "stages.missed": "Not looked at: {stages:listed}.",
+    "terms.stopped": "The search for unknown terms was stopped before its end.",
+    "terms.left_out":
+        "Of {looked_at} terms that were tried {left_out} were left out: no model can contain them, or what they add is "
+        "not finite.",
+    "terms.noise": "No unknown term was searched for: the error is measurement noise.",
+    "refused": "Of {looked_at} terms that were tried the best was rejected: {equation}.",
+    "refused.given":
+        "Of {looked_at} terms that were tried in addition to {effects:titles} the best was rejected: {equation}.",
+    "refused.little": "Its evidence on data left out of its fit is {gain:.3g} nats, and {bar:.3g} are needed.",
+    "refused.some_runs":
+        "Its evidence on data left out of its fit is {gain:.3g} nats ({bar:.3g} are needed), but some runs get worse.",
+    "refused.error": "With it the error is {error:error}.",
+    "refused.error_verify": "With it the error is {error:error} ({verify:error} on validation data).",
+    "term.hypothesis": "{meaning} (a hypothesis: too few runs to confirm it)",
+    "recommended":
+        "`servoident fit MATRIX --start {file}` makes the recommended fit, with {effects:titles}. It begins where the "
+        "diagnosis ended, at an error of {error:percent}.",
+    "recommended.terms": "--terms N takes the first N of the proposed terms, 0 none.",
+    "run.next": "Run a {conditions}.",
+    "run.separates": "After a refit, {models:all} differ by {separation:.3g} standard deviations of the noise.",
+    "run.typical": "A typical other run separates them by {typical:.3g}.",
+    "run.so_far": "The runs so far separate them by {so_far:.3g}.",
+    "run.inseparable": "No feasible run separates the models.",
+    "run.information": "Expected information gain: {information:.2g} nats.",
+    "run.std_errors": "The standard errors fall to {errors:all} of their present values.",
+    "run.std_error": "{share:.0%} ({name})",
+    "instead.unstable": "{names}, but with it the model is {unstable}",
+    "instead.error": "{names} (error {error} on validation data)",
+}  # fmt: skip
+"""What a search for missing effects says beside its verdict."""
