@@ -115,8 +115,9 @@ ROOMS = (
     "errors", "plain", "cached", "progress", "time_budget", "parallel", "unstable", "words", "beginning", "slopes",
     "run", "rig", "matrix", "parameter", "linear", "statistics", "equations", "units", "stages", "effects", "chain",
     "presets",
-    "foreign", "readers", "custom", "preprocessing", "noise", "checks", "drafts", "simulation", "fit", "comparison",
-    "residuals", "design", "diagnosis", "bench", "hybrid", "export", "figures", "synthesis", "planning", "workflows",
+    "foreign", "readers", "custom", "preprocessing", "noise", "stability", "checks", "drafts", "simulation", "fit",
+    "comparison", "residuals", "design", "diagnosis", "bench", "hybrid", "export", "figures",
+    "synthesis", "planning", "workflows",
 )  # fmt: skip
 """The files and folders of `ident`; each may use those before it."""
 

@@ -7,7 +7,7 @@ carried over.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -17,20 +17,28 @@ from ident.cached import cached_property
 from ident.chain.chain import Chain
 from ident.chain.conditions import conditions
 from ident.custom.definition import preset_with
+from ident.effects import CATALOGUE
+from ident.effects.effect import Effect
 from ident.errors import Unusable
 from ident.fit.bulk_modulus import COMPRESSIBILITY
 from ident.fit.result import FitResult
+from ident.hybrid.lags_as_states import with_states
 from ident.linear import LinearModel
 from ident.matrix import Actuator
+from ident.parameter import Parameter
 from ident.presets.preset import Preset
 from ident.run import Run, Specimen
+from ident.stability.loop import SHORTEST
 from ident.words.nearest import did_you_mean
 
 Array = NDArray[np.float64]
 FLOW_GAIN = "m^4/s"
 """The unit of the flow gain that has the piston area in it."""
+DELAY_SECTIONS = 4
+"""Of the Padé approximant of a delay: see :func:`ident.hybrid.lags_as_states.with_states`."""
 SIZES = {"area": "area", "stroke": "length", "volume": "volume"}
 """What may be changed of a cylinder, with its dimension."""
+_CATALOGUE = frozenset(effect.name for effect in CATALOGUE)
 _FIELDS = {"area": "piston_area", "stroke": "stroke", "volume": "volume"}
 
 
@@ -68,10 +76,15 @@ class ChangedMachine:
     specimen: Specimen
     left_out: tuple[str, ...] = ()
 
-    @property
+    @cached_property
     def chain(self) -> Chain:
-        """The equations."""
-        return self.preset.chain
+        """The equations, lags and delays of effects as states; of those that are on, before or after the change."""
+        on = (effect for effect in self.preset.effects if self._is_on(effect))
+        return self.preset.core.with_effects(tuple(with_states(effect, DELAY_SECTIONS) for effect in on))
+
+    def _is_on(self, effect: Effect) -> bool:
+        strength = self.parameters.get(effect.added[0].name)
+        return strength is None or bool(strength.before or strength.after)
 
     @property
     def output(self) -> str:
@@ -88,7 +101,13 @@ class ChangedMachine:
         """Every symbol of the equations but Kp, SI."""
         known = conditions(Run("what if", "", 1.0, {}, specimen=self.specimen), self.actuator)
         known |= {self.preset.parameter(name).in_equations: entry.after for name, entry in self.parameters.items()}
+        known |= {p.in_equations: max(known[p.in_equations], SHORTEST) for p in self._times}
         return {symbol: known[symbol] for symbol in self.chain.symbols}
+
+    @property
+    def _times(self) -> tuple[Parameter, ...]:
+        """The strengths of effects that are times, by which states divide."""
+        return tuple(effect.added[0] for effect in self.preset.effects if effect.strength.unit == "s")
 
     def linear(self, gain: Array, factors: Mapping[str, Array] | None = None) -> LinearModel:
         """The linearised chain at gains Kp; parameters named in `factors` are that many times as large.
@@ -115,18 +134,34 @@ def changed_machine(fit: FitResult, change: Change) -> ChangedMachine:
     positive where it must be, and where something would have to scale with a size that is not known.
     """
     custom = tuple(fit.settings.get("custom", ()))
-    whole = preset_with(fit.model, fit.effects, custom)
+    effects = tuple(dict.fromkeys((*fit.effects, *_added(change.values))))
+    whole = preset_with(fit.model, effects, custom)
     if whole.kind != "chain":
         raise Unusable("no-what-if", f"{fit.model} is fitted to records of a bench", "fit", "give a fit of test runs")
-    kept = tuple(name for name in fit.effects if preset_with(fit.model, (name,), custom).chain.is_linear)
+    kept = tuple(name for name in effects if _is_linear(preset_with(fit.model, (name,), custom)))
     before = _known(fit, change.known)
     after = _resized(before, change.sizes)
     scaled = _scaled(fit, whole, before, after, change)
     preset = preset_with(fit.model, kept, custom)
     own = {p.in_equations for p in preset.parameters}
     parameters = {name: entry for name, entry in scaled.items() if whole.parameter(name).in_equations in own}
-    left_out = tuple(name for name in fit.effects if name not in kept)
+    left_out = tuple(name for name in effects if name not in kept)
     return ChangedMachine(preset, parameters, after, change.specimen, left_out)
+
+
+def model_of(fit: FitResult, values: Iterable[str]) -> Preset:
+    """The model of a fit, with the effects of the catalogue that the names of values, ``effect.parameter``, add."""
+    custom = tuple(fit.settings.get("custom", ()))
+    return preset_with(fit.model, tuple(dict.fromkeys((*fit.effects, *_added(values)))), custom)
+
+
+def _added(values: Iterable[str]) -> Iterator[str]:
+    """The effects that parameters belong to, where the catalogue has them."""
+    return (effect for name in values if (effect := name.partition(".")[0]) in _CATALOGUE and "." in name)
+
+
+def _is_linear(preset: Preset) -> bool:
+    return preset.core.with_effects(tuple(with_states(effect) for effect in preset.effects)).is_linear
 
 
 def _known(fit: FitResult, stated: Mapping[str, float]) -> Actuator:
@@ -180,7 +215,8 @@ def _scaled(fit: FitResult, preset: Preset, before: Actuator, after: Actuator, c
     """Every parameter of the fit, scaled, carried over, or as it was set."""
     named = {preset.parameter(name).in_equations: value for name, value in change.values.items()}
     fitted = {preset.parameter(name).in_equations for name in fit.parameters}
-    if strange := [name for name in change.values if preset.parameter(name).in_equations not in fitted]:
+    added = {p.in_equations: p for effect in preset.effects if effect.name not in fit.effects for p in effect.added}
+    if strange := [name for name in change.values if preset.parameter(name).in_equations not in fitted | added.keys()]:
         raise Unusable("unknown-parameter", f"the fit has no parameter {strange[0]!r}", "set",
                        did_you_mean(strange[0], (*SIZES, *fit.parameters)))  # fmt: skip
     found = {}
@@ -193,6 +229,8 @@ def _scaled(fit: FitResult, preset: Preset, before: Actuator, after: Actuator, c
             continue
         factor, why = _factor(entry.unit, before, after, change.sizes)
         found[name] = Carried(entry.unit, entry.value, entry.value * factor, why)
+    for symbol, one in added.items():
+        found[one.name] = Carried(one.unit, one.value, named.get(symbol, one.value), "as set, an effect more")
     return found
 
 

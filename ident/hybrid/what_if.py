@@ -19,11 +19,13 @@ from ident.hybrid.oil_column import PeakSearch, find_peak
 from ident.hybrid.peak_problem import PeakTarget
 from ident.hybrid.peaks import Peak, peaks
 from ident.hybrid.reached_limits import reached
+from ident.hybrid.servo_loop import servo_loop, values_before
 from ident.matrix import Actuator
 from ident.plain import written
 from ident.progress import Report, silent
 from ident.rig.limits import RigLimits
 from ident.run import Specimen
+from ident.stability.judgement import STABLE, UNSTABLE, Judgement, judge
 from ident.words.number import trimmed
 from ident.words.shown import Listing, Shown
 
@@ -68,11 +70,20 @@ class RootLocus:
 
 
 @dataclass(frozen=True)
+class Before:
+    """The loop when it was stable: the fit of its machine, and its gain Kp. None: those of the loop itself."""
+
+    fit: FitResult | None = None
+    gain: float | None = None
+
+
+@dataclass(frozen=True)
 class WhatIf(Shown):
     """An identified machine after a change. `critical_gain` is the smallest Kp above which it is no longer stable.
 
     It is None where the machine is stable, or unstable, at all gains that were looked at. `peak` is what was found for
-    a peak that was asked for, `with_peak` the responses after the smallest change that puts it there.
+    a peak that was asked for, `with_peak` the responses after the smallest change that puts it there. `stability`
+    judges the loop at each gain; `state` is "unstable" where it is at any.
     """
 
     model: str
@@ -87,9 +98,13 @@ class WhatIf(Shown):
     notes: tuple[str, ...]
     peak: PeakSearch | None = None
     with_peak: tuple[Response, ...] = ()
+    state: str = STABLE
+    stability: tuple[Judgement, ...] = ()
 
     def listings(self) -> Iterator[Listing | str]:
-        """What was changed, the poles and peaks, and what is to be said of them."""
+        """Whether the loop is unstable and why, what was changed, the poles and peaks, what is to be said of them."""
+        for one in self.stability:
+            yield from one.text
         rows = [
             (name, f"{entry.before:.5g}", f"{entry.after:.5g}", entry.unit, entry.why)
             for name, entry in self.parameters.items()
@@ -120,11 +135,13 @@ def _in_words(of: Response, after: str = "") -> str:
 
 def what_if(
     fit: FitResult, change: Change, gains: tuple[float, float] | None = None, peak: PeakTarget | None = None,
-    seed: int = 0, report: Report = silent, rig: RigLimits | None = None,
+    seed: int = 0, report: Report = silent, rig: RigLimits | None = None, before: Before | None = None,
 ) -> WhatIf:  # fmt: skip
     """The machine of a fit after a change, at the two ends of a range of gains Kp; what would put a `peak` there.
 
-    Where limits of the `rig`, or of the fit's matrix, are stated, the first notes say which command reaches them.
+    `before` is the loop when it was stable, by which the cause is found where it no longer is. Without it that is the
+    fitted machine, where something of it was changed. Where limits of the `rig`, or of the fit's matrix, are stated,
+    the first notes say which command reaches them.
 
     Responses are the linearisation of the fitted chain (:meth:`ident.chain.chain.Chain.linearise`). Raises Unusable
     as :func:`ident.hybrid.changed_machine.changed_machine` does, and for gains that are no range above 0.
@@ -139,13 +156,29 @@ def what_if(
     if peak is not None:
         found = find_peak(machine, replace(peak, gains=tuple(gain or 1.0 for gain in ends)), seed, report=report)
         with_peak = _with_peak(machine, found, ends, band)
+    judged = tuple(_judged(machine, gain, fit, change, before) for gain in ends)
     return WhatIf(
         model=fit.model, output=machine.output, actuator=machine.actuator, specimen=machine.specimen,
         parameters=dict(machine.parameters), responses=responses, locus=_locus(machine, ends),
         critical_gain=_critical_gain(machine, ends), bulk_modulus=oil,
         peak=found, with_peak=with_peak,
+        state=UNSTABLE if any(not one.stable for one in judged) else STABLE, stability=judged,
         notes=(*reached(machine, ends, limits), *_notes(machine, responses, oil), *(found.text if found else ())),
     )  # fmt: skip
+
+
+def _judged(
+    machine: ChangedMachine, gain: float | None, fit: FitResult, change: Change, before: Before | None
+) -> Judgement:
+    """Whether the loop at a gain is stable, and what made it unstable where that can be known."""
+    known = 1.0 if gain is None else gain
+    loop = servo_loop(machine, known)
+    reference = before or (Before() if change.values or change.sizes else None)
+    values = None
+    if reference is not None:
+        unchanged = changed_machine(reference.fit or fit, Change(specimen=change.specimen, known=change.known))
+        values = values_before(unchanged, reference.gain or known, loop)
+    return judge(loop, values, "" if gain is None else f"at Kp = {trimmed(gain)}")
 
 
 def _gains(machine: ChangedMachine, gains: tuple[float, float] | None) -> tuple[float | None, ...]:
@@ -251,8 +284,8 @@ def _notes(machine: ChangedMachine, responses: tuple[Response, ...], oil: BulkMo
     """What a reader has to know of the responses."""
     if machine.left_out:
         yield (
-            f"Not in the response: {', '.join(machine.left_out)}. The linearised model ignores amplitude-dependent "
-            "effects, and the lags and delays of added effects."
+            f"Not in the response: {', '.join(machine.left_out)}. The linearised model ignores effects that depend on "
+            "amplitude."
         )
     unstable = [each.gain for each in responses if not each.stable]
     if unstable:
