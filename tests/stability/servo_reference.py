@@ -49,7 +49,7 @@ def growing(of, gain):
             e = k * np.exp(-s * T)
             s = s - (np.polyval(D, s) + e) / (np.polyval(dD, s) - T * e)
         left = np.abs(np.polyval(D, s) + k * np.exp(-s * T)) / k
-    s = s[np.isfinite(s) & (left < 1e-8)]
+    s = s[np.isfinite(s) & (left < 1e-8) & (s.imag >= 0)]
     return s[np.argmax(s.real)]
 
 
