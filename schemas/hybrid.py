@@ -97,18 +97,27 @@ class AxesRequest(_Asked):
     upper: Finite
 
 
+class BeforeRequest(_Asked):
+    """The loop when it was stable: the id of the `fit` of its machine, its `gain` Kp; without one that of the loop."""
+
+    fit: Annotated[str, Field(max_length=64)] | None = None
+    gain: Finite | None = None
+
+
 class WhatIfRequest(_Asked):
     """What is to be changed of the machine of a fit: `set` area, stroke, volume or parameters, in SI or with units.
 
     `fitted` states sizes of the machine that was fitted which its fit does not hold. `gain` are the gains Kp of the
     responses, one or a range. `peak` (Hz) asks for the smallest change that puts a peak there within `tolerance` (2 Hz
-    at 45 Hz and in proportion), inside `axes` up to the frequency `up_to`; that takes some seconds.
+    at 45 Hz and in proportion), inside `axes` up to the frequency `up_to`; that takes some seconds. `before` is the
+    loop when it was stable, by which the cause is found where it no longer is.
     """
 
     set: dict[str, Value] = Field(default_factory=dict, max_length=50)
     fitted: dict[str, Value] = Field(default_factory=dict, max_length=3)
     specimen: SpecimenRequest = Field(default_factory=SpecimenRequest)
     gain: Finite | tuple[Finite, Finite] | None = None
+    before: BeforeRequest | None = None
     peak: Value | None = None
     tolerance: Value | None = None
     axes: list[AxesRequest] = Field(default_factory=list, max_length=10)

@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from ident.fit.result import FitResult
     from ident.hybrid.changed_machine import Change
     from ident.hybrid.peak_problem import PeakTarget
+    from ident.hybrid.what_if import Before
     from ident.run import Specimen
 
 _OF_SPECIMEN = {"mass": "mass", "stiffness": "stiffness", "damping": "damping"}
@@ -61,6 +62,16 @@ InAxes = Annotated[
     typer.Option(metavar="KP=LO:HI", help="Required range of |G| at a gain; may be repeated."),
 ]
 UpTo = Annotated[str | None, typer.Option(metavar="HZ", help="Upper end of the axes. Default: peak plus tolerance.")]
+Earlier = Annotated[
+    Path | None,
+    typer.Option(
+        "--before", metavar="FIT.json",
+        help="Fit of the machine when its loop was stable, to find the cause. Default: this fit.",
+    ),
+]  # fmt: skip
+EarlierGain = Annotated[
+    str | None, typer.Option("--before-gain", metavar="KP", help="Gain Kp with which the loop was stable.")
+]
 Seed = Annotated[int, typer.Option(min=0, max=2**31 - 1, help="Random seed of the search.")]
 Json = Annotated[Path | None, typer.Option(metavar="FILE", help="Write the result as JSON; - is stdout.")]
 Out = Annotated[Path | None, typer.Option(metavar="DIR", help="Write the figures: svg, png, pdf, json.")]
@@ -68,15 +79,18 @@ Out = Annotated[Path | None, typer.Option(metavar="DIR", help="Write the figures
 
 def whatif(
     fit: FitPath, set_: Changed = None, fitted: Fitted = None, specimen: OfSpecimen = None, gain: Gains = None,
+    before: Earlier = None, before_gain: EarlierGain = None,
     peak: AtPeak = None, tolerance: Near = None, axes: InAxes = None, up_to: UpTo = None, seed: Seed = 0,
     rig: RigFile = None, json: Json = None, out: Out = None,
 ) -> None:  # fmt: skip
     """Predict the response after a change of the machine.
 
-    Area, stroke, volume, specimen or parameters can change. It gives response, peaks and root locus.
+    Area, stroke, volume, specimen or parameters can change. It gives response, peaks, root locus and stability. Exit
+    status 1 if the loop is unstable: cause and remedies are listed.
     """
     from app.cli.tables import show
     from ident.hybrid.what_if import what_if
+    from ident.stability.judgement import UNSTABLE
 
     check_target(json)
     result = read_fit(fit)
@@ -84,27 +98,38 @@ def whatif(
     gains = None if gain is None else _range(gain, "--gain", "LO:HI")
     target = _target(peak, tolerance, axes or [], up_to)
     with shown() as report:
-        found = what_if(result, change, gains, target, seed, report, rig_in(rig))
+        found = what_if(result, change, gains, target, seed, report, rig_in(rig), _before(before, before_gain))
     if json is not None:
         write_json(found.to_json(), json)
     if json != STANDARD_OUTPUT:
         show(found.listings())
     if out is not None:
         write_figures(found, out)
+    if found.state == UNSTABLE:
+        raise typer.Exit(1)
+
+
+def _before(fit: Path | None, gain: str | None) -> Before | None:
+    """The loop when it was stable; None where nothing is said of it."""
+    from ident.hybrid.what_if import Before
+
+    if fit is None and gain is None:
+        return None
+    known = None if gain is None else number(gain, "--before-gain", "KP")
+    return Before(None if fit is None else read_fit(fit), known)
 
 
 def _change(fit: FitResult, set_: list[str], fitted: list[str], specimen: str | None) -> Change:
     """What is to change, SI. Raises Unusable."""
-    from ident.custom.definition import preset_with
     from ident.errors import Unusable
-    from ident.hybrid.changed_machine import SIZES, Change
+    from ident.hybrid.changed_machine import SIZES, Change, model_of
     from ident.units.quantity import quantity
 
     pairs = [split(text, "--set", "NAME=VALUE") for text in set_]
     known = [split(text, "--fitted", "NAME=VALUE") for text in fitted]
     if strange := [name for name, _ in known if name not in SIZES]:
         raise Unusable("unknown-size", f"no size {strange[0]!r}", "--fitted", did_you_mean(strange[0], SIZES))
-    model = preset_with(fit.model, fit.effects, tuple(fit.settings.get("custom", ())))
+    model = model_of(fit, [name for name, _ in pairs])
     return Change(
         sizes={name: quantity(value, SIZES[name], f"--set {name}") for name, value in pairs if name in SIZES},
         values={name: in_si(value, name, model, f"--set {name}") for name, value in pairs if name not in SIZES},

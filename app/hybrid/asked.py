@@ -6,11 +6,10 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import Any
 
-from ident.custom.definition import preset_with
 from ident.errors import Unusable
 from ident.fit.result import FitResult
 from ident.hybrid.case import BUILT_IN, NAMES, Case, case_of
-from ident.hybrid.changed_machine import SIZES, Change
+from ident.hybrid.changed_machine import SIZES, Change, model_of
 from ident.hybrid.ground import ground_of
 from ident.hybrid.peak_problem import Axes, PeakTarget
 from ident.presets import preset
@@ -106,7 +105,7 @@ def change_of(fit: FitResult, request: WhatIfRequest) -> Change:
     """What is to change of the machine of a fit, SI. Raises Unusable."""
     if strange := [name for name in request.fitted if name not in SIZES]:
         raise Unusable("unknown-size", f"no size {shown(strange[0])!r}", "fitted", did_you_mean(strange[0], SIZES))
-    model = preset_with(fit.model, fit.effects, tuple(fit.settings.get("custom", ())))
+    model = model_of(fit, request.set)
     units = {name: SIZES.get(name) or model.parameter(name).unit for name in request.set}
     given = {name: parameter_value(value, units[name], f"set {name}") for name, value in request.set.items()}
     return Change(

@@ -11,8 +11,8 @@ from app.hybrid.asked import change_of, gains_of, peak_of
 from app.lru import LRU
 from ident.fit.result import FitResult
 from ident.hybrid import what_if as library
-from ident.hybrid.what_if import WhatIf
-from schemas.hybrid import WhatIfRequest
+from ident.hybrid.what_if import Before, WhatIf
+from schemas.hybrid import BeforeRequest, WhatIfRequest
 
 _MOST = 16  # answers in memory, about 1 MB each: one with a peak takes seconds
 _answers: LRU[WhatIf] = LRU(_MOST)
@@ -22,11 +22,22 @@ def what_if(context: Context, fit: str, request: WhatIfRequest) -> WhatIf:
     """The machine of a fit after a change. Raises Unusable, and Failure 404."""
 
     def made() -> WhatIf:
-        found = FitResult.from_json(fits.find(context, fit).result)
-        change, target = change_of(found, request), peak_of(request)
-        return library.what_if(found, change, gains_of(request), target, request.seed)
+        found = _fit(context, fit)
+        change, target, before = change_of(found, request), peak_of(request), _before(context, request.before)
+        return library.what_if(found, change, gains_of(request), target, request.seed, before=before)
 
     return _answers.get((str(context.storage.folder), fit, request.model_dump_json()), made)
+
+
+def _fit(context: Context, fit: str) -> FitResult:
+    return FitResult.from_json(fits.find(context, fit).result)
+
+
+def _before(context: Context, asked: BeforeRequest | None) -> Before | None:
+    """The loop when it was stable, where something is said of it. Raises Failure 404."""
+    if asked is None:
+        return None
+    return Before(None if asked.fit is None else _fit(context, asked.fit), asked.gain)
 
 
 def asked(text: str) -> WhatIfRequest:

@@ -23,6 +23,7 @@ def asked(given: Mapping[str, str]) -> WhatIfRequest:
         "fitted": _quantities(SIZES, _under("fitted.", stated)),
         "specimen": _quantities(_SPECIMEN, stated),
         "gain": gain,
+        "before": _before(stated),
         **_quantities(_PEAK, stated),
         "axes": _axes(stated, gain),
     }
@@ -47,6 +48,16 @@ def _gains(stated: Mapping[str, str]) -> tuple[float, float] | None:
         return None
     lower, upper = (parameter_value(end, "1", "gain") for end in (ends[0], ends[-1]))
     return lower, upper
+
+
+def _before(stated: Mapping[str, str]) -> dict[str, float | str] | None:
+    """The loop when it was stable."""
+    found: dict[str, float | str] = {}
+    if "before_gain" in stated:
+        found["gain"] = parameter_value(stated["before_gain"], "1", "before_gain")
+    if "before_fit" in stated:
+        found["fit"] = stated["before_fit"]
+    return found or None
 
 
 def _axes(stated: Mapping[str, str], gain: tuple[float, float] | None) -> list[dict[str, float]]:

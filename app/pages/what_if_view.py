@@ -12,8 +12,10 @@ from ident.figures import drawings
 from ident.fit.result import Estimate, FitResult
 from ident.hybrid.changed_machine import SIZES
 from ident.hybrid.oil_column import JointChange, PeakSearch
-from ident.hybrid.what_if import HIGHEST, USUAL_GAINS, Pole, Response, WhatIf
+from ident.hybrid.root_locus import Pole
+from ident.hybrid.what_if import HIGHEST, USUAL_GAINS, Response, WhatIf
 from ident.presets import preset
+from ident.stability.judgement import UNSTABLE
 from ident.words.engineering import power_of, quantity, scaled_unit
 from ident.words.number import fixed, places, plain, trimmed
 from ident.words.plus_minus import plus_minus
@@ -90,8 +92,10 @@ class FactorRow:
 
 @dataclass(frozen=True)
 class WhatIfFound:
-    """The answer; `figures` are name and title of each."""
+    """The answer; `stability` are sentences, `figures` name and title of each."""
 
+    unstable: bool
+    stability: tuple[str, ...]
     facts: tuple[tuple[str, str], ...]
     parameters: tuple[CarriedRow, ...]
     loops: tuple[LoopRow, ...]
@@ -123,6 +127,11 @@ class WhatIfView:
     def parameters_given(self) -> bool:
         """Whether a parameter or a size of the fitted machine was stated."""
         return any(name.startswith(("set.", "fitted.")) for name in self.form.given)
+
+    @property
+    def before_given(self) -> bool:
+        """Whether something is said of the loop when it was stable."""
+        return any(name.startswith("before_") for name in self.form.given)
 
     @property
     def lacks(self) -> bool:
@@ -186,6 +195,8 @@ def what_if_found(fit: FitResult, found: WhatIf) -> WhatIfFound:
     named = {row.name: row for row in parameter_rows(fit)}
     peak = found.peak
     return WhatIfFound(
+        unstable=found.state == UNSTABLE,
+        stability=tuple(said for one in found.stability for said in one.text),
         facts=tuple(_facts(found)),
         parameters=tuple(_carried(found, named)),
         loops=tuple(map(_loop, found.responses)),

@@ -10,6 +10,7 @@ from ident.errors import Unusable
 from ident.figures.drawing import Drawing, Options
 from ident.figures.look import Look
 from ident.figures.render import Chart
+from ident.hybrid.root_locus import Mark
 from ident.hybrid.what_if import WhatIf
 from ident.words.number import trimmed
 
@@ -39,10 +40,14 @@ def root_locus(result: WhatIf, look: Look) -> Chart:
         edge,
         dots,
         *(_ends(rows, k, shape, look) for k, shape in ((lowest, "cross"), (highest, "circle"))),
+        *(_marked(mark, shape, look) for mark, shape in zip(result.locus.marks, ("diamond", "square"), strict=False)),
     ]
     told = f"Kp from {trimmed(lowest)} (crosses) to {trimmed(highest)} (rings); stable to the left of the dashed line"
     lost = result.critical_gain
-    more = "stability is kept" if lost is None else f"stability is lost at Kp = {trimmed(lost)}"
+    named = (f"{mark.meaning} at Kp = {trimmed(mark.gain)} ({shape})"
+             for mark, shape in zip(result.locus.marks, ("diamonds", "squares"), strict=False))  # fmt: skip
+    kept = "stability is kept" if lost is None else f"stability is lost at Kp = {trimmed(lost)}, beyond these gains"
+    more = ", ".join(named) or kept
     title = alt.TitleParams("Poles of the closed loop over the gain", subtitle=[told, more])
     chart: Chart = (
         alt.layer(*layers).properties(width=look.across(520), height=360, title=title).configure(**look.config())
@@ -55,6 +60,16 @@ def _ends(rows: list[dict[str, Any]], gain: float, shape: str, look: Look) -> An
     return (
         alt.Chart(alt.InlineData(values=own))
         .mark_point(shape=shape, size=80, color=look.ink, filled=False)
+        .encode(x="x:Q", y="y:Q")
+    )
+
+
+def _marked(mark: Mark, shape: str, look: Look) -> Any:
+    """The poles at one gain that has a meaning."""
+    own = [{"x": pole.real, "y": pole.imaginary} for pole in mark.poles]
+    return (
+        alt.Chart(alt.InlineData(values=own))
+        .mark_point(shape=shape, size=110, color=look.series[1], filled=False, strokeWidth=2)
         .encode(x="x:Q", y="y:Q")
     )
 

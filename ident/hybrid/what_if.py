@@ -19,12 +19,14 @@ from ident.hybrid.oil_column import PeakSearch, find_peak
 from ident.hybrid.peak_problem import PeakTarget
 from ident.hybrid.peaks import Peak, peaks
 from ident.hybrid.reached_limits import reached
+from ident.hybrid.root_locus import Pole, RootLocus, poles, root_locus
 from ident.hybrid.servo_loop import servo_loop, values_before
 from ident.matrix import Actuator
 from ident.plain import written
 from ident.progress import Report, silent
 from ident.rig.limits import RigLimits
 from ident.run import Specimen
+from ident.stability.gain_margin import WANTED
 from ident.stability.judgement import STABLE, UNSTABLE, Judgement, judge
 from ident.words.number import trimmed
 from ident.words.shown import Listing, Shown
@@ -33,19 +35,7 @@ Array = NDArray[np.float64]
 USUAL_GAINS = (1.0, 10.0)
 HIGHEST = 100.0
 """Hz: peaks are looked for up to here at least."""
-_POINTS, _LOCUS, _BEYOND = (
-    1500,
-    121,
-    1e3,
-)  # of a response and of the locus; how far beyond the gains stability is sought
-
-
-@dataclass(frozen=True)
-class Pole:
-    """A pole of the closed loop in Hz, s/(2π): it settles where `real` is below 0."""
-
-    real: float
-    imaginary: float
+_POINTS, _BEYOND = 1500, 1e3  # of a response; how far beyond the gains stability is sought
 
 
 @dataclass(frozen=True)
@@ -62,19 +52,20 @@ class Response:
 
 
 @dataclass(frozen=True)
-class RootLocus:
-    """The poles (Hz) over the gain, those of one gain a row."""
-
-    gain: tuple[float, ...] = field(repr=False)
-    poles: tuple[tuple[Pole, ...], ...] = field(repr=False)
-
-
-@dataclass(frozen=True)
 class Before:
-    """The loop when it was stable: the fit of its machine, and its gain Kp. None: those of the loop itself."""
+    """The loop when it was stable: the fit of its machine, and its gain Kp. None: those of the loop itself.
+
+    Raises Unusable for a gain that is not above 0.
+    """
 
     fit: FitResult | None = None
     gain: float | None = None
+
+    def __post_init__(self) -> None:
+        if self.gain is not None and not 0 < self.gain < np.inf:
+            raise Unusable(
+                "bad-gain", f"{self.gain:g} is no gain above 0", "before gain", "give the one it was stable with"
+            )
 
 
 @dataclass(frozen=True)
@@ -157,10 +148,11 @@ def what_if(
         found = find_peak(machine, replace(peak, gains=tuple(gain or 1.0 for gain in ends)), seed, report=report)
         with_peak = _with_peak(machine, found, ends, band)
     judged = tuple(_judged(machine, gain, fit, change, before) for gain in ends)
+    critical = _critical_gain(machine, ends)
     return WhatIf(
         model=fit.model, output=machine.output, actuator=machine.actuator, specimen=machine.specimen,
-        parameters=dict(machine.parameters), responses=responses, locus=_locus(machine, ends),
-        critical_gain=_critical_gain(machine, ends), bulk_modulus=oil,
+        parameters=dict(machine.parameters), responses=responses, locus=_locus(machine, ends, judged, critical),
+        critical_gain=critical, bulk_modulus=oil,
         peak=found, with_peak=with_peak,
         state=UNSTABLE if any(not one.stable for one in judged) else STABLE, stability=judged,
         notes=(*reached(machine, ends, limits), *_notes(machine, responses, oil), *(found.text if found else ())),
@@ -212,14 +204,9 @@ def response(machine: ChangedMachine, gain: float | None, frequency: Array) -> R
     roots = np.linalg.eigvals(model.A[0]).astype(complex) / (2 * np.pi)
     magnitude = np.abs(G)
     return Response(
-        gain, bool(roots.real.max(initial=-np.inf) < 0), _poles(roots), peaks(frequency, magnitude),
+        gain, bool(roots.real.max(initial=-np.inf) < 0), poles(roots), peaks(frequency, magnitude),
         tuple(frequency.tolist()), tuple(magnitude.tolist()), tuple(np.degrees(np.unwrap(np.angle(G))).tolist()),
     )  # fmt: skip
-
-
-def _poles(roots: NDArray[Any]) -> tuple[Pole, ...]:
-    """Those furthest from the imaginary axis first."""
-    return tuple(Pole(float(root.real), float(root.imag)) for root in sorted(roots, key=lambda r: (r.real, -r.imag)))
 
 
 def _band(machine: ChangedMachine, gains: tuple[float | None, ...]) -> Array:
@@ -239,21 +226,26 @@ def _growth(machine: ChangedMachine, gain: Array) -> Array:
     return np.asarray(np.linalg.eigvals(machine.linear(gain).A).real.max(axis=-1))
 
 
-def _locus(machine: ChangedMachine, ends: tuple[float | None, ...]) -> RootLocus | None:
-    """The poles over the gains, or over a decade around the one there is."""
+def _locus(
+    machine: ChangedMachine, ends: tuple[float | None, ...], judged: tuple[Judgement, ...], critical: float | None
+) -> RootLocus | None:
+    """The poles over the gains, or over a decade around the one there is, marked; None without a loop."""
     if ends[0] is None or ends[-1] is None:
         return None
     lower, upper = (ends[0], ends[-1]) if len(ends) > 1 else (ends[0] / 3, ends[0] * 3)
-    gain = np.geomspace(lower, upper, _LOCUS)
-    roots = np.linalg.eigvals(machine.linear(gain).A).astype(complex) / (2 * np.pi)
-    return RootLocus(tuple(gain.tolist()), tuple(map(_poles, roots)))
+    marked = {} if critical is None else {"stability is lost": critical}
+    offered = {one.after for each in judged if not each.stable for one in each.remedies if one.name == "Kp"}
+    if offered:
+        marked[f"{trimmed(WANTED)} dB of gain margin"] = min(offered)
+    return root_locus(machine, lower, upper, marked)
 
 
 def _critical_gain(machine: ChangedMachine, ends: tuple[float | None, ...]) -> float | None:
-    """Where stability is lost, from the lower gain to a thousand times the upper one."""
+    """Where stability is lost, up to 1000 times the upper gain, down to a thousandth of the lower where lost there."""
     if ends[0] is None or ends[-1] is None:
         return None
-    gain = np.geomspace(ends[0], _BEYOND * ends[-1], 601)
+    lost_there = _growth(machine, np.array([ends[0]]))[0] >= 0
+    gain = np.geomspace(ends[0] / (_BEYOND if lost_there else 1.0), _BEYOND * ends[-1], 601)
     growth = _growth(machine, gain)
     lost = np.flatnonzero((growth[:-1] < 0) & (growth[1:] >= 0))
     if not len(lost):

@@ -231,6 +231,17 @@ def test_what_if_scales_what_is_resized_and_finds_a_peak(service, fitted):
         assert any(abs(peak["frequency"] - 45) <= 2 for peak in each["peaks"])
 
 
+def test_an_unstable_loop_is_said_to_be_so_with_its_cause(service, fitted):
+    """Against the loop when it was stable, of the same fit or of another; an unknown one is a 404."""
+    asked = {"gain": 200, "before": {"gain": 2, "fit": fitted}}
+    found = service.post(f"{API}/fits/{fitted}/what-if", json=asked).json()
+    assert found["state"] == "unstable"
+    assert [cause["name"] for cause in found["stability"][0]["causes"]] == ["Kp"]
+    refused_by_service(service.post(f"{API}/fits/{fitted}/what-if", json={"before": {"gain": 0}}), "bad-gain")
+    strange = {"before": {"fit": "nothing"}}
+    assert service.post(f"{API}/fits/{fitted}/what-if", json=strange).status_code == 404
+
+
 def test_a_run_is_followed(service, matrix):
     runs = [run["id"] for run in service.get(f"{API}/matrices/{matrix}").json()["runs"]]
     first = service.get(f"{API}/matrices/{matrix}/track").json()

@@ -205,6 +205,31 @@ def test_figures_are_drawn_in_both_themes(small):
         assert b"stability is lost" in render(root_locus(small, look(theme)), format_)
 
 
+def test_the_command_says_unstable_by_its_status_and_json(servoident, tmp_path):
+    """Table 4 loses stability at Kp = 56.9: the gain is the cause, and the mark on the root locus says where."""
+    import json
+
+    file = tmp_path / "fit.json"
+    file.write_text(json.dumps(fit_of().to_json()))
+    done = servoident("whatif", file, "--gain", "70", "--before-gain", "8", "--json", "-")
+    assert done.returncode == 1, done.stderr
+    found = json.loads(done.stdout)
+    assert found["state"] == found["stability"][0]["state"] == "unstable"
+    assert [one["name"] for one in found["stability"][0]["causes"]] == ["Kp"]
+    assert found["locus"]["marks"][0]["gain"] == found["critical_gain"] == pytest.approx(56.86, abs=0.01)
+
+
+def test_a_delay_that_the_fit_has_not_is_added(servoident, tmp_path):
+    """Stable without it; the command names the effect's parameter, and the delay is the cause."""
+    import json
+
+    file = tmp_path / "fit.json"
+    file.write_text(json.dumps(fit_of().to_json()))
+    done = servoident("whatif", file, "--gain", "20", "--set", "loop_delay.delay=6 ms")
+    assert done.returncode == 1, done.stderr
+    assert "The cause is the delay" in done.stdout
+
+
 def test_the_command_writes_json_and_figures(servoident, tmp_path):
     """The case of Fig. 19, from a fit's file, with units; a size that is not known is refused in one line."""
     import json

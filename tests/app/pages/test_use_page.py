@@ -92,6 +92,13 @@ def test_an_answer_has_its_figures_and_its_numbers(service, fitted):
         assert found.content.startswith(b"%PDF")
 
 
+def test_an_unstable_loop_is_an_alert_with_its_cause(service, fitted):
+    text = page(service, fitted, ask="what-if", gain_from="200", before_gain="2").text
+    alert = text.split('stability" role="alert">')[1].partition("</div>")[0]
+    assert "Unstable at Kp = 200" in alert
+    assert "The cause is the gain" in alert
+
+
 def test_what_is_written_into_a_field_stays_text(service, fitted):
     answer = page(service, fitted, ask="what-if", area='"><script>x()</script>')
     assert answer.status_code == 422
