@@ -164,6 +164,28 @@ class Run(Shown):
         k = np.arange(len(way))
         return float(np.std(way - np.polyval(np.polyfit(k, way, 1), k)))
 
+    def speed_within(self, band: float) -> float:
+        """The root mean square of the rate of the position at up to `band` (rad/s), m/s: what noise adds above is none.
+
+        Worked out once for each band: every model that is fitted asks for it.
+        """
+        if band not in self._speeds:
+            x = self.channels["displacement"]
+            lines = np.abs(np.fft.rfft(x - x.mean())) / len(x)
+            omega = 2.0 * np.pi * np.fft.rfftfreq(len(x), 1.0 / self.sample_rate)
+            self._speeds[band] = float(np.sqrt(2.0 * np.sum((omega * lines)[omega <= band] ** 2)))
+        return self._speeds[band]
+
+    @cached_property
+    def _speeds(self) -> dict[float, float]:
+        """What :meth:`speed_within` found, by the band."""
+        return {}
+
+    @cached_property
+    def speed(self) -> float:
+        """The standard deviation of the recorded speed, m/s."""
+        return float(np.std(self.channels["velocity"]))
+
     def turned(self, channel: str) -> Run:
         """The run with the sign of a channel turned."""
         past = -self.past if channel == "command" and self.past is not None else self.past

@@ -56,16 +56,9 @@ def motion(runs: Iterable[Run], band: float) -> dict[str, float]:
     """
     far: dict[str, list[float]] = {"x": [], "v": []}
     for run in runs:
-        if (x := run.channels.get("displacement")) is not None:
-            far["x"].append(float(np.std(x)))
-            far["v"].append(_speed(x, run.sample_rate, band))
-        if (v := run.channels.get("velocity")) is not None:
-            far["v"].append(float(np.std(v)))
+        if "displacement" in run.channels:
+            far["x"].append(run.motion)
+            far["v"].append(run.speed_within(band))
+        if "velocity" in run.channels:
+            far["v"].append(run.speed)
     return {name: float(np.sqrt(2.0)) * max(sizes) for name, sizes in far.items() if sizes}
-
-
-def _speed(x: Array, sample_rate: float, band: float) -> float:
-    """The root mean square of the rate of a position within a band, rad/s."""
-    lines = np.abs(np.fft.rfft(x - x.mean())) / len(x)
-    omega = 2.0 * np.pi * np.fft.rfftfreq(len(x), 1.0 / sample_rate)
-    return float(np.sqrt(2.0 * np.sum((omega * lines)[omega <= band] ** 2)))

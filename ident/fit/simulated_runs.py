@@ -28,7 +28,7 @@ from ident.fit.settling import ROUNDS, Least, Settling, better
 from ident.matrix import Matrix
 from ident.parallel import cores, each
 from ident.presets import Preset
-from ident.run import Run
+from ident.run import MOTIONS, Run
 from ident.simulation.equilibrium import equilibrium
 from ident.simulation.simulate import Simulation
 from ident.simulation.steps import Modes, steps_at_reversals, steps_needed
@@ -329,10 +329,9 @@ class SimulatedRuns:
     def _turned(self) -> float:
         """The way, m, that the largest acceleration of any run covers in a sample: that of a sine up to the band."""
         speeds = [
-            (np.std(run.channels["velocity"]) if "velocity" in run.channels else self.band * np.std(of))
-            / run.sample_rate**2
+            (run.speed if "velocity" in run.channels else self.band * run.motion) / run.sample_rate**2
             for run in self.matrix.runs
-            if (of := run.channels.get("displacement", run.channels.get("velocity"))) is not None
+            if not run.channels.keys().isdisjoint(MOTIONS)
         ]
         return float(np.sqrt(2.0) * self.band * max(speeds, default=0.0))
 

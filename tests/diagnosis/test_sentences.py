@@ -87,7 +87,7 @@ def found(share: float, losing: bool = False) -> Evidence:
     sure, lost = BlockMean(share, 0.02, 20), BlockMean(-0.5, 0.01, 20)
     return Evidence(
         gain=20.0, without=20.0, most=100.0, distinct=50.0, before=0.01, after=0.008, noise=0.0001, difference=sure,
-        share=sure, parts={"second half": lost if losing else sure}, apart=0.001, resolved=1e-6,
+        share=sure, by_part=lambda: {"second half": lost if losing else sure}, apart=0.001, resolved=1e-6,
     )  # fmt: skip
 
 

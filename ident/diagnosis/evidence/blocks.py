@@ -89,7 +89,7 @@ def _blocks(series: Sequence[Array], criteria: EvidenceCriteria) -> list[int]:
 
 def _means(series: Sequence[Array], blocks: Sequence[int]) -> tuple[Array, Array]:
     """The mean of each block, and its weight: each run counts as much."""
-    parts = [np.array_split(run, count) for run, count in zip(series, blocks, strict=True)]
+    parts = [np.array_split(run, n) if n > 1 else [run] for run, n in zip(series, blocks, strict=True)]
     means = [float(np.mean(part)) for of_run in parts for part in of_run]
     weights = [len(part) / len(run) / len(series) for run, of_run in zip(series, parts, strict=True) for part in of_run]
     return np.array(means), np.array(weights)

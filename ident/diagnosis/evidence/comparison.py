@@ -31,6 +31,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Hashable, Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
@@ -56,9 +57,9 @@ class Evidence:
 
     `gain` is G (nats), `without` the same without the run that gains most, `most` the gain of a model that left nothing
     but the noise, `distinct` ν. `before`, `after` and `noise` are powers of the error over that of the output, averaged
-    over runs; `difference` is before − after and `share` ρ, with their errors; `parts` are the differences on each
-    condition and each half. `apart` is the power between the two outputs, `resolved` that which the noise would tell
-    apart.
+    over runs; `difference` is before − after and `share` ρ, with their errors; `by_part` works out `parts`, the
+    differences on each condition and each half. `apart` is the power between the two outputs, `resolved` that which the
+    noise would tell apart.
 
     The means of the runs, less what they have in common, are judged by themselves: `level` is their root mean square
     before, `levels_apart` that of what lies between the two models, over the outputs' deviations; `level_difference`
@@ -74,13 +75,18 @@ class Evidence:
     noise: float
     difference: BlockMean
     share: BlockMean
-    parts: Mapping[Hashable, BlockMean]
+    by_part: Callable[[], Mapping[Hashable, BlockMean]]
     apart: float
     resolved: float
     level: float = 0.0
     levels_apart: float = 0.0
     level_difference: BlockMean = NO_DIFFERENCE
     level_share: BlockMean = NO_DIFFERENCE
+
+    @cached_property
+    def parts(self) -> Mapping[Hashable, BlockMean]:
+        """The differences on each condition and each half, worked out where they decide."""
+        return self.by_part()
 
     @property
     def explainable(self) -> float:
@@ -181,7 +187,7 @@ def compare(
         noise=noise,
         difference=block_mean(gained, criteria),
         share=block_ratio(gained, excess, criteria),
-        parts=_parts(gained, before.bands.records, criteria),
+        by_part=partial(_parts, gained, before.bands.records, criteria),
         apart=float(np.mean([np.mean(d**2) for d in between])),
         resolved=criteria.resolution * noise / best.independent,
         level=float(np.sqrt(squares[0].mean())),
