@@ -269,15 +269,13 @@ class Chain:
 
         Else they are the slopes about an operating point, the states and the command `about` (n + 1 numbers; that of
         the chain where None), over a step of 1e-9 of a unit: a kink that lies there is seen from its larger side.
-        `values` holds every symbol, as numbers or arrays of one broadcast shape, which is that of the batch whether the
-        equations read them all or not; `output` is a channel's name.
+        `values` holds every symbol, as numbers or arrays of one broadcast shape, which with that of `about` is that of
+        the batch whether the equations read them all or not; `output` is a channel's name.
         """
-        evaluate, n = self.evaluator(output), len(self.states)
-        shape = np.broadcast_shapes(*(np.shape(value) for value in values.values()))
+        evaluate, n, about = self.evaluator(output), len(self.states), about or self.operating_point(values)
+        shape = np.broadcast_shapes(*(np.shape(value) for value in (*values.values(), *about)))
         system = np.zeros((n + 1, n + 1, *shape))
-        for j, rates, shown in self._columns(
-            lambda x: evaluate(x[n], x[:n], values), about or self.operating_point(values)
-        ):
+        for j, rates, shown in self._columns(lambda x: evaluate(x[n], x[:n], values), about):
             for i, rate in enumerate(rates):
                 system[i, j] = rate
             system[n, j] = shown

@@ -41,7 +41,7 @@ def residual_correlation(
     subtitle = [
         words.verdict(fit),
         words.describe(run),
-        f"lags outside the {SURE:.0%} band (1.00 % expected):",
+        f"lags outside the {100 * SURE:.0f} % band (1.00 % expected):",
         ", ".join(told),
     ]
     headline = alt.TitleParams(words.headline(actuator, "residual whiteness and cross-correlation"), subtitle=subtitle)

@@ -276,7 +276,11 @@ def _reason(objective: Fitness, name: str, relative: Mapping[str, float], point:
         if objective.space.at_bound(name, point) and _felt(objective, name, point):
             return _AT_BOUND
         return "every value within its bounds explains these runs equally well"
-    size = "no influence on these runs" if relative[name] > 10 else f"standard error {relative[name]:.0%} of the value"
+    size = (
+        "no influence on these runs"
+        if relative[name] > 10
+        else f"standard error {100 * relative[name]:.0f} % of the value"
+    )
     return f"{size}; correlated with other parameters (see the identifiable combinations)"
 
 

@@ -62,10 +62,16 @@ def fastest_mode(
     with np.errstate(
         divide="ignore", invalid="ignore", over="ignore"
     ):  # where no machine is: slopes there count as none
-        rest, *others = [_fastest(followed.linearise(known, output, point).A) for point in points]
+        rest, *others = _fastest(followed.linearise(known, output, _side_by_side(points, known)).A)
     for other in others:
         rest = np.where(np.abs(other) > _FASTER * np.abs(rest), other, rest)
-    return rest
+    return np.asarray(rest)
+
+
+def _side_by_side(points: Sequence[Sequence[Any]], values: Mapping[str, Any]) -> list[Array]:
+    """Operating points (p,) of n + 1 numbers each, as n + 1 arrays that broadcast against the values, (p, ...)."""
+    shape = np.broadcast_shapes(*(np.shape(value) for value in values.values()))
+    return [np.stack([np.broadcast_to(point[i], shape) for point in points]) for i in range(len(points[0]))]
 
 
 def _fastest(jacobian: Array) -> Modes:

@@ -7,11 +7,11 @@ from collections.abc import Mapping
 CHECKS: Mapping[str, str] = {
     "check.none": "No errors, no warnings.",
     "check.band_narrow":
-        "the command of {run:run} is called blwn, but {share:.0%} of its power lies below {edge:.3g} Hz instead of "
+        "the command of {run:run} is called blwn, but {share:share} of its power lies below {edge:.3g} Hz instead of "
         "about 76 Hz; higher frequencies are not excited and not identifiable: check the generator, the sample rate "
         "and kind",
     "check.band_wide":
-        "the command of {run:run} is called blwn, but {share:.0%} of its power lies below {edge:.3g} Hz instead of "
+        "the command of {run:run} is called blwn, but {share:share} of its power lies below {edge:.3g} Hz instead of "
         "about 76 Hz; the model is made for 0-80 Hz: check the generator, the sample rate and kind",
     "check.copied":
         "{channel} of {run:run} is a copy of its command, without delay, dynamics or noise, which no sensor gives; "
@@ -73,10 +73,10 @@ CHECKS: Mapping[str, str] = {
         "the clock of {run:run} has a jitter of up to {jitter:.2g} samples. The record was resampled to {rate:.6g} Hz "
         "by its time column, by interpolation",
     "check.few_samples":
-        "{run:run} has {samples:.2g} samples per cycle at {highest:.3g} Hz, and {share:.0%} of the power of the "
+        "{run:run} has {samples:.2g} samples per cycle at {highest:.3g} Hz, and {share:share} of the power of the "
         "command is below that. Use at least {least:.3g} Hz",
     "check.too_quick":
-        "the sample rate of {run:run} is too low: {share:.0%} of the step response happens within {samples} samples. "
+        "the sample rate of {run:run} is too low: {share:share} of the step response happens within {samples} samples. "
         "Use at least {least:.3g} Hz",
     "check.closed_loop":
         "the command of {run:run} depends on the measured output, so a controller made it: the output predicts "

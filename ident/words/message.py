@@ -63,6 +63,7 @@ def _strings(values: Sequence[Any]) -> list[str]:
 KINDS: Mapping[str, Callable[[Any], str]] = {
     "error": error_said,
     "percent": percent,
+    "share": lambda part: f"{100 * part:.0f} %",
     "probability": probability_said,
     "unstable": unstable_on,
     "estimate": lambda one: plus_minus(*one),

@@ -218,7 +218,7 @@ SEARCH: Mapping[str, str] = {
     "run.inseparable": "No feasible run separates the models.",
     "run.information": "Expected information gain: {information:.2g} nats.",
     "run.std_errors": "The standard errors fall to {errors:all} of their present values.",
-    "run.std_error": "{share:.0%} ({name})",
+    "run.std_error": "{share:share} ({name})",
     "instead.unstable": "{names}, but with it the model is {unstable}",
     "instead.error": "{names} (error {error} on validation data)",
 }  # fmt: skip

@@ -190,3 +190,10 @@ def test_a_value_is_put_into_words_by_its_kind_and_may_be_a_message():
         "A slow command is answered 0.0123 ± 0.001 s late. These data cannot tell by which lag or delay: a. "
         "Next: use the model as it is."
     )
+
+
+def test_a_share_has_a_space_before_its_unit():
+    """As every number of the program has: Python's own form of per cent sets none."""
+    assert KINDS["share"](0.694) == "69 %"
+    for path in program():
+        assert not re.search(r":[.0-9]*%\}", path.read_text(encoding="utf-8")), path.name

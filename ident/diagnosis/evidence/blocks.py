@@ -13,8 +13,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-import scipy  # stats, which takes half a second to load, is loaded where it is first used
 from numpy.typing import NDArray
+from scipy.special import stdtrit  # the quantile of Student's t, without scipy.stats, which takes half a second to load
 
 from ident.diagnosis.evidence.criteria import EVIDENCE_CRITERIA, EvidenceCriteria
 
@@ -33,7 +33,7 @@ class BlockMean:
         """Half of the interval that holds the mean, but for chance."""
         if self.blocks < 2:
             return float("inf")
-        return self.error * float(scipy.stats.t.ppf(1.0 - 0.5 * criteria.chance, self.blocks - 1))
+        return self.error * float(stdtrit(self.blocks - 1, 1.0 - 0.5 * criteria.chance))
 
     def above(self, value: float, criteria: EvidenceCriteria) -> bool:
         """Whether the mean is above a value beyond its error."""
