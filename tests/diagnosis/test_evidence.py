@@ -343,7 +343,7 @@ def test_an_effect_is_added_where_it_improves_and_generalises_alone() -> None:
     found = compared([before], [after], [Record(1.0, period=87.3)])
     assert worth_adding(found)
     loses = {**found.parts, "second half": BlockMean(-0.5 * found.explainable, 1e-9, 20)}
-    assert not worth_adding(replace(found, parts=loses))
+    assert not worth_adding(replace(found, by_part=lambda: loses))
     little = replace(found, gain=0.2 * found.most, without=0.2 * found.most)
     assert not worth_adding(little)
     assert worth_adding(little, lambda: 0.1 * found.most)
