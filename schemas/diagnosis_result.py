@@ -166,6 +166,7 @@ class RiseView(BaseModel):
     """The error on runs to verify without an effect and with it, and by how many standard errors it rises.
 
     The last two are null where the model is unstable on runs to verify with the effect: on those in `unstable`.
+    `instead_of` are effects that the model has which it rises from, and that are not in this one.
     """
 
     effect: str
@@ -173,6 +174,7 @@ class RiseView(BaseModel):
     after: float | None
     deviations: float | None
     unstable: list[str] = Field(default_factory=list)
+    instead_of: list[str] = Field(default_factory=list)
 
 
 class TermView(BaseModel):
@@ -180,7 +182,7 @@ class TermView(BaseModel):
 
     `class` are the forms that the data cannot tell from it; `nats` those of runs that neither search nor choice saw,
     `bar` what they had to exceed. `formula` is its equation in MathML. With `contradicted` the error rises on runs to
-    verify.
+    verify. `instead_of` are effects that the catalogue had named and that are not in it.
     """
 
     model_config = ConfigDict(populate_by_name=True)
@@ -205,6 +207,7 @@ class TermView(BaseModel):
     hypothesis: bool
     free_curve: bool = False
     contradicted: RiseView | None = None
+    instead_of: list[str] = Field(default_factory=list)
     unstable: dict[str, list[str]] = Field(default_factory=dict)
 
 

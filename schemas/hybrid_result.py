@@ -2,9 +2,9 @@
 
 from pydantic import BaseModel
 
-from schemas.feedforward_result import FeedforwardView
-
-Matrix = list[list[float]]
+from ident.hybrid.followed import Followed
+from ident.hybrid.margins import Margins
+from ident.hybrid.target import Target
 
 
 class GammaView(BaseModel):
@@ -22,22 +22,6 @@ class OrderView(BaseModel):
     reduced: int
 
 
-class MarginsView(BaseModel):
-    """Margins of the sampled loop: gain dB, phase °, delay s (null without a limit); deviations in dB and degrees."""
-
-    gain: float | None
-    phase: float | None
-    delay: float | None
-    sensitivity_peak: float
-    peak: float
-    magnitude_5: float
-    magnitude_25: float
-    phase_10: float
-    phase_25: float
-    bandwidth: float
-    noise_gain: float
-
-
 class RobustnessView(BaseModel):
     """Of how many draws from the fitted covariance how many stay stable and within 1 dB and 10° to 25 Hz."""
 
@@ -47,38 +31,17 @@ class RobustnessView(BaseModel):
     held: list[str]
 
 
-class TargetView(BaseModel):
-    """The open loop that was wanted, and the pole of its roll-off in rad/s."""
-
-    name: str
-    numerator: list[float]
-    denominator: list[float]
-    roll_off: float
-
-
 class DesignView(BaseModel):
     """How a controller was designed; without `robustness` the fit states no standard errors."""
 
     structure: str
-    target: TargetView
+    target: Target
     delay: float
     gamma: GammaView
     order: OrderView
-    margins: MarginsView
+    margins: Margins
     notes: list[str]
     robustness: RobustnessView | None = None
-
-
-class ControllerFile(BaseModel):
-    """What `servoident control` writes: x(k+1) = A x + B [d, y], u = C x + D [d, y], one step 1/`sample_rate` s."""
-
-    name: str
-    sample_rate: float
-    A: Matrix
-    B: Matrix
-    C: Matrix
-    D: Matrix
-    design: DesignView
 
 
 class ControllerView(BaseModel):
@@ -164,7 +127,7 @@ class HybridView(HybridResultView):
     controller_id: str | None
     without: HybridResultView | None
     map: ShareMapView | None
-    feedforward: FeedforwardView | None = None
+    feedforward: Followed | None = None
     figures: list[str]
 
 

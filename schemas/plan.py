@@ -4,6 +4,9 @@ from typing import Annotated, Any
 
 from pydantic import BaseModel, ConfigDict, Field
 
+from ident.planning.law import Law
+from ident.planning.planned_run import RefusedRun
+from ident.planning.signal import Signal
 from schemas.fit import Finite
 from schemas.result import ActuatorStated, RigStated
 
@@ -33,29 +36,6 @@ class PlanRequest(BaseModel):
     seed: int = Field(default=0, ge=0, lt=2**31)
 
 
-class PlannedSignalView(BaseModel):
-    """A command: its kind, RMS in `unit`, frequency or upper edge (Hz), length (s), the share of its ramps."""
-
-    kind: str
-    amplitude: float
-    unit: str
-    frequency: float
-    seconds: float
-    sample_rate: float
-    seed: int
-    ramp: float
-
-
-class LawView(BaseModel):
-    """A law of a control unit: its settings in their order, length (s), first position and range of positions (m)."""
-
-    number: int
-    settings: list[float]
-    seconds: float
-    start: float
-    position_range: list[float] = Field(default_factory=list)
-
-
 class MovedView(BaseModel):
     """What the actuator moves, SI."""
 
@@ -77,21 +57,13 @@ class PlannedRunView(BaseModel):
     size: float
     scale: float
     words: str
-    signal: PlannedSignalView | None = None
-    law: LawView | None = None
+    signal: Signal | None = None
+    law: Law | None = None
     specimen: MovedView | None = None
     gain: float | None = None
     limit: str = ""
     share: float | None = None
     peaks: dict[str, float] = Field(default_factory=dict)
-
-
-class RefusedRunView(BaseModel):
-    """A run that cannot be, and the factor by which its amplitude would have to shrink; null where none helps."""
-
-    id: str
-    why: str
-    factor: float | None = None
 
 
 class PlanView(BaseModel):
@@ -106,7 +78,7 @@ class PlanView(BaseModel):
     actuator: ActuatorStated
     limits: RigStated
     runs: list[PlannedRunView]
-    refused: list[RefusedRunView]
+    refused: list[RefusedRun]
     unjudged: list[str]
     notes: list[str]
     median_share: float | None

@@ -44,7 +44,7 @@ def results() -> dict[str, Shown]:
     compared = ident.compare(matrix, fit)
     found, case, machine = survey(compared), of_qian(0.5), fitted()
     of_area = fitted_of_an_area()
-    curve = [0.1 * k for k in range(600)]
+    curve = tuple(0.1 * k for k in range(600))
     many = (
         matrix, matrix.runs[0], ident.check(matrix), fit, compared, compared.runs[0], found, found.budget,
         Diagnosis.from_json(json.loads(STORED.read_text())), of_fits([fit, fit]), track(matrix.runs[0]),

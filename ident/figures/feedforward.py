@@ -19,7 +19,7 @@ REFERENCE, ALONE, BOTH, BAND = "reference", "feedback alone", "with feedforward"
 
 def feedforward_figure(followed: Followed, look: Look, title: str = "") -> Chart:
     """Positions (mm) above, errors (mm) with feedforward and their band below, against time (s)."""
-    facts = [message("feedforward.gain", gain=followed.gain, margin=followed.margin, limit=followed.limit)]
+    facts = [followed.gain_said]
     if followed.drawn_ratio is not None:
         facts.append(message("feedforward.error", ratio=rounded(followed.drawn_ratio), draws=followed.draws))
     headed = alt.TitleParams(title or "Following a reference", subtitle=["; ".join(map(str, facts))])

@@ -23,6 +23,7 @@ from ident.hybrid.robustness import (
     undetermined,
 )
 from ident.hybrid.target import QIAN2014_TARGET, Target
+from ident.plain import written
 from ident.run import Specimen
 from ident.words.message import message
 from ident.words.shown import Listing, Shown
@@ -57,7 +58,7 @@ class ControllerDesign(Shown):
                 "used": made.stabilised.gamma,
             },
             "order": {"full": made.full.order, "reduced": made.controller.order},
-            "margins": self.margins.to_json(),
+            "margins": written(self.margins),
             "notes": [*self.beyond, *self.notes],
         }
         if self.robustness is not None:

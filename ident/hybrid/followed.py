@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass, replace
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -15,7 +15,9 @@ from ident.hybrid.draws import drawn_parameters
 from ident.hybrid.feedforward import Plant, Tracked, plant_of, tracked
 from ident.hybrid.machine import actuator
 from ident.hybrid.substructure import reference
+from ident.plain import read, written
 from ident.words.engineering import quantity
+from ident.words.message import Message, message
 from ident.words.shown import Shown
 
 Array = NDArray[np.float64]
@@ -27,38 +29,42 @@ _RATE = 1000.0  # Hz: no structure moves so fast that more samples would show mo
 class Followed(Shown):
     """Errors (m) of a machine that follows a reference with the feedback alone and with feedforward beside it.
 
-    `gain` and `limit`, from which the loop is unstable, in V/m. `feedback_rms` and `both_rms` are of the machine,
-    `drawn_feedback_rms` and `drawn_both_rms` the medians of the `draws` machines drawn from the fitted covariance,
-    `drawn_ratio` the median of feedback over both; these three are None without standard errors. Curves over `t` (s):
-    `reference`, both errors, and between what 90 % of the draws lie with the feedforward, `low` and `high`.
+    `gain` and `limit`, from which the loop is unstable (None where it is stable at any gain), in V/m. `feedback_rms`
+    and `both_rms` are of the machine, `drawn_feedback_rms` and `drawn_both_rms` the medians of the `draws` machines
+    drawn from the fitted covariance, `drawn_ratio` the median of feedback over both; these three are None without
+    standard errors. Curves over `t` (s): `reference`, both errors, and between what 90 % of the draws lie with the
+    feedforward, `low` and `high`.
     """
 
     gain: float
-    limit: float
+    limit: float | None
     draws: int
     feedback_rms: float
     both_rms: float
     drawn_feedback_rms: float | None
     drawn_both_rms: float | None
     drawn_ratio: float | None
-    t: list[float]
-    reference: list[float]
-    feedback: list[float]
-    both: list[float]
-    low: list[float]
-    high: list[float]
+    t: tuple[float, ...]
+    reference: tuple[float, ...]
+    feedback: tuple[float, ...]
+    both: tuple[float, ...]
+    low: tuple[float, ...]
+    high: tuple[float, ...]
 
     @property
-    def margin(self) -> float:
-        """By how much the gain could rise before the loop is unstable, dB."""
-        return float(20.0 * np.log10(self.limit / self.gain))
+    def gain_said(self) -> Message:
+        """The gain, and by how much it could rise before the loop is unstable."""
+        if self.limit is None:
+            return message("feedforward.no_limit", gain=self.gain)
+        margin = 20.0 * np.log10(self.limit / self.gain)
+        return message("feedforward.gain", gain=self.gain, margin=float(margin), limit=self.limit)
 
     @property
     def said(self) -> list[str]:
         """In words: the gain below its limit, the errors of the fitted machine, those of the drawn ones."""
         alone = quantity(self.feedback_rms, "m")
         lines = [
-            f"gain {self.gain:.3g} V/m, {self.margin:.2g} dB below the stability limit of {self.limit:.3g} V/m",
+            str(self.gain_said),
             f"error {quantity(self.both_rms, 'm')} RMS, with the feedback alone {alone}",
         ]
         if self.drawn_both_rms is None or self.drawn_ratio is None:
@@ -71,13 +77,14 @@ class Followed(Shown):
         return [f"feedforward: {line}" for line in self.said]
 
     def to_json(self) -> dict[str, Any]:
-        """As plain JSON data; a limit that there is not is null."""
-        return asdict(self) | {"limit": self.limit if np.isfinite(self.limit) else None}
+        """As plain JSON data."""
+        data: dict[str, Any] = written(self)
+        return data
 
     @classmethod
     def from_json(cls, data: Mapping[str, Any]) -> Followed:
         """What :meth:`to_json` gave."""
-        return cls(**{**data, "limit": np.inf if data["limit"] is None else data["limit"]})
+        return read(cls, data)
 
     @classmethod
     def of(cls, found: Tracked, draws: int) -> Followed:
@@ -89,10 +96,12 @@ class Followed(Shown):
         rms = found.rms()
         told = {name: float(np.median(rms[name])) if draws else None for name in ("drawn_feedback", "drawn_both")}
         return cls(
-            found.gain, found.limit, draws, float(rms["feedback"]), float(rms["both"]),
+            found.gain, found.limit if np.isfinite(found.limit) else None, draws,
+            float(rms["feedback"]), float(rms["both"]),
             told["drawn_feedback"], told["drawn_both"],
             float(np.median(rms["drawn_feedback"] / np.maximum(rms["drawn_both"], 1e-300))) if draws else None,
-            (places / found.sample_rate).tolist(), **{name: curve[places].tolist() for name, curve in curves.items()},
+            tuple((places / found.sample_rate).tolist()),
+            **{name: tuple(curve[places].tolist()) for name, curve in curves.items()},
         )  # fmt: skip
 
 

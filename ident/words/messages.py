@@ -32,6 +32,7 @@ FIGURES: Mapping[str, str] = {
     "chart.limits": "dashed: 3 σ limits; marked: {marked} out of control",
     "chart.with_limits": "dashed: 3 σ limits, dotted: limits of the product; marked: {marked} out of control",
     "feedforward.gain": "gain {gain:.3g} V/m, {margin:.2g} dB below the stability limit of {limit:.3g} V/m",
+    "feedforward.no_limit": "gain {gain:.3g} V/m, stable at any gain",
     "feedforward.error": "error 1/{ratio} of that with feedback alone, median of {draws} draws",
     "rig.stable": "stable",
     "rig.unstable": "unstable",

@@ -6,7 +6,7 @@ import json
 from dataclasses import replace
 from pathlib import Path
 
-from schemas.feedforward_result import FeedforwardView
+from ident.hybrid.followed import Followed
 from tests.hybrid.cases import fitted
 
 FIT = Path(__file__).parents[1] / "stored" / "fit.json"
@@ -57,7 +57,7 @@ def test_what_the_feedforward_is_worth_is_told(servoident, tmp_path):
     given = ("--case", case, "--controller", "feedforward", "--json", tmp_path / "scores.json", "--out", out)
     done = servoident("hybrid", fit, *given)
     assert done.returncode == 0, done.stderr
-    told = FeedforwardView(**json.loads((tmp_path / "scores.json").read_text())["feedforward"])
+    told = Followed.from_json(json.loads((tmp_path / "scores.json").read_text())["feedforward"])
     assert told.draws == 100
     assert told.gain == 100
     assert told.limit > 200

@@ -154,3 +154,12 @@ def test_a_specimen_lowers_nothing_that_is_not_its_own():
     stiff = replace(plant(50.0), specimen=Specimen(stiffness=1e8))
     assert gain_limit(stiff) != pytest.approx(limit(), rel=0.05)
     assert gain_limit(plant(7.0)) == pytest.approx(limit()), "the limit hangs on no gain"
+
+
+def test_a_loop_that_is_stable_at_any_gain_has_no_limit_in_words_and_in_json():
+    """No infinity stands where a reader, or a JSON parser, expects a number."""
+    curve = (0.0, 1.0)
+    found = Followed(20.0, None, 0, 1e-3, 1e-4, None, None, None, curve, curve, curve, curve, curve, curve)
+    assert found.said[0] == "gain 20 V/m, stable at any gain"
+    assert found.to_json()["limit"] is None
+    assert Followed.from_json(found.to_json()) == found

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterator
+from dataclasses import fields, is_dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, get_args, get_type_hints
 
 import pytest
+from pydantic import BaseModel
 
 from app.cli.given import read_diagnosis, read_fit
 from ident.diagnosis.competing_models import competing_models
@@ -118,6 +120,31 @@ def test_a_stored_diagnosis_says_which_models_are_in_question_and_whose_label_is
     with pytest.raises(Unusable, match="bench"):
         competing_models(Diagnosis.from_json(stored("bench-diagnosis")))
     assert competing_models(Diagnosis(candidates=(), verdict=Verdict())).models == ()
+
+
+def parts(annotation: Any) -> Iterator[Any]:
+    """An annotation and all that it is made of."""
+    yield annotation
+    for part in get_args(annotation):
+        yield from parts(part)
+
+
+def differences(result: Any, model: type[BaseModel]) -> Iterator[str]:
+    """Fields that only one of the two has, also within what they hold."""
+    of_result, of_model = get_type_hints(result), model.model_fields
+    written = {field.name for field in fields(result) if field.metadata.get("written", True)}
+    yield from (f"{model.__name__}.{name}" for name in written ^ of_model.keys())
+    for name in written & of_model.keys():
+        inner = [part for part in parts(of_result[name]) if is_dataclass(part)]
+        models = [part for part in parts(of_model[name].annotation) if hasattr(part, "model_fields")]
+        for one, other in zip(inner, models, strict=False):  # settings are a mapping here, and a model there
+            yield from differences(one, other)
+
+
+def test_a_client_without_the_library_reads_every_field_of_a_result():
+    """`schemas` says again what the library's results hold, for it imports nothing of the library."""
+    assert set(differences(FitResult, FitResultView)) == {"FitResultView.machine"}  # of the model, where it is sent
+    assert not set(differences(Diagnosis, DiagnosisResult))
 
 
 def anything(schema: Any, path: str = "") -> Iterator[str]:
