@@ -252,7 +252,7 @@ def test_there_is_no_loose_file_but_the_basic_words_and_the_workflows():
     """What belongs together stands in a folder."""
     loose = {file.stem for file in files("ident/*.py")} - {"__init__"}
     assert loose == {
-        "errors", "plain", "cached", "progress", "time_budget", "parallel", "unstable", "beginning", "slopes", "run",
+        "errors", "plain", "cached", "progress", "time_budget", "parallel", "unstable", "beginning", "run",
         "matrix", "parameter", "linear", "workflows",
     }  # fmt: skip
 

@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from ident.run import Run
-from ident.slopes import bends, bends_of_way, slopes
+from ident.simulation.closed_way import drift
+from ident.slopes import bends, bends_of_way, curvatures, slopes
 
 AT = 7.4  # samples: where the motion begins to brake
 
@@ -22,6 +23,71 @@ def test_a_motion_that_brakes_between_two_samples_has_the_slopes_of_either_side(
     x, v, a = braking(np.arange(20.0))
     assert slopes(v, 1) == pytest.approx(a, abs=1e-12)
     assert slopes(x, 2)[2:-2] == pytest.approx(v[2:-2], abs=1e-12)
+
+
+def trapezoid(k, kinks, start):
+    """A position, its speed and its acceleration per sample; `kinks` are times with the acceleration from then on."""
+    x, v = np.zeros(len(k)), np.full(len(k), start)
+    a = np.zeros(len(k))
+    for (at, rate), before in zip(kinks, [0.0, *(rate for _, rate in kinks)], strict=False):
+        since = np.maximum(k - at, 0.0)
+        x, v, a = x + 0.5 * (rate - before) * since**2, v + (rate - before) * since, np.where(k > at, rate, a)
+    return x + start * k, v, a
+
+
+@pytest.mark.parametrize("brake", [(9.6, 12.1), (9.2, 11.7), (9.6, 12.9), (9.1, 13.4)])
+def test_a_brake_of_fewer_samples_than_a_parabola_has_is_told_by_the_lines_before_and_behind(brake):
+    """Two to four samples lie within it: from the lines meet in its middle, and one of these says how long it lasts."""
+    first, last = brake
+    x, v, a = trapezoid(np.arange(25.0), [(first, -0.4), (last, 0.0)], 1.0)
+    assert slopes(x, 2)[2:-2] == pytest.approx(v[2:-2], abs=1e-9)
+    assert curvatures(x)[2:-2] == pytest.approx(a[2:-2], abs=1e-9)
+    assert slopes(v, 1) == pytest.approx(a, abs=1e-9)
+    assert 0.5 * (v[1:] + v[:-1]) + bends(v)[:-1] == pytest.approx(np.diff(x), abs=1e-9)
+
+
+def test_a_motion_that_goes_on_at_once_between_two_brakes_keeps_its_speed_there():
+    """Two samples of it: their slope is none of the steps to them, each of which holds a bend."""
+    x, v, a = trapezoid(np.arange(25.0), [(8.6, 0.4), (11.7, 0.0), (13.4, -0.4), (16.3, 0.0)], 0.1)
+    assert slopes(v, 1) == pytest.approx(a, abs=1e-9)
+    assert curvatures(x)[2:-2] == pytest.approx(a[2:-2], abs=1e-9)
+
+
+@pytest.mark.parametrize("begins", [9.9, 13.2, 14.3, 15.2])
+@pytest.mark.parametrize("backwards", [False, True])
+def test_a_brake_that_the_record_cuts_off_is_told_by_what_is_left_of_it(begins, backwards):
+    """One sample of it, two, or three, or one before it; what brakes elsewhere in the record brakes as fast."""
+    kinks = [(10.4, -0.2), (15.9, 0.0), (20.6, 0.2), (26.1, 0.0), (30.4, -0.2), (35.9, 0.0)]
+    x, v, a = trapezoid(np.arange(34.0) + begins, kinks, 1.0)
+    turn, sign = (slice(None, None, -1), -1.0) if backwards else (slice(None), 1.0)
+    at = [-1, -2, -3] if backwards else [0, 1, 2]
+    assert slopes(x[turn], 2)[at] == pytest.approx(sign * v[turn][at], abs=1e-9)
+    assert curvatures(x[turn])[at] == pytest.approx(a[turn][at], abs=1e-9)
+    assert slopes(v[turn], 1)[at] == pytest.approx(sign * a[turn][at], abs=1e-9)
+
+
+def test_a_motion_that_turns_at_once_has_its_speed_before_and_behind():
+    k = np.arange(20.0)
+    assert slopes(np.where(k < 9.3, k, 18.6 - k), 2) == pytest.approx(np.where(k < 9.3, 1.0, -1.0), abs=1e-12)
+
+
+def turning(period, periods, on=0.0):
+    """A speed that turns at once, twice a period of samples, and its mean from sample to sample."""
+    speed = on + np.where(np.arange(periods * period) % period < 0.5 * period - 0.3, 1.0, -1.0)
+    return speed, 0.5 * (speed[1:] + speed[:-1])
+
+
+def test_the_way_of_a_speed_that_turns_between_two_samples_closes():
+    """By half a step a period it drifts, else: nobody knows when between two samples the speed turns."""
+    speed, covered = turning(25, 8)
+    assert np.mean(speed[:25]) == pytest.approx(0.04)
+    assert drift(speed, covered) == pytest.approx(0.04, abs=1e-9)
+
+
+@pytest.mark.parametrize("speed", [turning(25, 8, on=0.3)[0], np.cumsum(np.ones(200))])
+def test_a_motion_that_goes_on_keeps_its_drift(speed):
+    """It is more than its turns account for, or nothing repeats."""
+    assert drift(speed, 0.5 * (speed[1:] + speed[:-1])) == 0.0
 
 
 def test_of_noise_and_of_a_sine_the_slope_is_that_over_two_samples():
@@ -70,7 +136,8 @@ def test_what_a_motion_covers_between_two_samples_is_known_where_it_brakes_there
     assert np.count_nonzero(bends(v)) == 1
     speed = slopes(x, 2)
     assert (0.5 * (speed[1:] + speed[:-1]) + bends_of_way(x, speed)[:-1]) == pytest.approx(np.diff(x))
-    assert not np.any(bends_of_way(x**2, slopes(x**2, 2)))
+    smooth = np.sin(0.3 * np.arange(20.0))
+    assert not np.any(bends_of_way(smooth, slopes(smooth, 2))[1:-2])
 
 
 def test_of_noise_no_mean_is_beyond_that_of_the_samples():

@@ -12,8 +12,9 @@ from ident.chain.channels import BESIDE_MEAN, means
 from ident.chain.varying import MEASURED_CONDITIONS, is_measured
 from ident.run import DISTURBANCES, Run
 from ident.simulation.between import band_limited
+from ident.simulation.closed_way import drift
 from ident.simulation.kernel.layout import BEYOND
-from ident.slopes import bends, bends_of_way, slopes
+from ident.slopes import bends, bends_of_way, curvatures, slopes
 
 Array = NDArray[np.float64]
 _KEPT = 8  # of a run: a search has models that differ by their steps side by side, each of two inputs or more
@@ -80,12 +81,14 @@ def _curved(run: Run, steps: int, before: int) -> Array:
 
 def _record(run: Run, name: str) -> Array:
     """The samples of an input; of the rate of the command, what it is at each."""
+    derived = "displacement" in run.channels and "velocity" not in run.channels
     if name == INPUT_RATE:
+        if derived:
+            return curvatures(run.channels["displacement"]) * run.sample_rate**2
         return slopes(run.command, order=1) * run.sample_rate
     if name == BEYOND:
-        derived = "displacement" in run.channels and "velocity" not in run.channels
         if not derived:
-            return bends(run.command)
+            return _closed(run.command)
         return bends_of_way(run.channels["displacement"], run.command / run.sample_rate) * run.sample_rate
     if name == FORCE:
         return run.channels["force"]
@@ -99,6 +102,12 @@ def _record(run: Run, name: str) -> Array:
             known = is_measured(run, channel, unit)
             return np.asarray(run.channels[channel] - run.channels[channel].mean()) if known else np.zeros(run.length)
     return run.command
+
+
+def _closed(speed: Array) -> Array:
+    """How much the mean from each sample of a speed (n,) to the next is beyond that of the two: see :func:`drift`."""
+    beyond = bends(speed)
+    return beyond - drift(speed, 0.5 * (speed[1:] + speed[:-1]) + beyond[:-1])
 
 
 def jump_share(delay: Array) -> Array:

@@ -9,6 +9,10 @@ brakes at once the acceleration, which drives a mass, would be the mean of befor
 three samples on one side is taken, of the two sides the one along which the next difference is less: the smoothest
 stencil of essentially non-oscillatory schemes (Harten, Engquist, Osher and Chakravarthy 1987).
 
+A motion may brake within two samples: then no side is smooth, but the pieces before and behind say where it bends
+(subcell resolution, Harten 1989). Of a speed one step lies within the brake, and those that hold a bend lie between it
+and the next: it is the largest or the least of them. Of a position see :mod:`ident.slopes.brakes`.
+
 At the first and the last sample there is but one side. The difference to the neighbour is the slope half a sample
 away: an acceleration that is derived from a position by two of them is half of what it is. A parabola through the
 slopes within leads to the end,
@@ -23,9 +27,14 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from ident.slopes.brakes import SAME, brakes
+
 Array = NDArray[np.float64]
-_JUMPS = 10.0  # medians of the differences that one has to have to be a jump: white noise has seven in 1e5 samples
+_JUMPS = (
+    21.0  # lower quartiles of the differences that one has to have to be a jump: of white noise seven in 1e5 samples
+)
 _SMOOTH = 0.1  # of the difference across a sample, above which that along a side is no smoother
+_ROUNDING = 1e-9  # of the largest difference, that is rounding
 _NEAR_END = 5  # samples from which the slope at an end is told
 
 
@@ -39,7 +48,7 @@ def slopes(signal: Array, order: int) -> Array:
     differences = np.abs(np.diff(signal, order + 1))
     if len(differences) < order + 1:
         return central
-    smallest_jump = _JUMPS * float(np.median(differences))
+    smallest_jump = _smallest_jump(differences)
     left, right = _by_side(signal, order)
     # Those with their last, their first and any other sample at each sample.
     spans = [_shifted(differences, len(signal), back) for back in range(order + 2)]
@@ -51,6 +60,25 @@ def slopes(signal: Array, order: int) -> Array:
         near = _NEAR_END - order - 1
         found[0] = _at_end(found, right, differences[:near], smallest_jump)
         found[-1] = _at_end(found[::-1], left[::-1], differences[: -near - 1 : -1], smallest_jump)
+    if order > 1:
+        for brake in brakes(signal):
+            found[brake.samples] = brake.slopes
+    else:
+        steps = np.diff(signal)
+        alone = _alone(steps, smallest_jump)
+        within = np.flatnonzero(alone)
+        found[within] = found[within + 1] = steps[within]
+        known = alone | _alike(steps)
+        for of_end in (slice(None), slice(None, None, -1)):
+            _cut_off(found[of_end], steps[of_end], known[of_end])
+    return found
+
+
+def curvatures(way: Array) -> Array:
+    """The second slope per sample of a way (n,), the rate of a speed that is derived from it."""
+    found = slopes(slopes(way, order=2), order=1)
+    for brake in brakes(way):
+        found[brake.samples] = brake.curvatures
     return found
 
 
@@ -65,9 +93,12 @@ def bends(signal: Array) -> Array:
         return found
     before, between, behind = step[1:-3], step[2:-2], step[3:-1]
     bend = behind - before
-    smooth = np.maximum(np.abs(before - step[:-4]), np.abs(step[4:] - behind)) < _SMOOTH * np.abs(bend)
+    smallest = _smallest_jump(np.abs(np.diff(signal, 2)))
+    alone, straight = _alone(step, smallest), _SMOOTH * np.abs(bend)
+    smooth = (np.abs(before - step[:-4]) < straight) | alone[1:-3]
+    smooth &= (np.abs(step[4:] - behind) < straight) | alone[3:-1]
     share = (behind - between) / np.where(bend == 0, 1.0, bend)
-    inside = smooth & (share > 0) & (share < 1) & (np.abs(bend) > _JUMPS * np.median(np.abs(np.diff(signal, 2))))
+    inside = smooth & (share > 0) & (share < 1) & (np.abs(bend) > smallest)
     found[2:-3] = np.where(inside, -0.5 * share * (1.0 - share) * bend, 0.0)
     return found
 
@@ -77,6 +108,55 @@ def bends_of_way(way: Array, speed: Array) -> Array:
     if np.array_equal(speed[1:-1], np.gradient(way)[1:-1]):
         return np.zeros(len(way))
     return np.append(np.diff(way) - 0.5 * (speed[1:] + speed[:-1]), 0.0)
+
+
+def _alike(step: Array) -> NDArray[np.bool_]:
+    """Which steps (n,) are as one next to them."""
+    rise = np.abs(np.diff(step))
+    alike = rise < SAME * rise.max()
+    return np.asarray(np.append(alike, False) | np.append(False, alike))
+
+
+def _cut_off(slope: Array, step: Array, known: NDArray[np.bool_]) -> None:
+    """Put in the first slopes where the signal bends just behind the first sample, as brakes of a way are."""
+    if len(step) < _NEAR_END or known[0]:
+        return
+    rise = np.diff(step[:3])
+    if known[1]:
+        tolerance = SAME * np.abs(step).max()
+        others = step[known & (np.abs(step) > tolerance) & (np.sign(step) == -np.sign(rise[0]))]
+        before = 0.0 if abs(step[1]) > tolerance else others[0] if len(others) else step[1]
+        if 0.0 < rise[0] / ((step[1] - before) or np.inf) < 1.0:
+            slope[0] = before
+    elif known[2] and rise[0] * rise[1] > 0:
+        slope[:2] = step[0]
+
+
+def _smallest_jump(differences: Array) -> float:
+    """The least of the differences (n,) that is no noise, in a motion that bends at less than three of four samples."""
+    return max(_JUMPS * float(np.quantile(differences, 0.25)), _ROUNDING * float(np.max(differences)))
+
+
+def _alone(step: Array, smallest_jump: float) -> NDArray[np.bool_]:
+    """Which steps (n,) lie by themselves between two bends, in steps next to them.
+
+    Beyond its neighbours, where on one side the steps behind these are alike. Or between them, where the steps behind
+    both are known to hold no bend: a speed that brakes and goes on at once. A jump between two samples, whose
+    neighbours hold none, is no such step.
+    """
+    found, rise = np.zeros(len(step), dtype=bool), np.diff(step)
+    if len(step) < 7:
+        return found
+    far_left, held_left, left, right, held_right, far_right = (rise[i : len(rise) - 5 + i] for i in range(6))
+    least = np.minimum(np.abs(left), np.abs(right))
+    bent = (held_left * left >= 0) & (held_right * right >= 0) & (least > smallest_jump)
+    straight = np.minimum(np.abs(far_left), np.abs(far_right)) < _SMOOTH * least
+    beyond = (left * right < 0) & (np.abs(held_left) + np.abs(held_right) > _SMOOTH * least)
+    found[3:-3] = bent & beyond & straight
+    known = found | _alike(step)
+    beside, behind = known[2:-4] | known[4:-2], known[1:-5] & known[5:-1]
+    found[3:-3] |= bent & (left * right > 0) & behind & ~beside
+    return found
 
 
 def _at_end(slope: Array, sided: Array, near: Array, smallest_jump: float) -> float:
