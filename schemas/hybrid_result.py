@@ -32,8 +32,13 @@ class RobustnessView(BaseModel):
 
 
 class DesignView(BaseModel):
-    """How a controller was designed; without `robustness` the fit states no standard errors."""
+    """How a controller was designed; without `robustness` the fit states no standard errors.
 
+    `state` is `stable` or `unstable`, of its case under it, null where that has no poles; `stability` judges the loop.
+    """
+
+    state: str | None = None
+    stability: JudgementView | None = None
     structure: str
     target: Target
     delay: float
@@ -90,9 +95,12 @@ class HybridResultView(BaseModel):
     """The verdict and the scores of a hybrid simulation, as `servoident hybrid --json` writes them.
 
     `ended` (s) is when it ran away; `largest_pole` the largest magnitude of a pole of the sampled loop, null where it
-    is not linear; `seconds` what the computation took.
+    is not linear; `seconds` what the computation took. `state` is `stable` or `unstable`; `stability` says of an
+    unstable loop with poles what would make it stable.
     """
 
+    state: str | None = None
+    stability: JudgementView | None = None
     case: str
     ground: str
     controller: str

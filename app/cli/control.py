@@ -36,13 +36,13 @@ def control(
     """Design a tracking controller by H-infinity loop shaping.
 
     The design uses the linear part of the fit and the specimen, gain, sample rate and delay of the case. It is tested
-    on 100 models drawn from the covariance of the fit.
+    on 100 models drawn from the covariance of the fit. Exit status 1 if the case is unstable under it.
     """
     from dataclasses import replace
 
     from app.cli.tables import show
     from ident.hybrid.case import read_case
-    from ident.hybrid.controller_design import design_controller, held_to_limits
+    from ident.hybrid.controller_design import design_controller, on_case
     from ident.hybrid.target import QIAN2014_TARGET
 
     result, given = read_fit(fit), read_case(case)
@@ -51,10 +51,12 @@ def control(
         result, given.physical, sample_rate=given.sample_rate, gain=given.gain, piston_area=given.piston_area,
         delay=given.delay, target=wanted, structure=structure, seed=seed,
     )  # fmt: skip
-    made = held_to_limits(made, result, given if rig is None else replace(given, rig=rig_in(rig)))
+    made = on_case(made, result, given if rig is None else replace(given, rig=rig_in(rig)))
     _write(made, out, given.name)
     show(made.listings())
     print(f"wrote {', '.join(FILES)} to {out}")
+    if made.stability is not None and not made.stability.stable:
+        raise typer.Exit(1)
 
 
 def _target(path: Path) -> Target:

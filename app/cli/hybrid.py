@@ -42,7 +42,8 @@ def hybrid(
 ) -> None:
     """Simulate a real-time hybrid simulation.
 
-    It couples a numerical substructure, a controller, the identified actuator and a specimen.
+    It couples a numerical substructure, a controller, the identified actuator and a specimen. Exit status 1 if it is
+    unstable.
     """
     from dataclasses import replace
 
@@ -74,6 +75,8 @@ def hybrid(
         from ident.figures.subjects import Simulated
 
         write_figures(Simulated(runs, of, found, worth), out)
+    if not main.stable:
+        raise typer.Exit(1)
 
 
 def _map(asked: bool, acting: Any, *rest: Any) -> ShareMap | None:

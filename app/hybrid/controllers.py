@@ -18,7 +18,7 @@ from app.paging import cursor, keys_of
 from app.tables import ControllerRow
 from ident.fit.result import FitResult
 from ident.hybrid.controller import SampledController
-from ident.hybrid.controller_design import ControllerDesign, design_controller, held_to_limits
+from ident.hybrid.controller_design import ControllerDesign, design_controller, on_case
 from ident.hybrid.export import as_header, as_mat
 from ident.hybrid.target import QIAN2014_TARGET, target_of
 from schemas.hybrid import ControllerRequest
@@ -55,7 +55,7 @@ def _designed(context: Context, asked: dict[str, Any]) -> ControllerDesign:
         fit, case.physical, sample_rate=case.sample_rate, gain=case.gain, piston_area=case.piston_area,
         delay=case.delay, target=target, structure=asked["structure"], seed=asked["seed"],
     )  # fmt: skip
-    return held_to_limits(made, fit, case)
+    return on_case(made, fit, case)
 
 
 def made_as(context: Context, controller: str) -> ControllerView | None:

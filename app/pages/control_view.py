@@ -7,8 +7,10 @@ from dataclasses import dataclass
 from typing import Any
 
 from ident.hybrid.target import QIAN2014_TARGET
+from ident.stability.judgement import UNSTABLE
 from ident.words.number import plain, trimmed
 from schemas.hybrid_result import ControllerView
+from schemas.stability import JudgementView
 
 Rows = tuple[tuple[str, str, str], ...]
 _NO_LIMIT = "no limit"
@@ -35,6 +37,8 @@ class Designed:
     rows: Rows
     notes: tuple[str, ...]
     figure: str
+    unstable: bool
+    stability: tuple[str, ...]
 
 
 @dataclass(frozen=True)
@@ -78,8 +82,13 @@ def _designed(one: ControllerView) -> Designed:
     rows = tuple(_rows(one.design.model_dump()))
     return Designed(
         one.id, case_called(one.case), one.design.structure, one.design.target.name, one.created_at, rows,
-        tuple(one.design.notes), figure,
+        tuple(one.design.notes), figure, one.design.state == UNSTABLE, said_of(one.design.stability),
     )  # fmt: skip
+
+
+def said_of(judgement: JudgementView | None) -> tuple[str, ...]:
+    """The sentences of a judgement of stability, where there is one."""
+    return () if judgement is None else tuple(judgement.text)
 
 
 def _list(numbers: Sequence[float]) -> str:

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from app.pages.control_view import ControlView, Earlier, case_called
+from app.pages.control_view import ControlView, Earlier, case_called, said_of
 from app.pages.job_view import JobPageView
 from ident.custom.definition import preset_with
 from ident.effects import CATALOGUE
@@ -72,6 +72,7 @@ class Simulated:
     made: str
     stable: bool
     verdict: str
+    stability: tuple[str, ...]
     scores: tuple[tuple[str, str, str, str], ...]
     facts: tuple[tuple[str, str], ...]
     notes: tuple[str, ...]
@@ -163,6 +164,7 @@ def _simulated(one: HybridView) -> Simulated:
         title=_title(one),
         made=one.created_at,
         stable=one.stable,
+        stability=said_of(one.stability),
         verdict=_verdict(found),
         scores=tuple(_scores(found)),
         facts=tuple(_facts(found)),

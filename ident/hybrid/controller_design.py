@@ -11,8 +11,10 @@ import numpy as np
 from ident.fit.result import FitResult
 from ident.hybrid.case import Case
 from ident.hybrid.draws import DRAWS, drawn_parameters
+from ident.hybrid.hybrid_loop import judge_hybrid
 from ident.hybrid.linear_plant import linear_plant
 from ident.hybrid.loop_shaping import Design, design
+from ident.hybrid.machine import machine
 from ident.hybrid.margins import Margins, margins
 from ident.hybrid.rig import simulate_hybrid
 from ident.hybrid.rig_limits import limits_of
@@ -25,6 +27,7 @@ from ident.hybrid.robustness import (
 from ident.hybrid.target import QIAN2014_TARGET, Target
 from ident.plain import written
 from ident.run import Specimen
+from ident.stability.judgement import Judgement
 from ident.words.message import message
 from ident.words.shown import Listing, Shown
 
@@ -36,7 +39,8 @@ LITTLE_MARGIN = 2.5
 class ControllerDesign(Shown):
     """A design, its margins, its robustness over the fitted covariance (None where that is unknown), and notes.
 
-    `beyond` says what leaves the limits of the rig where the controller runs its case.
+    `beyond` says what leaves the limits of the rig where the controller runs its case, `stability` whether that loop is
+    stable: None where it was not run, or has no poles.
     """
 
     design: Design
@@ -44,11 +48,14 @@ class ControllerDesign(Shown):
     robustness: Robustness | None
     notes: tuple[str, ...]
     beyond: tuple[str, ...] = ()
+    stability: Judgement | None = None
 
     def to_json(self) -> dict[str, Any]:
         """The JSON of the controller, with the design beside it."""
         made = self.design
         found: dict[str, Any] = {
+            "state": self.stability.state if self.stability else None,
+            "stability": self.stability.to_json() if self.stability else None,
             "structure": made.structure,
             "target": made.target.to_json(),
             "delay": made.delay,
@@ -67,7 +74,8 @@ class ControllerDesign(Shown):
         return {**made.controller.to_json(), "design": found}
 
     def listings(self) -> Iterator[Listing | str]:
-        """What leaves the limits of the rig, what the loop can stand and how it follows, the notes."""
+        """What is unstable or leaves the limits of the rig, what the loop can stand and how it follows, the notes."""
+        yield from self.stability.text if self.stability else ()
         yield from self.beyond
         yield Listing("", ("quantity", "value", "unit"), self.rows, ("value",))
         for note in self.notes:
@@ -128,11 +136,14 @@ def design_controller(
     return ControllerDesign(made, found, judged, _notes(found, plant.left_out, judged))
 
 
-def held_to_limits(made: ControllerDesign, fit: FitResult, case: Case) -> ControllerDesign:
-    """The design with what leaves the limits of the rig when it runs its case, which is simulated where any is stated.
+def on_case(made: ControllerDesign, fit: FitResult, case: Case) -> ControllerDesign:
+    """The design with whether its case is stable under it, and what leaves the limits of the rig.
 
-    Raises Unusable as :func:`ident.hybrid.rig.simulate_hybrid`.
+    The case is simulated where limits are stated. Raises Unusable as :func:`ident.hybrid.rig.simulate_hybrid`.
     """
+    of = machine(fit, case)
+    if not of.nonlinear:
+        made = replace(made, stability=judge_hybrid(of, case, made.design.controller))
     if not limits_of(fit, case):
         return made
     run = simulate_hybrid(fit, case, made.design.controller)

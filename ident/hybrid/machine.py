@@ -16,6 +16,7 @@ from ident.errors import Unusable
 from ident.fit.result import FitResult
 from ident.hybrid.case import Case
 from ident.matrix import Actuator
+from ident.parameter import Parameter
 from ident.presets import Preset
 from ident.run import Run
 from ident.simulation.steps import fastest_mode, steps_needed
@@ -49,12 +50,13 @@ class Machine:
 
     `displacement` is what the recorder reads, effects of the sensor in it. `force` is the load cell between rod and
     specimen: spring, damper and inertia of the specimen, not of the rod. `kinks` are
-    the steps that those of the model's core ask for.
+    the steps that those of the model's core ask for; `parameters` are those of its model.
     """
 
     chain: Chain
     values: Mapping[str, float]
     kinks: int = 1
+    parameters: tuple[Parameter, ...] = ()
 
     def at(self, case: Case) -> dict[str, float]:
         """Every symbol of the chain under the conditions of a case."""
@@ -101,7 +103,7 @@ def machine(fit: FitResult, case: Case, effects: Mapping[str, float] | None = No
     values |= _stated(preset, fit, case)
     if missing := sorted(set(preset.chain.symbols) - values.keys() - _conditions(case).keys()):
         raise Unusable("bad-fit", f"no value of {', '.join(missing)}", "fit", f"give a fit of model {fit.model}")
-    return Machine(preset.chain, values, preset.steps)
+    return Machine(preset.chain, values, preset.steps, preset.parameters)
 
 
 def actuator(case: Case) -> Actuator:

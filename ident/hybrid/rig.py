@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from ident.fit.result import FitResult
 from ident.hybrid.case import Case
 from ident.hybrid.controller import SampledController
+from ident.hybrid.hybrid_loop import judge_hybrid
 from ident.hybrid.loop import LANES, Rig, advance_under, close, read
 from ident.hybrid.machine import DISPLACEMENT, FORCE, Machine, machine
 from ident.hybrid.rig_limits import leaving
@@ -21,6 +22,7 @@ from ident.hybrid.stability import critical_delay, spectral_radius
 from ident.hybrid.substructure import numerical, reference
 from ident.progress import Progress, Report, silent
 from ident.simulation.stepper import Stepper, stepper
+from ident.stability.judgement import STABLE, UNSTABLE, Judgement
 from ident.words.engineering import quantity
 from ident.words.message import message
 from ident.words.percent import percent
@@ -62,7 +64,8 @@ class HybridResult(Shown):
     `measured` is what the displacement transducer read, `numerical` what the substructure asked for, `reference` what
     the whole structure does, `force` what the load cell read, `command` what the controller gave. `scores` are None
     where it ran away, at `ended` s. `radius` is the largest magnitude of a pole of the whole sampled loop, None where
-    the loop is not linear. `seconds` is how long the simulation took, `beyond` says what leaves the limits of the rig.
+    the loop is not linear. `seconds` is how long the simulation took, `beyond` says what leaves the limits of the rig,
+    `stability` of an unstable loop with poles what would make it stable.
     """
 
     case: Case
@@ -83,6 +86,7 @@ class HybridResult(Shown):
     force: Array
     notes: tuple[str, ...] = ()
     beyond: tuple[str, ...] = ()
+    stability: Judgement | None = None
 
     @property
     def sample_rate(self) -> float:
@@ -90,7 +94,8 @@ class HybridResult(Shown):
         return self.case.sample_rate
 
     def listings(self) -> Iterator[Listing | str]:
-        """What leaves the limits of the rig, the scores, the verdict, the notes."""
+        """What is unstable or leaves the limits of the rig, the scores, the verdict, the notes."""
+        yield from self.stability.text if self.stability else ()
         yield from self.beyond
         rows: list[tuple[str, str, str]] = []
         if (of := self.scores) is not None:
@@ -121,6 +126,8 @@ class HybridResult(Shown):
             "ground": self.case.ground.name,
             "controller": self.controller,
             "effects": dict(self.effects),
+            "state": STABLE if self.stable else UNSTABLE,
+            "stability": self.stability.to_json() if self.stability else None,
             "stable": self.stable,
             "scores": asdict(self.scores) if self.scores else dict.fromkeys(names),
             "command_rms": self.command_rms,
@@ -148,7 +155,10 @@ def simulate_hybrid(
     case do not go together, or the controller has another sample rate than the case; what `report` raises to cancel
     passes through.
     """
-    found = simulate_machine(machine(fit, case, effects), case, controller, effects, report)
+    of, acting = machine(fit, case, effects), controller or no_controller(case.sample_rate)
+    found = simulate_machine(of, case, acting, effects, report)
+    if isinstance(acting, SampledController) and not of.nonlinear and not found.stable:
+        found = replace(found, stability=judge_hybrid(of, case, acting))
     if found.ended is not None:  # it ran away, which says more
         return found
     return replace(found, beyond=leaving(fit, case, found.measured, found.command, found.force))

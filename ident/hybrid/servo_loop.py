@@ -13,13 +13,11 @@ from ident.chain.chain import Chain
 from ident.chain.conditions import CONDITIONS
 from ident.hybrid.changed_machine import ChangedMachine
 from ident.linear import LinearModel
-from ident.stability.loop import SHORTEST, Complex, LoopPart, kind_of
+from ident.stability.loop import SHORTEST, Complex, LoopPart, kind_of, parts_of
 
 Array = NDArray[np.float64]
 _GIVEN = {"A", "mL", "k", "cL", "Ps", "Ir", "Nv"}
 """Conditions, which no remedy changes: a damper is put to the actuator's own damping, a piston area to Z0 and Ka."""
-_TWINS = {"Z0", "Kv"}
-"""Factors of Kp: the dial is what is turned."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -68,11 +66,10 @@ def values_before(machine: ChangedMachine, gain: float, loop: ServoLoop) -> dict
 def servo_loop(machine: ChangedMachine, gain: float) -> ServoLoop:
     """The loop of a machine at a gain Kp."""
     values = {**machine.values, **({"Kp": gain} if machine.has_gain else {})}
-    meanings = {p.in_equations: (p.name, p.meaning, p.unit) for p in machine.preset.parameters}
-    meanings |= {name: (name, quantity.meaning, quantity.unit) for name, quantity in CONDITIONS.items()}
-    parts = tuple(
-        LoopPart(name, kind_of(symbol, unit), meaning, values[symbol], unit, symbol in _GIVEN | _TWINS)
-        for symbol, (name, meaning, unit) in meanings.items() if symbol in values
-    )  # fmt: skip
-    return ServoLoop(machine.chain, values, machine.output, parts,
-                     {name: symbol for symbol, (name, _, _) in meanings.items()})  # fmt: skip
+    given = {name: quantity for name, quantity in CONDITIONS.items() if name in values}
+    parts = (
+        *parts_of(machine.preset.parameters, values),
+        *(LoopPart(n, kind_of(n, q.unit), q.meaning, values[n], q.unit, n in _GIVEN) for n, q in given.items()),
+    )
+    symbols = {p.name: p.in_equations for p in machine.preset.parameters} | dict(zip(given, given, strict=True))
+    return ServoLoop(machine.chain, values, machine.output, parts, symbols)

@@ -83,15 +83,20 @@ def spectral_radius(of: Machine, case: Case, controller: SampledController) -> f
     return float(np.abs(scipy.linalg.eigvals(closed_loop(of, case, controller))).max())
 
 
-def closed_loop(of: Machine, case: Case, controller: SampledController) -> Array:
-    """The transition matrix of the whole loop over a sample, (n, n): machine, substructure, controller, commands."""
+def closed_loop(of: Machine, case: Case, controller: SampledController, force: float = 1.0) -> Array:
+    """The transition matrix of the whole loop over a sample, (n, n): machine, substructure, controller, commands.
+
+    The numerical part is given `force` times what the load cell reads.
+    """
     phi, drive, read, through = _held(of, case)
     part, delay = numerical(case), case.delay
     sizes = (len(phi), len(part.phi), controller.order, delay, 1)
     at = np.cumsum((0, *sizes))
     s, z, x, held, before = (slice(at[i], at[i + 1]) for i in range(5))
     row = np.zeros((3, at[-1]))  # y, f and d of what is known at a sample
-    row[:2, s], row[:2, held.start], row[2, z.start + part.place] = read, through, 1.0
+    row[:2, s], row[:2, held.start] = read, through
+    row[1] *= force
+    row[2, z.start + part.place] = 1.0
     u = controller.D[0, 0] * row[2] + controller.D[0, 1] * row[0]
     u[x] += controller.C[0]
     system = np.zeros((at[-1], at[-1]))

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
+from ident.parameter import Parameter
 from ident.words.engineering import quantity
 from ident.words.number import trimmed
 
@@ -19,7 +20,7 @@ LOAD, SHARE, OTHER = "load", "numerical share", "other"
 SAMPLES = "samples"
 SHORTEST = 1e-5
 """s: a lag or a delay that is off is one so short, 0.2° at 50 Hz: equations of states divide by it."""
-CHANGEABLE = {GAIN: "reduce", DELAY: "reduce", LAG: "", OIL: "", DAMPING: "", SHARE: ""}
+CHANGEABLE = {GAIN: "reduce", DELAY: "reduce", LAG: "", OIL: "", DAMPING: "", SHARE: "reduce"}
 """The parts that a remedy may change: only to less, or either way. A load is what the test is about, and stays."""
 _KINDS = {
     "Kp": GAIN, "Z0": GAIN, "Kv": GAIN, "tau": LAG, "wv": LAG, "zv": LAG, "Ka": OIL, "A": OIL, "Cl": DAMPING,
@@ -43,6 +44,19 @@ class LoopPart:
     value: float
     unit: str
     fixed: bool = False
+
+
+TWINS = frozenset({"Z0", "Kv"})
+"""Factors of Kp: the dial is what is turned."""
+
+
+def parts_of(parameters: Iterable[Parameter], values: Mapping[str, float]) -> tuple[LoopPart, ...]:
+    """The parts of a loop that are parameters of its machine; `values` are by the names of the equations."""
+    return tuple(
+        LoopPart(p.name, kind_of(p.in_equations, p.unit), p.meaning, values[p.in_equations], p.unit,
+                 p.in_equations in TWINS)
+        for p in parameters if p.in_equations in values
+    )  # fmt: skip
 
 
 def kind_of(symbol: str, unit: str) -> str:

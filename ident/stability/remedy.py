@@ -12,8 +12,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ident.stability.first_point import Flags, first_point
-from ident.stability.gain_margin import gain_margin, growth_within
-from ident.stability.loop import CHANGEABLE, Loop, LoopPart, from_to
+from ident.stability.gain_margin import gain_margin, keeps_margin
+from ident.stability.loop import CHANGEABLE, SAMPLES, Loop, LoopPart, from_to
 from ident.words.number import plain
 
 Array = NDArray[np.float64]
@@ -21,7 +21,8 @@ WIDEST = float(np.log(100.0))
 """Of ln factor: a remedy makes a quantity at most 100 times as large or as small."""
 ROOM = 1.04
 """Times the size of the smallest change that would do: for what the parameters of the model are off by."""
-_SCANNED = 116  # sizes, 0.04 apart
+_ROUNDING = 1e-9  # of a sample
+_SCANNED = 47  # sizes, 0.1 apart
 
 
 @dataclass(frozen=True)
@@ -42,7 +43,8 @@ class Remedy:
     gain_margin: float | None
 
     def __str__(self) -> str:
-        return f"{self.kind} {self.name} × {plain(self.factor, 3)} ({from_to(self.before, self.after, self.unit)})"
+        what = self.kind if self.name == self.kind else f"{self.kind} {self.name}"
+        return f"{what} × {plain(self.factor, 3)} ({from_to(self.before, self.after, self.unit)})"
 
 
 def remedies(loop: Loop) -> tuple[Remedy, ...]:
@@ -59,6 +61,8 @@ def _by(loop: Loop, part: LoopPart) -> Iterator[Remedy]:
         size = _smallest(loop, part.name, sign)
         if size is not None:
             factor = float(np.exp(sign * size))
+            if part.unit == SAMPLES:  # there are only whole ones
+                factor = max(1.0, np.floor(factor * part.value + _ROUNDING)) / part.value
             yield Remedy(part.name, part.kind, part.meaning, part.unit, part.value, part.value * factor, factor, size,
                          gain_margin(loop, {part.name: factor}))  # fmt: skip
 
@@ -67,7 +71,7 @@ def _smallest(loop: Loop, name: str, sign: float) -> float | None:
     """The size of the smallest change in one direction that does, with room; None where there is none."""
 
     def does(sizes: Array) -> Flags:
-        return np.asarray(growth_within(loop, name, np.exp(sign * sizes)) <= 0)
+        return keeps_margin(loop, name, np.exp(sign * sizes))
 
     size = first_point(does, np.linspace(0.0, WIDEST, _SCANNED))
     if not size:

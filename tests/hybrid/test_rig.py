@@ -172,16 +172,37 @@ def test_poles_and_record_agree_on_stability():
     assert found.critical_delay[3, 0] == 0.0
 
 
-def test_what_runs_away_has_no_scores_and_says_when():
+@pytest.fixture(scope="module")
+def runaway():
+    """A lightly damped structure around a lag of 50 ms."""
+    return simulate_hybrid(fitted("first_order", gain=1.0, tau=0.05), replace(sprung(0.01), ground=noise(20.0)))
+
+
+def test_what_runs_away_has_no_scores_and_says_when(runaway):
     """An unstable loop ends early, and its JSON has no number where there is none."""
-    case = replace(sprung(0.01), ground=noise(20.0))
-    found = simulate_hybrid(fitted("first_order", gain=1.0, tau=0.05), case)
+    found = runaway
     assert not found.stable
     assert found.scores is None
     assert 0 < found.ended < 20
     data = found.to_json()
     assert data["scores"]["tracking_rms"] is None
     assert data["command_rms"] is None
+    assert data["state"] == data["stability"]["state"] == "unstable"
+
+
+def test_an_unstable_loop_grows_as_its_mode_says_and_its_first_remedy_holds(runaway):
+    """The record before the end: zero crossings, growth from one half to the other; then the loop with the remedy."""
+    found, case = runaway, runaway.case
+    mode, first = found.stability.mode, found.stability.remedies[0]
+    y = found.measured[: int(found.ended * found.sample_rate)][-int(6 * found.sample_rate / mode.frequency) :]
+    crossings = np.flatnonzero(np.diff(np.sign(y)) > 0)
+    assert found.sample_rate / np.diff(crossings).mean() == pytest.approx(mode.frequency, rel=0.02)
+    early, late = np.array_split(y, 2)
+    per_second = np.log(np.std(late) / np.std(early)) / (len(late) / found.sample_rate)
+    assert per_second == pytest.approx(mode.growth, rel=0.05)
+    assert first.name == "share"
+    physical = replace(case.physical, stiffness=first.factor * case.physical.stiffness)
+    assert simulate_hybrid(fitted("first_order", gain=1.0, tau=0.05), replace(case, physical=physical)).stable
 
 
 def test_every_effect_at_a_tenth_runs_and_costs():

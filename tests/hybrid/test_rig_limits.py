@@ -9,7 +9,7 @@ import pytest
 
 from ident.hybrid.case import case_of
 from ident.hybrid.changed_machine import Change
-from ident.hybrid.controller_design import design_controller, held_to_limits
+from ident.hybrid.controller_design import design_controller, on_case
 from ident.hybrid.rig import simulate_hybrid
 from ident.hybrid.what_if import what_if
 from ident.matrix import Actuator
@@ -45,10 +45,12 @@ def test_a_controller_runs_its_case_within_the_limits():
     case = of_qian(1.0, rig=RigLimits(speed=1e-4))
     made = design_controller(FIT, case.physical, sample_rate=case.sample_rate, gain=case.gain,
                              piston_area=case.piston_area, draws=2)  # fmt: skip
-    held = held_to_limits(made, FIT, case)
+    held = on_case(made, FIT, case)
     assert "speed" in held.beyond[0]
     assert held.to_json()["design"]["notes"][0] == held.beyond[0]
-    assert held_to_limits(made, FIT, of_qian(1.0)) is made
+    assert not on_case(made, FIT, of_qian(1.0)).beyond
+    assert held.stability.stable
+    assert held.to_json()["design"]["state"] == "stable"
 
 
 def test_a_changed_machine_says_which_noise_reaches_the_limit():
