@@ -5,6 +5,7 @@ from pydantic import BaseModel
 from ident.hybrid.followed import Followed
 from ident.hybrid.margins import Margins
 from ident.hybrid.target import Target
+from ident.stability.judgement import Judgement
 
 
 class GammaView(BaseModel):
@@ -38,7 +39,7 @@ class DesignView(BaseModel):
     """
 
     state: str | None = None
-    stability: JudgementView | None = None
+    stability: Judgement | None = None
     structure: str
     target: Target
     delay: float
@@ -100,7 +101,7 @@ class HybridResultView(BaseModel):
     """
 
     state: str | None = None
-    stability: JudgementView | None = None
+    stability: Judgement | None = None
     case: str
     ground: str
     controller: str

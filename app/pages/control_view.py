@@ -7,10 +7,9 @@ from dataclasses import dataclass
 from typing import Any
 
 from ident.hybrid.target import QIAN2014_TARGET
-from ident.stability.judgement import UNSTABLE
+from ident.stability.judgement import UNSTABLE, Judgement
 from ident.words.number import plain, trimmed
 from schemas.hybrid_result import ControllerView
-from schemas.stability import JudgementView
 
 Rows = tuple[tuple[str, str, str], ...]
 _NO_LIMIT = "no limit"
@@ -86,7 +85,7 @@ def _designed(one: ControllerView) -> Designed:
     )  # fmt: skip
 
 
-def said_of(judgement: JudgementView | None) -> tuple[str, ...]:
+def said_of(judgement: Judgement | None) -> tuple[str, ...]:
     """The sentences of a judgement of stability, where there is one."""
     return () if judgement is None else tuple(judgement.text)
 
