@@ -211,12 +211,24 @@ class TermView(BaseModel):
     unstable: dict[str, list[str]] = Field(default_factory=dict)
 
 
+class MissingInputView(BaseModel):
+    """A stretch of a run, in s or samples, in which an input acted that is not recorded."""
+
+    model_config = ConfigDict(populate_by_name=True)
+
+    run: str
+    start: float = Field(alias="from")
+    end: float = Field(alias="to")
+    evidence: str
+
+
 class DiagnosisResult(BaseModel):
     """The contract's diagnose JSON.
 
     Not `complete`, the stages `not_looked_at` are missing: there was no time for them, or they failed. Of the terms
     that were `looked_at` so many are `terms_left_out`, for no model can hold them or they are not finite. `effect_sets`
     are all sets of effects that were refitted, `most_nats` the gain of a model that leaves nothing but the noise.
+    `missing_inputs` are where an input acted that is not recorded; on a run to fit, no effect was looked for.
     """
 
     model: str
@@ -245,3 +257,4 @@ class DiagnosisResult(BaseModel):
     effect_sets: list[EffectSetView] = Field(default_factory=list)
     most_nats: float | None = None
     preprocessing: list[StepView] = Field(default_factory=list)
+    missing_inputs: list[MissingInputView] = Field(default_factory=list)

@@ -13,6 +13,7 @@ from ident.checks.feedback import feedback
 from ident.checks.finding import Finding, Findings
 from ident.checks.flat import flat
 from ident.checks.gain import force_sign, gain
+from ident.checks.missing_input import missing_input
 from ident.checks.offset import offset
 from ident.checks.passivity import turned_sign
 from ident.checks.ranges import ranges
@@ -70,5 +71,6 @@ def one_run(run: Run, response: Response | None, actuator: Actuator) -> Iterator
     yield from turned_sign(run)
     yield from offset(run)
     yield from feedback(run)
+    yield from missing_input(run)
     yield from ranges(run, actuator)
     yield from beyond_rig(run, actuator)

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
 
+from ident.checks.missing_input import missing_inputs
 from ident.diagnosis.alternative_structures import alternative_models
 from ident.diagnosis.ambiguity import challenged, delay_sentences, lag_pairs, other_machines
 from ident.diagnosis.budget import SearchBudget
@@ -25,7 +26,7 @@ from ident.diagnosis.selection_loop import select
 from ident.diagnosis.sentences import alternative_sentences, dispensable_sentence, horizon_sentence
 from ident.diagnosis.stages import EFFECTS, ERROR_BUDGET, FURTHER, LABELS, LATER, NEXT_RUN, TERMS, Stages, not_looked_at
 from ident.diagnosis.undetermined import rested
-from ident.diagnosis.unfitted import unranked
+from ident.diagnosis.unfitted import unranked, unsearched, with_missing_inputs
 from ident.diagnosis.verdict import Findings, conclude
 from ident.effects.effect import Effect
 from ident.errors import TimeIsUp, Unusable
@@ -41,14 +42,19 @@ def diagnose(matrix: Matrix, fit: FitResult, custom: Sequence[Effect], budget: S
     """Rank what the fitted model lacks, select what improves it beyond chance, and conclude.
 
     `custom` are effects in addition to the catalogue's. Verify runs only report. Raises Unusable where matrix and fit
-    do not go together.
+    do not go together. Where an input of the runs to fit is not recorded, no effect is looked for.
     """
+    models = models_of(matrix, fit, custom)
+    missing = [stretch for run in matrix.runs for stretch in missing_inputs(run)]
+    of_fit = {run.id for run in matrix.of_use("fit")}
+    if unrecorded := [stretch for stretch in missing if stretch.run in of_fit]:
+        return unsearched(matrix, fit, unrecorded, 0.0)
     with budget.budget.running():
         try:
-            diagnosis = Diagnoser(models_of(matrix, fit, custom), matrix, fit, custom, budget).diagnosis()
+            diagnosis = Diagnoser(models, matrix, fit, custom, budget).diagnosis()
         except TimeIsUp:
             diagnosis = unranked(matrix, fit, budget.seconds_taken)
-    return replace(diagnosis, seconds=budget.seconds_taken)
+    return with_missing_inputs(replace(diagnosis, seconds=budget.seconds_taken), missing)
 
 
 def models_of(matrix: Matrix, fit: FitResult, custom: Sequence[Effect]) -> CandidateModels:

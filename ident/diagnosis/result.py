@@ -197,7 +197,8 @@ class Diagnosis(Shown):
     are terms that no list holds, of as many that were `looked_at`: they are no part of the verdict. `terms_left_out` of
     these no model can hold, or they are not finite. None is what an earlier version did not tell. `matrix` holds the
     data, where the diagnosis was made here. `effect_sets` are all sets of effects that were refitted, `most_nats` the
-    gain of a model that leaves nothing but the noise.
+    gain of a model that leaves nothing but the noise. `missing_inputs` are the stretches in which an input acted that
+    is not recorded: run, from, to (s, or samples) and evidence; where a run to fit has one, no effect was looked for.
     """
 
     model: str = "qian2014"
@@ -226,7 +227,13 @@ class Diagnosis(Shown):
     effect_sets: tuple[EffectSet, ...] = field(default=(), metadata=WHERE_KNOWN)
     most_nats: float | None = field(default=None, metadata=WHERE_KNOWN)
     preprocessing: tuple[StepOutcome, ...] = field(default=(), metadata=WHERE_KNOWN)
+    missing_inputs: tuple[Mapping[str, str | float], ...] = field(default=(), metadata=WHERE_KNOWN)
     matrix: Matrix | None = field(default=None, compare=False, repr=False, metadata=UNWRITTEN)
+
+    @property
+    def lacks_input(self) -> bool:
+        """Whether no effect was looked for, since an input of the runs to fit is not recorded."""
+        return bool(self.missing_inputs) and self.complete and not self.candidates
 
     @property
     def headline(self) -> str:

@@ -26,6 +26,8 @@ def summary_messages(found: Diagnosis) -> tuple[Message, Message, Message]:
 
 def _missing(found: Diagnosis) -> Message:
     verdict = found.verdict
+    if found.lacks_input:
+        return message("summary.missing_input", run=found.missing_inputs[0]["run"])
     if verdict.effects:
         named = [_named(found, name) for name in verdict.effects]
         if verdict.standing == "contradicted":
@@ -119,6 +121,8 @@ def _error(found: Diagnosis) -> Message:
 
 def _next(found: Diagnosis) -> Message:
     verdict = found.verdict
+    if found.lacks_input:
+        return message("next.input")
     if verdict.suspects:
         return message("next.label", run=verdict.suspects[0].run)
     if not found.complete:

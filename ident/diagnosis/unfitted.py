@@ -1,11 +1,13 @@
-"""The diagnosis where the time was over before anything was ranked."""
+"""The diagnosis without a ranking: the time was over before, or an input is not recorded."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 from importlib.metadata import version
 
-from ident.diagnosis.result import NO_ERRORS, Baseline, Diagnosis, Verdict
+from ident.checks.missing_input import MissingInput
+from ident.diagnosis.result import NO_ERRORS, Baseline, Diagnosis, Rung, Verdict
 from ident.diagnosis.stages import EFFECTS, LATER, not_looked_at
 from ident.fit.result import FitResult
 from ident.fit.settings import Settings
@@ -22,11 +24,38 @@ def unfitted(matrix: Matrix, settings: Settings, seconds: float) -> Diagnosis:
 
 def unranked(matrix: Matrix, fit: FitResult, seconds: float) -> Diagnosis:
     """The diagnosis of a fit where there was no time to look at any effect: the errors of the fit stand."""
+    return _of_fit(matrix, fit, message("verdict.unranked"), seconds)
+
+
+def unsearched(matrix: Matrix, fit: FitResult, missing: Sequence[MissingInput], seconds: float) -> Diagnosis:
+    """The diagnosis of a fit whose data miss an input: any effect would stand for it, so none is looked for."""
+    why = message("verdict.missing_input", evidence=missing[0].evidence)
+    found = _of_fit(matrix, fit, why, seconds)
+    return replace(
+        found,
+        verdict=replace(found.verdict, text=str(why), standing="nothing"),
+        missing_inputs=tuple(stretch.to_json() for stretch in missing),
+        ladder=(Rung(error=found.baseline.error, offset=found.baseline.offset),),
+        complete=True,
+        not_looked_at=(),
+    )
+
+
+def with_missing_inputs(found: Diagnosis, missing: Sequence[MissingInput]) -> Diagnosis:
+    """The diagnosis with the inputs that validation data miss, said first; as it is where they miss none."""
+    if not missing:
+        return found
+    said = message("verdict.missing_input_validation", evidence=missing[0].evidence)
+    verdict = replace(found.verdict, text=f"{said} {found.verdict.text}")
+    return replace(found, verdict=verdict, missing_inputs=tuple(stretch.to_json() for stretch in missing))
+
+
+def _of_fit(matrix: Matrix, fit: FitResult, why: Message, seconds: float) -> Diagnosis:
+    """The errors of the fit, and why nothing more was found."""
     error, floor = ({**NO_ERRORS, **of} for of in (fit.error, fit.noise_floor))
     settings = Settings.from_json(dict(fit.settings)) if fit.settings else Settings(model=fit.model)
     baseline = Baseline(error, fit.offset.get("fit"))
-    told = _told(matrix, settings, baseline, floor, message("verdict.unranked"), seconds)
-    return replace(told, preprocessing=fit.preprocessing)
+    return replace(_told(matrix, settings, baseline, floor, why, seconds), preprocessing=fit.preprocessing)
 
 
 def _told(

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ident.chain.chain import integrates
+from ident.checks.missing_input import missing_inputs
 from ident.checks.unit_factor import unit_causes
 from ident.fit.ends import SETTLED, parted
 from ident.fit.far_bounds import far_bounds
@@ -45,7 +46,7 @@ _AT_BOUND = "the estimate is at its bound: the best value is outside it"
 _VAGUE = "its standard error is {:.3g} times its value"
 _FELT = 1.001  # times the error: a strength that is not off by chance
 HARDLY = 0.8  # of the output left: no fit to be trusted
-_HARDLY_SAID = MESSAGES["hardly"].partition("{")[0]
+_SAID_FIRST = tuple(MESSAGES[key].partition("{")[0] for key in ("hardly", "missing_input.fit"))
 Array = NDArray[np.float64]
 
 
@@ -294,7 +295,8 @@ def _felt(objective: Fitness, name: str, point: Array) -> bool:
 
 def _notes(settings: Settings, objective: Fitness, floors: Floors, found: Sequence[RunError]) -> list[str]:
     error = float(over_runs([run.error for run in found], objective.matrix.of_use("fit")))
-    notes = [*_hardly_explained(settings, objective, error), *objective.matrix.notices]
+    first = (*_unrecorded(objective.runs), *_hardly_explained(settings, objective, error))
+    notes = [*first, *objective.matrix.notices]
     if objective.space.scale_free and objective.space.axes:
         notes.append(
             f"Bounds of the preset {objective.preset.name} were not used: they hold for another machine, or piston "
@@ -323,8 +325,15 @@ def _notes(settings: Settings, objective: Fitness, floors: Floors, found: Sequen
 
 def noticed(fit: FitResult, notice: str) -> FitResult:
     """A fit with one more notice of its matrix, the first of them."""
-    at = int(bool(fit.notes) and fit.notes[0].startswith(_HARDLY_SAID))
+    at = sum(note.startswith(_SAID_FIRST) for note in fit.notes)
     return replace(fit, notes=(*fit.notes[:at], notice, *fit.notes[at:]))
+
+
+def _unrecorded(runs: Sequence[Run]) -> Iterator[str]:
+    """What is said first where an input acts on the runs that is not recorded."""
+    for run in runs:
+        for stretch in missing_inputs(run)[:1]:
+            yield str(message("missing_input.fit", evidence=stretch.evidence))
 
 
 def _hardly_explained(settings: Settings, objective: Fitness, error: float) -> Iterator[str]:

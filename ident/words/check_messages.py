@@ -78,6 +78,12 @@ CHECKS: Mapping[str, str] = {
     "check.too_quick":
         "the sample rate of {run:run} is too low: {share:share} of the step response happens within {samples} samples. "
         "Use at least {least:.3g} Hz",
+    "missing_input":
+        "in {run:run} the {output} set out by itself {count} times after it had rested, from {start:.4g} {unit} on, "
+        "while every input rested; with the inputs at rest it moves faster than {speed:quantity} in {share:percent} of "
+        "the samples",
+    "check.missing_input":
+        "{evidence}. An input is not recorded: add its channel, or keep only rows without it",
     "check.closed_loop":
         "the command of {run:run} depends on the measured output, so a controller made it: the output predicts "
         "{share:percent} of the innovations of the command. Use the reference of the controller as the command and "
@@ -196,6 +202,7 @@ CAUSES: Mapping[str, str] = {
     "cause.searched": "without it {range} is searched",
     "hardly":
         "The model explains almost nothing: the error is {error:error} of the output. Likely causes: {causes:terms}.",
+    "missing_input.fit": "An input is not recorded: {evidence}. Add its channel, or keep only rows without it.",
     "unstable": "The model is unstable. Likely cause: {causes:terms}.",
 }  # fmt: skip
 """What a fit says that is hardly better than none."""

@@ -16,6 +16,7 @@ SUMMARY: Mapping[str, str] = {
         "Missing: something that no listed effect explains (probability {probability:probability}).",
     "summary.nothing": "Nothing is missing.",
     "summary.nothing_probable": "Nothing is missing (probability {probability:probability}).",
+    "summary.missing_input": "Missing: an input that is not in the record of {run:run}.",
     "summary.error": "The error on {use:data} is {before:error}; the noise floor is {floor:percent}.",
     "summary.error_floor_unknown": "The error on {use:data} is {before:error}; the noise floor is not known.",
     "summary.change":
@@ -23,6 +24,7 @@ SUMMARY: Mapping[str, str] = {
     "summary.change_floor_unknown":
         "The error on {use:data} goes from {before:error} to {after:error}; the noise floor is not known.",
     "next.label": "Next: correct the label of {run:run}, and fit again.",
+    "next.input": "Next: add the channel of the missing input, or keep only rows without it, and fit again.",
     "next.time": "Next: search again with more time.",
     "next.compare": "Next: compare the validation runs with and without {effect:title}.",
     "next.distinguish": "Next: record the proposed run, which separates what these data do not.",
@@ -71,6 +73,11 @@ VERDICT: Mapping[str, str] = {
     "verdict.nothing_probable":
         "Nothing is missing (probability {probability:probability}): the error of {before:error} is measurement noise.",
     "verdict.none": "No effect of the library lowers the error of {before:error} by more than chance.",
+    "verdict.missing_input":
+        "An input is not recorded: {evidence}. No effect was looked for, since it would stand for this input. Add its "
+        "channel, or keep only rows without it.",
+    "verdict.missing_input_validation":
+        "An input is not recorded in validation data: {evidence}. The errors there contain it.",
     "verdict.bounded":
         "The strength of {effect} ended at the bound of its search. It may be larger, or stand for another effect: "
         "search within wider bounds.",

@@ -1,0 +1,65 @@
+"""An input that is not in the record is recognised by what the output does while the recorded inputs rest."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from ident.checks.check import check
+from ident.checks.missing_input import missing_inputs
+from ident.matrix import Actuator, Matrix
+from ident.run import Run
+
+RATE, CYCLE, CYCLES = 20.0, 300, 8
+RAISED = np.tile(np.r_[np.zeros(40), np.ones(30), np.zeros(CYCLE - 70)], CYCLES)
+"""The lever that raises: once a cycle, for 1.5 s."""
+
+
+def lowering(after: int) -> np.ndarray:
+    """The lever that lowers, so many samples after the other was let go, each time a little later."""
+    lever = np.zeros(CYCLE * CYCLES)
+    for cycle in range(CYCLES):
+        begin = cycle * CYCLE + 70 + after + 10 * cycle
+        lever[begin : begin + 30] = -1.0
+    return lever
+
+
+def record(speed: np.ndarray, **channels: np.ndarray) -> Run:
+    """A boom that moves at a speed, with a sensor's noise."""
+    angle = np.cumsum(speed) / RATE + np.random.default_rng(0).normal(0.0, 0.003, len(speed))
+    units = dict.fromkeys(channels, "1") | {"displacement": "rad"}
+    return Run("loader", "loader.csv", RATE, {**channels, "displacement": angle}, units)
+
+
+def test_a_boom_that_is_lowered_by_a_lever_that_is_not_recorded_misses_an_input():
+    run = record(RAISED + lowering(after=60), command=RAISED)
+    found = missing_inputs(run)
+    assert len(found) == CYCLES
+    assert found[0].start == pytest.approx(130 / RATE, abs=0.5)
+    findings = [one for one in check(Matrix(Actuator("LD"), (run,))) if one.code == "missing-input"]
+    assert [one.severity for one in findings] == ["doubt"]
+    assert f"{CYCLES} times" in findings[0].text
+
+
+def test_what_the_recorded_inputs_explain_misses_none():
+    both = RAISED + lowering(after=60)
+    assert missing_inputs(record(both, command=both)) == ()
+    assert missing_inputs(record(both, command=RAISED, load_disturbance=lowering(after=60))) == ()
+
+
+def test_an_answer_that_comes_late_misses_no_input():
+    command = np.where(np.roll(RAISED, 130) > 0, -1.0, RAISED)
+    assert missing_inputs(record(np.roll(command, 60), command=command)) == ()
+
+
+def test_a_boom_that_sinks_whenever_its_lever_rests_misses_no_input():
+    sinks = np.where(RAISED > 0, 1.0, -30.0 / (CYCLE - 30))
+    assert missing_inputs(record(sinks, command=RAISED)) == ()
+
+
+def test_an_oscillation_that_grows_from_rest_misses_no_input():
+    t = np.arange(CYCLE * CYCLES)
+    since = (t % CYCLE - 100 - 15 * (t // CYCLE)) / RATE
+    envelope = np.where(since > 6.0, 0.0, np.minimum(np.exp(3.0 * (since - 2.0)), 0.5))
+    swings = envelope * np.sin(8.0 * t / RATE)
+    assert missing_inputs(record(RATE * np.diff(RAISED + swings, prepend=0.0), command=RAISED)) == ()
