@@ -5,12 +5,14 @@ from __future__ import annotations
 import errno
 import logging
 import os
+import re
 import sys
 import traceback
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from datetime import UTC, datetime
 from pathlib import Path
+from typing import Any
 
 from typer import TyperException
 
@@ -20,6 +22,7 @@ from ident.words.nearest import did_you_mean
 UNUSABLE = 2
 INTERRUPTED = 130
 UNREAD = 141  # as the system ends a program whose reader has gone (128 + SIGPIPE)
+_HELP = "`{} --help` shows what there is"
 DEFECT = 70  # EX_SOFTWARE of sysexits.h: neither the input nor the user is to blame
 
 
@@ -52,7 +55,7 @@ def explain(error: BaseException) -> tuple[int, str]:
         case TyperException():
             return UNUSABLE, _of_arguments(error)
         case OSError() if error.filename is not None:
-            return UNUSABLE, f"{error.filename}: {error.strerror}; check the name, the permissions and the free space"
+            return UNUSABLE, f"{error.filename}: {_of_file(error)}"
         case OSError() if error.errno in (errno.ENOSPC, errno.EDQUOT):
             return UNUSABLE, f"output: {error.strerror}; check the free space of the target"
         case MemoryError():
@@ -61,13 +64,37 @@ def explain(error: BaseException) -> tuple[int, str]:
             return DEFECT, f"unexpected error ({type(error).__name__}); a defect of the program, {kept(error)}"
 
 
+def _of_file(error: OSError) -> str:
+    if isinstance(error, FileNotFoundError):
+        return "there is no such file or folder; correct the name"
+    return f"{error.strerror}; check the name, the permissions and the free space"
+
+
 def _of_arguments(error: TyperException) -> str:
-    """What is said of arguments that cannot be read; of an option that a command has not, the nearest that it has."""
-    given, context = getattr(error, "option_name", None), getattr(error, "ctx", None)
-    usual = "`servoident --help` shows what there is"
-    if given is None or context is None or given in (known := [o for p in context.command.params for o in p.opts]):
-        return f"{error.format_message().rstrip('.')}; {usual}"
-    return f"{error.format_message().partition(' (')[0]}; {did_you_mean(given, known, usual)}"
+    """What is said of arguments that cannot be read: what is wrong, and the nearest that there is or how to call it."""
+    option, context = getattr(error, "option_name", None), getattr(error, "ctx", None)
+    said = error.format_message().rstrip(".")
+    said = re.sub(r": Input should be a valid (\w+).*", r": not of type \1", f"{said[:1].lower()}{said[1:]}")
+    if context is None:
+        bare = re.match(r"option '(-\S+)' requires", said)
+        return f"{said}; type {bare[1]} VALUE" if bare else f"{said}; {_HELP.format('servoident')}"
+    command, known = context.command_path, {name: one for one in context.command.params for name in one.opts}
+    where, usual = f"{command.partition(' ')[2]}: ".removeprefix(": "), _HELP.format(command)
+    if option is not None and option not in known:
+        return f"{where}there is no option {option}; {did_you_mean(option, known, usual)}"
+    if found := re.match(r"no such command '(.*?)'", said):
+        return f"{where}there is no command {found[1]!r}; {did_you_mean(found[1], context.command.commands, usual)}"
+    if said.startswith("missing"):
+        needed = [_written(one) for one in context.command.params if one.required]
+        return f"{where}{said}; type {' '.join((command, *needed))}"
+    parameter = known.get(option) or getattr(error, "param", None)
+    return f"{where}{said}; type {_written(parameter)}" if parameter else f"{where}{said}; {usual}"
+
+
+def _written(parameter: Any) -> str:
+    """How an argument or an option is written: ``MATRIX``, ``--seed INTEGER``."""
+    form = parameter.metavar or parameter.name.upper()
+    return form if parameter.param_type_name == "argument" else f"{parameter.opts[-1]} {form}"
 
 
 def kept(error: BaseException) -> str:

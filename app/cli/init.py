@@ -42,7 +42,7 @@ def init(
         Path | None,
         typer.Option(metavar="MATRIX", help="Folder to write, with matrix.yaml and runs/. Default: the serial number."),
     ] = None,
-    serial: Annotated[str, typer.Option(metavar="TEXT", help="Serial number of the actuator.")] = "",
+    serial: Annotated[str, typer.Option(metavar="SERIAL", help="Serial number of the actuator.")] = "",
     channel: Annotated[
         _Texts,
         typer.Option(metavar=_FORM, help="Column of a channel, by name or number from 0, and its unit. NAME=:UNIT: the "
@@ -109,7 +109,7 @@ def _with_command(draft: Draft, files: list[Path], said: Mapping[str, object]) -
             given += [option, str(one)]
     named = shlex.join(given) if len(shlex.join(given)) <= _LONGEST else f"FILES… {shlex.join(given[len(files) :])}"
     what = str(message("draft.missing", questions=[one.question for one in draft.missing]))
-    remedy = f"say it in one command: servoident init {' '.join((named.strip(), *draft.options))}"
+    remedy = f"type servoident init {' '.join((named.strip(), *draft.options))}"
     return Unusable("not-stated", what, "init", remedy)
 
 

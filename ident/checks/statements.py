@@ -9,6 +9,7 @@ from ident.matrix import Matrix
 from ident.run import BENCH
 from ident.words.message import Message, message
 
+FEWEST = 100  # samples to fit: ten for each of the six parameters and four initial states of a position loop
 _TURNING = ("rad", "rad/s", "N*m")  # units of an output
 
 
@@ -43,6 +44,9 @@ def uses(matrix: Matrix) -> Iterator[Finding]:
         yield Finding.of(None, "fault", "no-fit-runs", message("check.no_fit_runs"))
     if not verify:
         yield Finding.of(None, "doubt", "no-verify-runs", message("check.no_verify_runs"))
+    records = [run for run in fit if run.kind not in BENCH]
+    if records and (samples := sum(run.length for run in records)) < FEWEST:
+        yield Finding.of(None, "doubt", "few-samples", message("check.too_short", samples=samples, least=FEWEST))
     gains = [run.gain for run in fit if run.gain is not None]
     for run in verify:
         if gains and run.gain is not None and not min(gains) <= run.gain <= max(gains):

@@ -79,7 +79,7 @@ class Draft:
             if answer.column == NONE:
                 found.pop(channel, None)
                 continue
-            columns = _columns(file, answer.column, f"channel {channel}") if answer.column != "" else []
+            columns = self._columns(file, channel, answer) if answer.column != "" else []
             before = found.get(channel, Answer())
             if columns:
                 found = {name: a for name, a in found.items() if _stays(file, name, a, columns, said)}
@@ -100,6 +100,19 @@ class Draft:
                            "give each channel its own column")  # fmt: skip
         hold = str(self.answers.common.get("hold", "")) or self._hold(file, found)
         return Known(found, time, rate, hold, (*doubts, *assumed))
+
+    def _columns(self, file: RawFile, channel: str, answer: Answer) -> list[Column]:
+        """The columns of an answer. Raises Unusable; where another file has it, with what to type of this one."""
+        try:
+            return _columns(file, answer.column, f"channel {channel}")
+        except Unusable as error:
+            names = [column.name for other in self.files for column in other.columns]
+            if error.code != "missing-column" or answer.column not in names:
+                raise
+            likely = suggested(file.columns).get(channel)
+            name = likely.name if likely else "COLUMN"
+            option = quote(f"{channel}@{file_name(file)}={name}")
+            raise Unusable(error.code, error.what, error.where, f"for this file type --channel {option}") from None
 
     def _hold(self, file: RawFile, channels: Mapping[str, Answer]) -> str:
         """What the command does between samples, by the look of it."""
@@ -207,7 +220,7 @@ class Draft:
     def _options(self, missing: Missing) -> Iterator[str]:
         """An option, or one a file where something is missing in some files only."""
         if not missing.files:
-            yield "--serial TEXT"
+            yield "--serial SERIAL"
             return
         named = {file_name(file): file for file in self.files}
         for name in missing.files[:1] if self.of_all(missing) else missing.files:

@@ -23,7 +23,12 @@ class Archive:
         try:
             self.zip = zipfile.ZipFile(file)
         except FileNotFoundError:
-            raise Unusable("missing-file", "there is no such file", name, "give a matrix folder or .zip") from None
+            raise Unusable(
+                "missing-file",
+                "there is no such file or folder",
+                name,
+                "give a data set: a folder, its matrix.yaml, or a .zip",
+            ) from None
         except Exception as error:  # a broken archive fails in many ways, struct.error and OverflowError among them
             raise not_a_zip(name) from error
         members = [member for member in self.zip.infolist() if not member.is_dir()]

@@ -40,8 +40,11 @@ def read_clock(time: Samples, where: str) -> Clock:
     steps = np.diff(time)
     if not (steps > 0).all():
         index = int(np.argmin(steps > 0)) + 1
-        what = f"time does not increase at sample {index}"
-        raise Unusable("time-not-monotonic", what, where, "give the record in the order of time, without repeats")
+        before, after = time[index - 1 : index + 1]
+        what = f"time does not increase at sample {index}: {after:.9g} s comes after {before:.9g} s"
+        raise Unusable(
+            "time-not-monotonic", what, where, "sort the lines of the file by time, and delete repeated ones"
+        )
     near = steps[steps <= STEP_OF_A_GAP * np.median(steps)]
     usual, uneven = float(np.mean(near)), float(np.std(near)) > UNEVEN * float(np.mean(near))
     counted = np.maximum(np.rint(steps / usual), 1.0)

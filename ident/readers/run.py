@@ -13,6 +13,7 @@ from ident.readers.run_description import RunDescription, TimeColumn
 from ident.readers.table import Array, Table, numeric
 from ident.run import Run, Samples
 from ident.units.quantity import Scale, shown
+from ident.words.number import count as samples
 from ident.words.run_name import run_name
 
 SHORTEST = 8  # samples; below, not even the straight line of the clock and a mean leave anything to fit
@@ -94,8 +95,8 @@ def check_lengths(raw: dict[str, Array], described: RunDescription) -> None:
     if count == 0:
         raise Unusable("empty-file", "the file has no samples", where, "give a record")
     if count < SHORTEST:
-        remedy = f"give at least {SHORTEST}"
-        raise Unusable("too-short", f"{count} sample{'s' if count > 1 else ''}", where, remedy)
+        what = f"the record has {samples(count, 'sample')}"
+        raise Unusable("too-short", what, where, f"record at least {SHORTEST}, better some seconds")
 
 
 def part(column: Array, described: RunDescription, where: str) -> Array:

@@ -64,7 +64,8 @@ def of_file(
         what = "a file without a matrix.yaml does not state its units"
         found = suggestion(table)
         asked = f"state them, as {found}" if found else f"{_EXAMPLE}, and the clock"
-        raise Unusable("missing-unit", what, path.name, f"{asked}; {table.listed()}")
+        made = f"make a data set of it: servoident init {path.name}"
+        raise Unusable("missing-unit", what, path.name, f"{made}; or in Python {asked}; {table.listed()}")
     run = described(stated, path.name, path.stem)
     return _matrix(run, read(run), stated, parts)
 

@@ -55,7 +55,8 @@ class Table:
             raise Unusable("ambiguous-column", what, where, "give the 0-based number of the column")
         if found:
             return found[0]
-        remedy = did_you_mean(column, self.names, self.listed())
+        otherwise = f"name one of {some_of(self.names)}" if self.names else self.listed()
+        remedy = did_you_mean(column, self.names, otherwise)
         raise Unusable("missing-column", f"there is no column {shown(column)!r}", where, remedy)
 
     def numbers(self, column: str | int, where: str) -> tuple[int, ...]:

@@ -29,6 +29,9 @@ DIMENSIONS = {
 }  # fmt: skip
 """Dimension by name to its SI unit; an SI unit (``m^4/s``) may stand wherever a dimension's name may."""
 
+_NAMED = {unit: name for name, unit in DIMENSIONS.items()}
+"""The name of each dimension by its SI unit."""
+
 _WRITTEN = {
     "frequency": "Hz", "area": "mm^2", "length": "mm", "volume": "cm^3", "pressure": "bar", "flow": "l/min",
     "temperature": "degC", "angle": "deg",
@@ -169,12 +172,15 @@ def remedy(unit: str, target: str) -> str:
     """What to write instead."""
     if target == "m^4/s" and "Pa" in unit:
         return f"use m^4/s, or the paper's own '{PRINTED_Z0}'"
-    return "write a plain number" if target == "1" else f"use {target} or a unit of the same kind"
+    if target == "1":
+        return "write a plain number"
+    kind = _NAMED.get(target)
+    return f"use {target} or another unit of {kind}" if kind else f"use {target} or a unit of the same kind"
 
 
 def described(dimension: str) -> str:
     """A dimension in words."""
-    return dimension if dimension in DIMENSIONS else f"the same kind as {dimension}"
+    return dimension if dimension in DIMENSIONS else _NAMED.get(dimension, f"the same kind as {dimension}")
 
 
 def shown(text: object) -> str:

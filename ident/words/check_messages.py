@@ -41,11 +41,11 @@ CHECKS: Mapping[str, str] = {
         "force of {run:run} is {ratio:.2g} times what its specimen needs: the sign is wrong; set invert: true on "
         "force, which is positive on the specimen along +x",
     "check.offset_above":
-        "the mean displacement of {run:run} is {millimetres:.3g} mm above the command ({share:percent} of its "
-        "standard deviation). The error of eq. (17) ignores constant offsets. {remedy}",
+        "the mean displacement of {run:run} is {millimetres:.3g} mm above the command ({share:share_of} its standard "
+        "deviation). The error of eq. (17) ignores constant offsets. {remedy}",
     "check.offset_below":
-        "the mean displacement of {run:run} is {millimetres:.3g} mm below the command ({share:percent} of its "
-        "standard deviation). The error of eq. (17) ignores constant offsets. {remedy}",
+        "the mean displacement of {run:run} is {millimetres:.3g} mm below the command ({share:share_of} its standard "
+        "deviation). The error of eq. (17) ignores constant offsets. {remedy}",
     "check.offset_large": "Zero the sensor, or state the offset",
     "check.offset_small": "Possible causes: null bias, static load, sensor zero",
     "check.active":
@@ -144,7 +144,7 @@ CHECKS: Mapping[str, str] = {
     "shift.earlier": "{run} starts {samples:samples} earlier",
     "shift.later": "{run} starts {samples:samples} later",
     "check.beyond_rig":
-        "{run:run} leaves a limit of the rig: its {what} of {peak:quantity} is {share:percent} of {allowed:quantity}. "
+        "{run:run} leaves a limit of the rig: its {what} of {peak:quantity} is {share:share_of} {allowed:quantity}. "
         "{kept:.3g} times the command would keep the limit {limit}. Reduce the command, or correct the unit of the "
         "channel or the limit",
     "check.scale":
@@ -176,6 +176,9 @@ CHECKS: Mapping[str, str] = {
         "all estimation runs have the same specimen and gain: some parameters will be identifiable only in "
         "combination. Measure other specimens and gains",
     "check.no_fit_runs": "every run is validation data, and none is left to fit. Set use: fit on some runs",
+    "check.too_short":
+        "the estimation data have {samples:samples} in all, too few for the parameters of a model. Record at least "
+        "{least}, better some seconds",
     "check.no_verify_runs":
         "there are no validation data, so a fit cannot be judged on data that it has not used. Set use: verify on a "
         "run",

@@ -64,6 +64,7 @@ KINDS: Mapping[str, Callable[[Any], str]] = {
     "error": error_said,
     "percent": percent,
     "share": lambda part: f"{100 * part:.0f} %",
+    "share_of": lambda ratio: percent(ratio) if percent(ratio).endswith("times") else f"{percent(ratio)} of",
     "probability": probability_said,
     "unstable": unstable_on,
     "estimate": lambda one: plus_minus(*one),

@@ -8,7 +8,7 @@ from ident.words.check_messages import CAUSES, CHECKS
 from ident.words.verdict_messages import EFFECTS, SEARCH, STRUCTURES, SUMMARY, VERDICT, WHY
 
 DRAFTS: Mapping[str, str] = {
-    "draft.missing": "the files do not state: {questions:terms}",
+    "draft.missing": "the files do not say: {questions:terms}",
     "draft.say": "say it, as {options:listed}",
     "draft.named": "'{column}' is used as {use}, because of its name",
     "draft.rate": "the sample rate {rate:g} Hz is from the lines above the table",

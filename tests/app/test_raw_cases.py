@@ -80,7 +80,7 @@ def test_init_reads_it_or_asks_for_exactly_what_the_file_does_not_state(servoide
     assert refused.returncode == 2
     options = {"unit command": "--channel command=:UNIT", "unit displacement": "--channel displacement=:UNIT",
                "unit time": "--time :UNIT"}  # fmt: skip
-    asked = {"--serial TEXT", *(options[key] for key in case.asked)}
+    asked = {"--serial SERIAL", *(options[key] for key in case.asked)}
     command = refused.stderr.strip().rpartition(f" --out {tmp_path / 'm'} ")[2]
     assert {f"--{option}" for option in f" {command}".split(" --")[1:]} == asked
     given = ["--channel", "command=:mm", "--channel", "displacement=:mm", "--time", ":s"] if case.asked else []

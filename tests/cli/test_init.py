@@ -26,7 +26,7 @@ def record(tmp_path):
 def test_off_a_terminal_everything_that_is_missing_is_listed_and_nothing_written(servoident, record, tmp_path):
     done = servoident("init", record, "--out", tmp_path / "m")
     assert done.returncode == 2
-    for option in ("--serial TEXT", "--channel command=COLUMN:UNIT", "--channel displacement=", "--time :UNIT"):
+    for option in ("--serial SERIAL", "--channel command=COLUMN:UNIT", "--channel displacement=", "--time :UNIT"):
         assert option in done.stderr
     assert done.stderr.count("\n") == 1
     assert not (tmp_path / "m").exists()
@@ -55,7 +55,7 @@ KNOWN = ("--channel", "command=c0:mm", "--channel", "displacement=2:mm", "--time
 def test_without_a_folder_it_is_named_as_the_serial_number(servoident, record, tmp_path, monkeypatch):
     """What is missing is told first, all at once; a serial number that names no folder is refused."""
     monkeypatch.chdir(tmp_path)
-    assert "--serial TEXT" in servoident("init", record).stderr
+    assert "--serial SERIAL" in servoident("init", record).stderr
     assert servoident("init", record, "--serial", "SW-3", *KNOWN).returncode == 0
     assert read_matrix(tmp_path / "SW-3").actuator.serial == "SW-3"
     again = servoident("init", record, "--serial", "SW-3", *KNOWN)

@@ -9,11 +9,14 @@ import sys
 import pytest
 
 ONE_LINE = [
-    (["fit"], "Missing argument"),
-    (["fot"], "Did you mean 'fit'"),
+    (["fit"], "missing argument 'MATRIX'; type servoident fit MATRIX"),
+    (["compare", "MATRIX"], "type servoident compare MATRIX --fit FIT.json"),
+    (["fot"], "there is no command 'fot'; did you mean fit?"),
     (["fit", "nowhere"], "nowhere"),
-    (["fit", "nowhere", "--seed", "x"], "--seed"),
-    (["fit", "nowhere", "--colour", "red"], "--colour"),
+    (["fit", "nowhere", "--seed", "x"], "type --seed "),
+    (["fit", "nowhere", "--colour", "red"], "there is no option --colour; `servoident fit --help`"),
+    (["fit", "nowhere", "--efect", "lead"], "there is no option --efect; did you mean --effect?"),
+    (["fit", "nowhere", "--effect"], "type --effect VALUE"),
     (["fit", "MATRIX", "--bounds", "Z0"], "NAME=LO:HI"),
     (["fit", "MATRIX", "--bounds", "Z0=1e-6"], "NAME=LO:HI"),
     (["fit", "MATRIX", "--option", "keep=half"], "half"),

@@ -115,7 +115,7 @@ def test_everything_that_is_missing_is_asked_in_one_command_that_names_what_can_
     """The column of times that has no name, and the one column that is left for the command."""
     rows = "\n".join(f"{n / 100},{n % 7},{n % 5}" for n in range(50))
     plain = Draft([read_raw(rows.encode(), "a.csv")], Answers())
-    assert plain.options == ("--serial TEXT", "--channel command=COLUMN:UNIT", "--channel displacement=COLUMN:UNIT",
+    assert plain.options == ("--serial SERIAL", "--channel command=COLUMN:UNIT", "--channel displacement=COLUMN:UNIT",
                              "--time 0:UNIT")  # fmt: skip
     named = Draft([read_raw(f"t,x pos,the drive\n{rows}".encode(), "a.csv")],
                   Answers("S", {"displacement": Answer("x pos")}))  # fmt: skip

@@ -62,7 +62,7 @@ def test_whatever_speaks_arrow_is_a_table():
 @pytest.mark.parametrize(
     ("stated", "said"),
     [
-        ({}, 'does not state its units; state them, as units=.*the file has t, u, x'),
+        ({}, 'make a data set of it: servoident init .*state them, as units=.*the file has t, u, x'),
         ({"units": UNITS, "columns": COLUMNS}, "neither sample_rate nor time is given"),
         ({"units": {"command": "mm"}, "columns": COLUMNS, "sample_rate": "1 kHz"}, "no unit of displacement is stated"),
         ({"units": UNITS, "sample_rate": "1 kHz"}, "there is no column 'command'"),
