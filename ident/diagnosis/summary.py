@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from ident.diagnosis.result import Diagnosis
+from ident.diagnosis.result import Diagnosis, Suspect
 from ident.words.message import Message, message
 from ident.words.shown import in_brief
 from ident.words.titles import title
@@ -46,7 +46,8 @@ def _missing_and_helping(found: Diagnosis, named: Sequence[Message]) -> Message:
     missing = [effect for effect, doubted in zip(named, improbable, strict=True) if not doubted]
     helping = [effect for effect, doubted in zip(named, improbable, strict=True) if doubted]
     if not helping:
-        return message("summary.missing", effects=missing)
+        partly = found.verdict.standing == "stand_in" and found.verdict.unexplained
+        return message("summary.missing_partly" if partly else "summary.missing", effects=missing)
     if not missing:
         return message("summary.helping", helping=helping)
     return message("summary.missing_and_helping", effects=missing, helping=helping)
@@ -124,15 +125,30 @@ def _next(found: Diagnosis) -> Message:
     if found.lacks_input:
         return message("next.input")
     if verdict.suspects:
-        return message("next.label", run=verdict.suspects[0].run)
+        return _correct(verdict.suspects[0])
     if not found.complete:
         return message("next.time")
     if verdict.standing == "contradicted":
         return message("next.compare", effect=verdict.contradicted_by[0])
     if verdict.indistinguishable and found.next_experiment is not None:
-        return message("next.distinguish")
+        return message("next.distinguish", group=verdict.indistinguishable[0])
     if verdict.unexplained and verdict.effects:
-        return message("next.add_and_propose", effects=verdict.effects)
+        return message("next.add_and", effects=verdict.effects, then=_then(found))
     if verdict.unexplained:
-        return message("next.propose")
+        return message("next.then", then=_then(found))
     return message("next.add", effects=verdict.effects) if verdict.effects else message("next.use")
+
+
+def _correct(suspect: Suspect) -> Message:
+    """The label to correct, with its value and that of the data where both are known."""
+    if suspect.stated is None or suspect.found is None:
+        return message("next.label", run=suspect.run)
+    stated, found = (suspect.stated, suspect.unit), (suspect.found, suspect.unit)
+    return message("next.label_value", run=suspect.run, what=suspect.what, stated=stated, found=found)
+
+
+def _then(found: Diagnosis) -> list[Message]:
+    """What may show what else is missing: what this diagnosis proposes, else the search that was not made."""
+    terms = [message("then.terms")] if found.proposals else []
+    run = [message("then.run")] if found.next_experiment is not None else []
+    return [*terms, *run] or [message("then.search")]

@@ -14,18 +14,18 @@ from ident.words.percent import percent
 from ident.words.plus_minus import UNDETERMINED, plus_minus_si
 from ident.words.probability import probability_said
 from ident.words.shown import Listing, listings
+from ident.words.uses import DATA
 
-USES = {"fit": "fit", "held_out": "held out", "verify": "verify"}
 Row = tuple[str, ...]
 
 
 @listings.register
 def diagnosis_listings(found: Diagnosis) -> Iterator[Listing | str]:
     """Errors, ranking, ladder, suspects, proposals; sentences between and below them."""
-    uses = tuple(USES.values())
+    uses = tuple(DATA.values())
     yield found.headline
     yield Listing("", (_measure(found), *uses), error_rows(found), uses)
-    header = ("effect", "probability", "predicted", "held out", "verify", "strength", "group")
+    header = ("effect", "probability", "predicted", "held-out", "validation", "strength", "group")
     yield Listing("", header, ranking_rows(found), header[1:5])
     if rest := unconfirmed(found):
         yield rest
@@ -49,7 +49,7 @@ def diagnosis_listings(found: Diagnosis) -> Iterator[Listing | str]:
 
 def proposals_listing(found: Diagnosis) -> Listing:
     """The terms that no list holds."""
-    numbers = (*USES.values(), "nats (bar)")
+    numbers = (*DATA.values(), "nats (bar)")
     header = ("terms", "proposed by search", "what it would mean", "strength", *numbers, "or")
     return Listing("", header, proposal_rows(found), ("terms", *numbers))
 
@@ -57,10 +57,10 @@ def proposals_listing(found: Diagnosis) -> Listing:
 def proposal_rows(found: Diagnosis) -> Iterator[Row]:
     """The error against the number of terms: none, then one row a term, each on top of the ones before."""
     without, *rest = term_count_curve(found.proposals or (), found.ladder)
-    errors = [error_said(without.error.get(use)) for use in USES]
+    errors = [error_said(without.error.get(use)) for use in DATA]
     yield "0", f"(with {without.latest})" if without.latest else "(the fitted model)", "–", "–", *errors, "–", ""
     for choice, one in zip(rest, found.proposals or (), strict=True):
-        errors = [one.error_of(use).said() for use in USES]
+        errors = [one.error_of(use).said() for use in DATA]
         meant = str(message("term.hypothesis", meaning=one.meaning)) if one.hypothesis else one.meaning
         evidence = f"{one.nats:.3g} ({one.bar:.3g})"
         strength_is = _searched(one.strength, one.std_error, one.unit)
@@ -73,8 +73,8 @@ def _measure(found: Diagnosis) -> str:
 
 def error_rows(found: Diagnosis) -> Iterator[Row]:
     """The model's error and the noise floor by use, in per cent."""
-    yield "model", *(found.baseline.error_of(use).said() for use in USES)
-    yield "noise floor", *(percent(found.noise_floor.get(use)) for use in USES)
+    yield "model", *(found.baseline.error_of(use).said() for use in DATA)
+    yield "noise floor", *(percent(found.noise_floor.get(use)) for use in DATA)
 
 
 def ranking_rows(found: Diagnosis) -> Iterator[Row]:
@@ -118,4 +118,4 @@ def ladder_rows(found: Diagnosis) -> Iterator[Row]:
     floor = percent(found.noise_floor.get("fit"))
     for rung in found.ladder:
         evidence = "–" if rung.nats is None else f"{rung.nats:.3g}"
-        yield rung.added or "(the fitted model)", *(rung.error_of(use).said() for use in USES), floor, evidence
+        yield rung.added or "(the fitted model)", *(rung.error_of(use).said() for use in DATA), floor, evidence

@@ -6,10 +6,12 @@ from collections.abc import Mapping
 
 SUMMARY: Mapping[str, str] = {
     "summary.missing": "Missing: {effects:all}.",
+    "summary.missing_partly": "Missing: {effects:all}. Something else is missing, too: part of the error remains.",
     "summary.missing_and_helping":
         "Missing: {effects:all}. The error also falls with {helping:all}, but something else is probably the cause.",
     "summary.helping": "The error falls with {helping:all}, but something else may be the cause.",
-    "summary.contradicted": "Missing: {effects:all}, but validation data contradict it.",
+    "summary.contradicted":
+        "Not confirmed: {effects:all}. The error on estimation data falls, but validation data contradict it.",
     "summary.stopped": "Nothing was found so far: the search was stopped.",
     "summary.unlisted": "Missing: something that no listed effect explains.",
     "summary.unlisted_probable":
@@ -25,12 +27,17 @@ SUMMARY: Mapping[str, str] = {
         "The error on {use:data} goes from {before:error} to {after:error}; the noise floor is not known.",
     "next.label": "Next: correct the label of {run:run}, and fit again.",
     "next.input": "Next: add the channel of the missing input, or keep only rows without it, and fit again.",
+    "next.label_value":
+        "Next: correct the label of {run:run}, and fit again. Its {what} is stated as {stated:quantity}; the data say "
+        "{found:quantity}.",
     "next.time": "Next: search again with more time.",
     "next.compare": "Next: compare the validation runs with and without {effect:title}.",
-    "next.distinguish": "Next: record the proposed run, which separates what these data do not.",
-    "next.add_and_propose":
-        "Next: add {effects:them}, and look at the proposed terms, or record the proposed run.",
-    "next.propose": "Next: look at the proposed terms, or record the proposed run.",
+    "next.distinguish": "Next: record the proposed run, which distinguishes {group:titles}.",
+    "next.add_and": "Next: add {effects:them}. Then {then:or}.",
+    "next.then": "Next: {then:or}.",
+    "then.terms": "look at the proposed terms",
+    "then.run": "record the proposed run",
+    "then.search": "search for unknown terms",
     "next.add": "Next: add {effects:them} to the model, and compare the fits.",
     "next.use": "Next: use the model as it is.",
 }  # fmt: skip

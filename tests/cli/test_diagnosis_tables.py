@@ -51,9 +51,12 @@ def test_what_is_printed_ends_with_the_command_that_makes_the_recommended_fit(ca
     first = Rung(error={"fit": 0.2}, parameters=values)
     ladder = (first, Rung(added="dead_zone", error={"fit": 0.0463}, parameters=values))
     command = "`servoident fit MATRIX --start out/found.json` makes the recommended fit, with "
-    assert f"{command}dead zone: it begins where the diagnosis ended, at 4.63 %." in printed(ladder=ladder)
+    assert f"{command}dead zone. It begins where the diagnosis ended, at an error of 4.63 %." in printed(ladder=ladder)
     told = printed(ladder=ladder, proposals=(term(LEAK, "coulomb_friction"),))
-    assert f"{command}coulomb friction, proposed 1: it begins where the diagnosis ended, at 10.0 %. --terms N" in told
+    assert (
+        f"{command}coulomb friction and proposed 1. It begins where the diagnosis ended, at an error of 10.0 %. --terms"
+        in told
+    )
     assert "--start" not in printed(ladder=(first,))
 
 

@@ -40,10 +40,17 @@ def test_a_group_has_one_probability_and_the_run_that_tells_it_apart():
     experiment = NextRun(amplitude=1e-3, signal="blwn", frequency=10.0, seconds=5.0, sample_rate=1000.0)
     grouped = replace(FOUND.verdict, indistinguishable=(group,), group_probabilities=(0.95,))
     assert (
-        replace(FOUND, verdict=grouped, next_experiment=experiment)
-        .summary[2]
-        .startswith("Next: record the proposed run")
+        replace(FOUND, verdict=grouped, next_experiment=experiment).summary[2]
+        == "Next: record the proposed run, which distinguishes dead zone and underlap."
     )
+
+
+def test_of_a_stand_in_the_first_line_says_that_more_is_missing_and_the_last_where_to_look():
+    partly = replace(FOUND, verdict=replace(FOUND.verdict, standing="stand_in", unexplained=True))
+    assert partly.summary[0].endswith("Something else is missing, too: part of the error remains.")
+    assert partly.summary[2] == "Next: add it. Then search for unknown terms."
+    run = NextRun(amplitude=1e-3, signal="blwn", frequency=10.0, seconds=5.0, sample_rate=1000.0)
+    assert replace(partly, next_experiment=run).summary[2] == "Next: add it. Then record the proposed run."
 
 
 def test_what_is_less_probable_than_not_is_told_apart_from_what_is_missing():
@@ -74,12 +81,16 @@ def test_nothing_something_unlisted_and_what_is_contradicted_are_said():
     unlisted = replace(nothing, verdict=Verdict(unexplained=True, probabilities={"unlisted": 0.9}))
     assert unlisted.summary[0] == "Missing: something that no listed effect explains (probability 90 %)."
     against = lines(standing="contradicted", contradicted_by=("dead_zone",))
-    assert against[0].endswith("but validation data contradict it.")
+    assert against[0].startswith("Not confirmed: dead zone (")
     assert against[2] == "Next: compare the validation runs with and without dead zone."
 
 
 def test_a_wrong_label_and_a_search_that_was_stopped_come_first():
     assert lines(suspects=(Suspect("run-3"),))[2] == "Next: correct the label of run-3, and fit again."
+    mass = Suspect("A", "mass", stated=0.87, found=2.671, unit="kg")
+    assert lines(suspects=(mass,))[2] == (
+        "Next: correct the label of run A, and fit again. Its mass is stated as 0.8700 kg; the data say 2.671 kg."
+    )
     stopped = replace(FOUND, complete=False, verdict=Verdict())
     assert stopped.summary[::2] == (
         "Nothing was found so far: the search was stopped.",
