@@ -11,7 +11,7 @@ from typing import Annotated, Any, NoReturn
 import typer
 from typer.core import TyperGroup
 
-from app.cli.approve import approve
+from app.cli.approval import approve, withdraw
 from app.cli.audit import audit
 from app.cli.backup import backup, restore
 from app.cli.bench import bench
@@ -20,8 +20,7 @@ from app.cli.compare import compare
 from app.cli.control import control
 from app.cli.demo import demo
 from app.cli.diagnose import diagnose
-from app.cli.drop import drop
-from app.cli.effects import effects
+from app.cli.effects import program as effects
 from app.cli.export import export
 from app.cli.failures import INTERRUPTED, UNREAD, logged, report
 from app.cli.fit import fit
@@ -29,7 +28,6 @@ from app.cli.hybrid import hybrid
 from app.cli.init import init
 from app.cli.interrupts import heard
 from app.cli.join import join
-from app.cli.keep import keep
 from app.cli.limits import limits
 from app.cli.migrate import migrate
 from app.cli.next import next_
@@ -44,20 +42,12 @@ from app.cli.serve import serve
 from app.cli.simulate import simulate
 from app.cli.statistics import statistics
 from app.cli.tidy import tidy
-from app.cli.token import token
-from app.cli.token_list import list_
-from app.cli.token_new import new
-from app.cli.token_revoke import revoke
+from app.cli.token import program as token
 from app.cli.track import track
 from app.cli.upload import upload
 from app.cli.verdict import verdict
-from app.cli.webhook import webhook
-from app.cli.webhook_deliveries import deliveries
-from app.cli.webhook_list import list_ as list_webhooks
-from app.cli.webhook_new import new as new_webhook
-from app.cli.webhook_revoke import revoke as revoke_webhook
+from app.cli.webhook import program as webhook
 from app.cli.whatif import whatif
-from app.cli.withdraw import withdraw
 from app.cli.worker import worker
 from app.cli.workers import workers
 
@@ -109,24 +99,9 @@ def options(
 
 for command in chain.from_iterable(GROUPS.values()):
     program.command(command.__name__.rstrip("_"))(command)
-catalogue = typer.Typer(rich_markup_mode=None)
-catalogue.callback(invoke_without_command=True)(effects)
-catalogue.command("keep")(keep)
-catalogue.command("drop")(drop)
-program.add_typer(catalogue, name="effects")
-tokens = typer.Typer(rich_markup_mode=None)
-tokens.callback(invoke_without_command=True)(token)
-tokens.command("new")(new)
-tokens.command("list")(list_)
-tokens.command("revoke")(revoke)
-program.add_typer(tokens, name="token")
-webhooks = typer.Typer(rich_markup_mode=None)
-webhooks.callback(invoke_without_command=True)(webhook)
-webhooks.command("new")(new_webhook)
-webhooks.command("list")(list_webhooks)
-webhooks.command("revoke")(revoke_webhook)
-webhooks.command("deliveries")(deliveries)
-program.add_typer(webhooks, name="webhook")
+program.add_typer(effects, name="effects")
+program.add_typer(token, name="token")
+program.add_typer(webhook, name="webhook")
 
 
 def speak() -> None:

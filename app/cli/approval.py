@@ -1,4 +1,4 @@
-"""`servoident approve`: make a fit its actuator's current parameter set."""
+"""`servoident approve` and `withdraw`: which fit is its actuator's current parameter set."""
 
 from __future__ import annotations
 
@@ -23,6 +23,20 @@ def approve(
     """
     stored = decided(server, token, fit, "approve", why)
     print(f"fit {stored['id']} is the current parameter set of {stored['serial']}")
+
+
+def withdraw(
+    fit: Annotated[str, typer.Argument(metavar="FIT", help="Id of the approved fit.")],
+    why: Why = "",
+    server: Server = DEFAULT,
+    token: Token = "",
+) -> None:
+    """Withdraw the approval of a fit.
+
+    Its serial number has no current set until one is approved. The fit stays stored.
+    """
+    stored = decided(server, token, fit, "withdraw", why)
+    print(f"no approved set for {stored['serial']} any more")
 
 
 def decided(server: str, token: str, fit: str, what: str, why: str) -> dict[str, Any]:
