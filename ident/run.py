@@ -27,6 +27,14 @@ HOLDS = ("linear", "zoh", "band-limited")
 USES, STILL = ("fit", "verify"), "still"
 MOTIONS = ("displacement", "velocity")
 """Channels that may be imposed on a machine that answers with a force, such as a damper."""
+COMMANDED_MOTIONS = {
+    "m": "displacement",
+    "rad": "displacement",
+    "m/s": "velocity",
+    "rad/s": "velocity",
+    "1": "displacement",
+}
+"""Which motion a command is, or in unknown units may be, where a force answers and no motion was recorded."""
 CHANNELS = (
     "command", "displacement", "velocity", "force", "drive_force", "load_pressure", "pressure_a", "pressure_b",
     "supply_pressure", "vertical_load", "spool", "current", "temperature",
@@ -140,11 +148,25 @@ class Run(Shown):
             replace(self, id=output_id(self.id, name), output=name, record=self.id, share=share) for name in outputs
         )
 
+    @property
+    def commanded_motion(self) -> str:
+        """The motion that the command of a run is, or in unknown units may be; "" where it is none.
+
+        The run answers with a force and records no motion. A stated gain is that of a loop, whose command is no motion.
+        """
+        if self.output != "force" or self.gain is not None or not self.channels.keys().isdisjoint(MOTIONS):
+            return ""
+        return COMMANDED_MOTIONS.get(self.units.get("command", ""), "")
+
     def driven_by(self, channel: str) -> Run:
         """The run with a channel in the place of its command; unchanged where it has none of that name.
 
-        A speed that was not recorded is the rate of the position, which may brake at once: see :mod:`ident.slopes`.
+        A motion that was recorded as the command counts as that motion. A speed that was not recorded is the rate of
+        the position, which may brake at once: see :mod:`ident.slopes`.
         """
+        if channel in MOTIONS and self.commanded_motion:
+            motion = {self.commanded_motion: self.command}
+            return replace(self, channels={**self.channels, **motion}).driven_by(channel)
         samples = self.channels.get(channel)
         if samples is None and channel == "velocity" and "displacement" in self.channels:
             samples = slopes(self.channels["displacement"], order=2) * self.sample_rate

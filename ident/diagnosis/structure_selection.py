@@ -28,7 +28,7 @@ from ident.matrix import Matrix
 from ident.preprocessing import off_steps, screen
 from ident.preprocessing.pipeline import ALL_ON
 from ident.presets import Preset, preset
-from ident.presets.suited import in_question, told_by_following, unusual
+from ident.presets.suited import in_question, moved_by_command, told_by_following, unusual
 from ident.progress import Progress, Report, silent
 from ident.words.message import Message, message
 
@@ -73,6 +73,8 @@ def _compared(
         only = models[0]
         if matrix.machine:
             why = message("structure.described")
+        elif moved_by_command(only, matrix.runs):
+            why = message("structure.moved", machine=only.name, unit=matrix.runs[0].units["command"])
         elif told_by_following(only, matrix.runs):
             why = message("structure.loop", machine=only.name)
         else:

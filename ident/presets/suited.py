@@ -13,11 +13,8 @@ from ident.presets import PRESETS, Preset, preset
 from ident.run import BENCH, DISTURBANCES, MOTIONS, Run
 from ident.stages import OPENED_BY_COMMAND
 
-_STATED, _OPEN, _UNLIKELY = (
-    0,
-    2,
-    5,
-)  # ranks: a force, in its unit; a command in open loop; a motion that something else may drive
+_STATED, _OPEN, _UNLIKELY = 0, 2, 5
+"""Ranks: a force, or a motion, by the unit of its command; a command in open loop; a motion of another cause."""
 _STRETCHES, _NEAR = 20, 0.1  # of a record whose means are compared; how near they are, a share of the command's
 
 
@@ -121,13 +118,15 @@ def _allows(model: Preset, run: Described) -> bool:
     if not all(can_be_disturbed(model.chain, place) for place in disturbed):
         return False
     drives = {model.data.driven_by} | ({"displacement"} if model.data.driven_by == "velocity" else set())
-    drives |= {"command"} if _by_force(model, run) else set()
+    drives |= {"command"} if _by_force(model, run) or _by_motion(model, run) else set()
     return bool(drives & set(run.channels)) and run.output in model.chain.outputs and run.output not in drives
 
 
 def _rank(model: Preset, runs: Sequence[Described]) -> int:
     if any(_by_force(model, run) for run in runs):
         return _STATED if all(run.output in MOTIONS for run in runs) else _OPEN  # or what follows a force
+    if all(_by_motion(model, run) for run in runs):
+        return _STATED if moved_by_command(model, runs) else _OPEN
     if model.data.driven_by != "command":
         bare = not any("command" in run.channels for run in runs)
         return 0 if bare or model.data.driven_by not in MOTIONS else _UNLIKELY
@@ -144,6 +143,16 @@ def _by_force(model: Preset, run: Described) -> bool:
     """Whether a drive's force may be what was recorded as the command."""
     is_force = run.units.get("command") in ("N", "N*m")
     return model.data.driven_by == "drive_force" and is_force and "drive_force" not in run.channels
+
+
+def _by_motion(model: Preset, run: Described) -> bool:
+    """Whether the motion that drives a specimen may be what was recorded as the command."""
+    return model.data.driven_by == "velocity" and isinstance(run, Run) and bool(run.commanded_motion)
+
+
+def moved_by_command(model: Preset, runs: Sequence[Described]) -> bool:
+    """Whether the command of every run is the motion of a specimen, by its unit."""
+    return all(_by_motion(model, run) and run.units["command"] != "1" for run in runs)
 
 
 def _comparable(run: Described, channel: str) -> bool:

@@ -194,6 +194,9 @@ STRUCTURES: Mapping[str, str] = {
     "structure.described": "the data set describes the machine",
     "structure.loop":
         "{machine} is used, a position loop, because the recorded output follows the command",
+    "structure.moved":
+        "{machine} is used, because a force answers to a command in {unit}, which is taken as the motion; if the "
+        "command is that of a valve or a loop, name the model (--model)",
     "structure.driven": "{machine} is used, because {driver} drives it and it shows what was recorded",
 }  # fmt: skip
 """Why a model was chosen where none was named."""

@@ -16,6 +16,7 @@ from ident.diagnosis.structure_selection import choose_structure
 from ident.errors import Unusable
 from ident.fit.settings import Settings
 from ident.matrix import Actuator, Matrix
+from ident.presets import preset
 from ident.presets.suited import in_question, suited
 from ident.readers import read_matrix
 from ident.run import Run
@@ -54,6 +55,40 @@ def specimen(seed: int, turned: float = 1.0, friction: float = 0.0) -> Matrix:
         channels = {"velocity": v, "force": turned * force}
         runs.append(Run(use, "", RATE, channels, {"velocity": "m/s", "force": "N"}, output="force", use=use))
     return Matrix(Actuator("DAMPER"), tuple(runs))
+
+
+def commanded(matrix: Matrix, unit: str) -> Matrix:
+    """The same with the motion called command, a position where the unit is that of one."""
+    runs = []
+    for run in matrix.runs:
+        v = run.channels["velocity"]
+        motion = v if unit == "m/s" else np.cumsum(v) / RATE
+        channels = {"command": motion, "force": run.channels["force"]}
+        runs.append(replace(run, channels=channels, units={"command": unit, "force": "N"}))
+    return replace(matrix, runs=tuple(runs))
+
+
+@pytest.mark.parametrize(("unit", "motion"), [("m/s", "velocity"), ("m", "displacement")])
+def test_what_is_moved_is_a_specimen_though_its_motion_is_called_command(unit, motion):
+    matrix = commanded(specimen(3), unit)
+    assert [model.name for model in in_question(matrix.runs)] == ["specimen"]
+    named = replace(
+        matrix, runs=tuple(replace(run, channels={motion: run.command, "force": run.measured}) for run in matrix.runs)
+    )
+    as_commanded, as_named = (preset("specimen").for_matrix(one)[1].runs[0] for one in (matrix, named))
+    assert np.array_equal(as_commanded.command, as_named.command)
+    assert as_commanded.motion == as_named.motion
+    assert "--model" in choose_structure(matrix).matrix.notices[0]
+
+
+def test_in_units_of_1_a_specimen_is_in_question_beside_what_follows_a_command():
+    runs = commanded(specimen(3), "1").runs
+    assert {"specimen", "open_valve"} <= {model.name for model in in_question(runs)}
+
+
+def test_the_command_of_a_loop_is_no_motion_of_a_specimen():
+    loop = tuple(replace(run, gain=5.0) for run in commanded(specimen(3), "m").runs)
+    assert "specimen" not in [model.name for model in in_question(loop)]
 
 
 def motor(seed: int, half_width: float = 0.0) -> Matrix:
