@@ -11,6 +11,7 @@ from typing import Unpack
 
 from ident.errors import Unusable
 from ident.matrix import Matrix
+from ident.readers.apart import read_apart
 from ident.readers.archive import Archive
 from ident.readers.controldesk import read_controldesk
 from ident.readers.dat import read_dat
@@ -44,18 +45,14 @@ BINARY = {
     ".tdms": "tdms",
     ".lvm": "lvm",
     ".dat": "dat",
-    ".uff": "uff",
-    ".unv": "uff",
-    ".xlsx": "xlsx",
-    ".json": "records",
-    ".mf4": "mdf",
-    ".mdf": "mdf",
 }
 """Endings of names, each with the file that reads what ends so: `read_npz` in npz.py and the like."""
+FOREIGN = {".uff": "uff", ".unv": "uff", ".xlsx": "excel", ".json": "records", ".mf4": "mdf", ".mdf": "mdf"}
+"""Endings of names, each with the parser of :mod:`ident.foreign` that reads it in a process of its own."""
 TEXT = (".csv", ".tsv", ".txt")
 PACKED = ".gz"
 """The ending behind that of a text that was compressed."""
-ENDINGS = (*TEXT, *(kind + PACKED for kind in TEXT), *BINARY)
+ENDINGS = (*TEXT, *(kind + PACKED for kind in TEXT), *BINARY, *FOREIGN)
 """Every ending that is read."""
 
 
@@ -70,7 +67,7 @@ def read_matrix(path: Path | str, limits: Limits = LIMITS, **stated: Unpack[Stat
     of_kind("read_matrix", "path", path, Path | str)
     of_kind("read_matrix", "limits", limits, Limits)
     path = Path(path)
-    if path.suffix.lower() in (*BINARY, *TEXT) and not path.is_dir():
+    if path.suffix.lower() in (*BINARY, *FOREIGN, *TEXT) and not path.is_dir():
         return _read_file(path, limits, stated)
     if stated:
         what = f"{next(iter(stated))} is stated of a whole matrix"
@@ -181,6 +178,8 @@ def read_table(
         return recording or read_text(data, name, limits, skip_rows)
     if skip_rows:
         raise Unusable("bad-rows", "skip_rows is for text files", f"{where} skip_rows".strip(), "use rows")
+    if ending in FOREIGN:
+        return read_apart(FOREIGN[ending], data, name, limits)
     kind = BINARY[ending]
     if kind == "dat":
         return read_dat(data, name, limits, near)

@@ -24,17 +24,18 @@ from ident.units.quantity import shown
 _ALONE, _TIMES = 1 << 30, 16  # bytes that such a process takes by itself, and of memory for each byte of the file
 _NUMBER = 8  # bytes
 _WHOLE = "install servoident whole, or save it as .csv"
+_REMEDIES = {"mdf": "install servoident[mdf], or save it as .csv"}  # where a parser is an extra
 
 
-def read_apart(format_: str, data: bytes, where: str, limits: Limits, remedy: str = _WHOLE) -> Table:
-    """The columns that ``ident.foreign.FORMAT`` finds; `remedy` is for whom its parser is not installed.
+def read_apart(format_: str, data: bytes, where: str, limits: Limits) -> Table:
+    """The columns, with their units, that ``ident.foreign.FORMAT`` finds.
 
     Raises Unusable: ``broken-FORMAT``, ``not-installed``, ``too-large``, ``too-slow``, and on loading ``not-numeric``.
     """
     line, _, numbers = _output(format_, data, where, limits).partition(b"\n")
     said = _said(line, format_, where)
     if "refused" in said:
-        raise _refusal(said, format_, remedy, where)
+        raise _refusal(said, format_, where)
     columns: list[dict[str, Any]] = said["columns"]
     lengths = [column["length"] for column in columns]
     for column in columns:
@@ -86,11 +87,10 @@ def _said(line: bytes, format_: str, where: str) -> dict[str, Any]:
     return found
 
 
-def _refusal(said: dict[str, Any], format_: str, remedy: str, where: str) -> Unusable:
+def _refusal(said: dict[str, Any], format_: str, where: str) -> Unusable:
     if said["refused"] == "not-installed":
-        return Unusable(
-            "not-installed", f"files of this type need {said['what']}, which is not installed", where, remedy
-        )
+        what = f"files of this type need {said['what']}, which is not installed"
+        return Unusable("not-installed", what, where, _REMEDIES.get(format_, _WHOLE))
     if said["refused"] == "memory":
         return Unusable("too-large", "reading it takes more memory than is allowed", where, "split the record")
     return broken(format_, shown(" ".join(str(said["what"]).split())), where)
