@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import sys
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
+from ident.bench import quantity
 from ident.bench.acceptance import found_quantities
 from ident.bench.analysis import Analysis, analyse
 from ident.bench.model import Model
@@ -22,16 +24,21 @@ class Found:
     analysis: Analysis
     records: list[reference.Record]
 
+    @cached_property
+    def quantities(self) -> dict[str, quantity.Found]:
+        """Those of the sheet, as found."""
+        return found_quantities(self.analysis)
+
     def relative(self, name: str) -> float:
         """|found − true| / true of a quantity of the sheet."""
         true = {"hysteresis": self.truth.B, "dead_space": self.truth.dead_space, "kp": self.truth.kp,
                 "friction": self.truth.dPfr, "T": self.truth.T}[name]  # fmt: skip
-        return abs(found_quantities(self.analysis)[name].value / true - 1)
+        return abs(self.quantities[name].value / true - 1)
 
     @property
     def zero_shift(self) -> float:
         """|found − true| in rated currents."""
-        return abs(found_quantities(self.analysis)["zero_shift"].value - self.truth.I0)
+        return abs(self.quantities["zero_shift"].value - self.truth.I0)
 
     def position_error(self, amplitude: float, frequency: float, by_steps: bool = False) -> float:
         """RMS / deviation of the assembled model's position against the position before the converter."""

@@ -21,10 +21,10 @@ OF_BENCH = tuple(name for name, drawing in FIGURES.items() if drawing.kind == "b
 
 @pytest.fixture(scope="module")
 def fitted():
-    """A matrix of the reference and a fit of it with a few generations."""
+    """A matrix of the reference without what takes longest, and a fit of it with two generations."""
     truth = reference.scattered(4)
-    matrix = as_matrix(truth, reference.full_set(truth, 4))
-    options = {"population": 20.0, "generations": 3.0, "elite": 3.0}
+    matrix = as_matrix(truth, reference.full_set(truth, 4, short=True))
+    options = {"population": 10.0, "generations": 2.0, "elite": 3.0}
     return matrix, identify(matrix, Settings(model="kononykhin", options=options))
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import cache
 
 import numpy as np
 import pytest
@@ -12,6 +13,7 @@ from ident.bench.analysis import analyse
 from ident.bench.frequency import frequency_response
 from ident.bench.motion import groups
 from ident.bench.observed import observe
+from ident.bench.records import BenchSet
 from ident.bench.sine_fit import as_printed, dominant, fit_sine, gauss_newton
 from ident.bench.smoothing import METHODS, bezier, on_bezier
 from ident.bench.speed import curve
@@ -22,6 +24,13 @@ from tests.bench.sets import as_set, true_model
 from tests.reference import kononykhin_reference as reference
 
 ALPHA = np.linspace(0, 2 * np.pi, 500, endpoint=False)
+
+
+@cache
+def short_set(number: int) -> BenchSet:
+    """The set of an actuator of the reference without what takes longest: a procedure by itself needs no more."""
+    truth = reference.scattered(number)
+    return as_set(truth, reference.full_set(truth, number, short=True))
 
 
 def distorted(play: float) -> np.ndarray:
@@ -88,7 +97,7 @@ def test_gain_and_phase_are_those_of_an_integrator_behind_a_lag():
 def test_a_delay_does_not_spoil_the_time_constant_silently(delay):
     """It is said in words, with T as it would be, and with the correlation that makes the two hard to tell apart."""
     truth = reference.scattered(7)._replace(delay=delay)
-    analysis = analyse(as_set(truth, reference.full_set(truth, 7)))
+    analysis = analyse(as_set(truth, reference.full_set(truth, 7, short=True)))
     check = analysis.delay
     assert check.delay.value == pytest.approx(delay, rel=0.1)
     assert pytest.approx(truth.T, rel=0.05) == check.T
@@ -115,19 +124,18 @@ def test_rest_and_both_movements_are_told_apart():
 
 def test_each_range_of_positions_has_its_own_values():
     truth = reference.scattered(2)
-    analysis = analyse(as_set(truth, reference.full_set(truth, 2)))
+    records = [record for record in reference.full_set(truth, 2) if not 0 < record.frequency < 1]
+    analysis = analyse(as_set(truth, records))
     assert [round(1e3 * part.position_range[0]) for part in analysis.by_range] == [15, 45, 75]
     for part in analysis.by_range:
         assert part.hysteresis.value == pytest.approx(truth.B / 100, rel=0.1)
         assert part.hysteresis.deviation > 0
 
 
-def test_stated_deviations_hold_what_was_missed():
-    """The error of a static quantity is within five of its standard deviations."""
-    for seed in range(4):
-        truth = reference.scattered(seed)
-        found = analyse(as_set(truth, reference.full_set(truth, seed, short=True))).static
-        model = true_model(truth)
+def test_stated_deviations_hold_what_was_missed(full):
+    """The error of a static quantity is within five of its standard deviations: of four actuators, of two in short."""
+    for seed in range(4 if full else 2):
+        found, model = analyse(short_set(seed)).static, true_model(reference.scattered(seed))
         assert abs(found.hysteresis.value - model.B) < 5 * found.hysteresis.deviation
         assert abs(found.slope.value - model.kp) < 5 * found.slope.deviation
 
@@ -139,7 +147,7 @@ def test_stated_deviations_hold_what_was_missed():
 def test_every_smoothing_shows_the_characteristic(method):
     """Against the current behind lag and play: within 2 % of full speed."""
     truth = reference.scattered(1)
-    bench, model = as_set(truth, reference.full_set(truth, 1)), true_model(truth)
+    bench, model = short_set(1), true_model(truth)
     (record,) = bench.of_kind("speed-continuous")
     found = curve(model, record, method)
     inside = slice(200, -200)
@@ -168,7 +176,7 @@ def test_nonlinearity_and_asymmetry_of_known_lines():
 def test_a_current_that_is_held_between_samples_is_taken_so():
     """Described as held it gives T within 0.5 %; taken as straight lines, T is half a sample, 0.5 ms, too long."""
     truth = reference.scattered(7)
-    bench, model = as_set(truth, reference.full_set(truth, 7)), true_model(truth)
+    bench, model = short_set(7), true_model(truth)
     found = {}
     for hold in ("zoh", "linear"):
         sines = [
@@ -192,8 +200,8 @@ def test_a_current_that_is_held_between_samples_is_taken_so():
     ],
 )
 def test_the_message_names_the_quantity_and_the_record_that_it_needs(kinds, words):
-    truth = reference.scattered(5)
-    bench = as_set(truth, [r for r in reference.full_set(truth, 5) if r.kind not in kinds])
+    whole = short_set(5)
+    bench = replace(whole, records=tuple(record for record in whole.records if record.kind not in kinds))
     with pytest.raises(Unusable) as refused:
         analyse(bench).complete()
     assert refused.value.code == "missing-record"
@@ -201,16 +209,14 @@ def test_the_message_names_the_quantity_and_the_record_that_it_needs(kinds, word
 
 
 def test_without_cavity_pressures_the_message_says_what_cannot_be_found():
-    truth = reference.scattered(5)
-    bench = as_set(truth, reference.full_set(truth, 5))
+    bench = short_set(5)
     bare = replace(bench, records=tuple(replace(record, pressure=None) for record in bench.records))
     with pytest.raises(Unusable, match=r"kp, friction and hysteresis.*pressure_a"):
         analyse(bare)
 
 
 def test_a_link_that_never_moves_is_refused_with_the_remedy():
-    truth = reference.scattered(5)
-    bench = as_set(truth, reference.full_set(truth, 5))
+    bench = short_set(5)
     still = [replace(r, position=np.full(r.length, 0.05)) if r.kind == "static" else r for r in bench.records]
     with pytest.raises(Unusable, match="dead space"):
         analyse(replace(bench, records=tuple(still)))
