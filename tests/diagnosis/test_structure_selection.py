@@ -81,6 +81,7 @@ def lift(rate: float = 8.0) -> Matrix:
     return Matrix(Actuator("LIFT"), (Run("steps", "", rate, channels, {"command": "V", "displacement": "m"}),))
 
 
+@pytest.mark.usefixtures("few_effects")
 def test_what_follows_whole_runs_is_not_judged_by_windows():
     """Over windows that begin with a speed, for want of a better model of one that integrates, it is no better."""
     first, *others = compared_structures(lift())
@@ -119,6 +120,7 @@ def test_structures_are_compared_over_one_time():
     assert lag.error["held_out"] > 1.02 * first.error["held_out"]
 
 
+@pytest.mark.usefixtures("few_effects")
 def test_more_parameters_do_not_make_up_for_an_effect():
     """A motor with a dead zone: a valve's and an oil's lags leave a little less than the motor, all of them far more
     than the noise; with the dead zone the motor leaves the noise.
