@@ -1,7 +1,7 @@
 """The work of jobs where it is done, which may be a process of its own: what a turn has prepared stays there.
 
 So does the state of a search, which holds its whole history: a step is sent by how much of it is known, and returns
-what it added, with its arrays packed (app/jobs/packed.py).
+what it added, with its arrays packed (app/jobs/stored_state.py).
 """
 
 from __future__ import annotations
@@ -11,8 +11,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import Any, Literal
 
-from app.jobs.generations import added
-from app.jobs.packed import packed, unpacked
+from app.jobs.stored_state import added, packed, unpacked
 from app.jobs.work import MadeSoFar, State, Task, Work
 from app.lru import LRU
 from ident.progress import Progress, Report

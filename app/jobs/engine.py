@@ -17,8 +17,8 @@ from dbos import DBOS, DBOSConfig, Serializer, SetWorkflowID
 from dbos import error as failures
 
 from app.database import HEEDFUL, connect
-from app.jobs.generations import whole
 from app.jobs.lease import Superseded
+from app.jobs.stored_state import whole
 from app.jobs.work import State, Work
 from app.settings import Settings
 

@@ -1,4 +1,4 @@
-"""Jobs of every kind: record and queue, look, cancel, take up again."""
+"""Jobs of every kind: record and queue, look, cancel, take up again, end."""
 
 from __future__ import annotations
 
@@ -7,16 +7,18 @@ from collections.abc import Sequence
 from typing import Any
 
 from sqlalchemy.exc import IntegrityError
+from sqlalchemy.orm import Session
 
 from app.access.noting import about
 from app.context import Context
 from app.errors import Failure, missing
 from app.jobs import repository
-from app.jobs.ending import end
 from app.matrices.removed import check_there
 from app.paging import cursor, keys_of
 from app.tables import JobRow
+from app.webhooks.outbox import announce
 from schemas.fit import JobPage, JobProblem, JobSettings, JobView, ProgressView
+from schemas.webhooks import EndedJob, JobEnded
 
 _log = logging.getLogger("servoident.jobs")
 
@@ -107,6 +109,18 @@ def cancel(context: Context, job_id: str) -> JobView:
         else:
             repository.change(session, job_id, cancel=True)
     return get(context, job_id)
+
+
+def end(session: Session, row: JobRow, state: str, problem: dict[str, Any] | None = None) -> None:
+    """End a job that has not ended: recorded and tallied once, and told to whoever listens, in one transaction."""
+    if not repository.end(session, row, state, problem):
+        return
+    matrix = repository.matrix_of(session, row.id)
+    job = EndedJob(
+        id=row.id, kind=row.kind, state=state, serial=matrix.serial if matrix else "", matrix=row.matrix,
+        parent=row.parent, problem=None if problem is None else JobProblem(**problem),
+    )  # fmt: skip
+    announce(session, JobEnded, job=job)
 
 
 def conclude(context: Context, job_id: str) -> JobView:

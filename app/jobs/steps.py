@@ -13,8 +13,8 @@ from sqlalchemy.orm import Session, sessionmaker
 
 from app.errors import is_full
 from app.jobs import at_work, repository
-from app.jobs.ending import end
 from app.jobs.lease import AWAY, Lease, Superseded, patiently
+from app.jobs.service import end
 from app.jobs.work import Kind, MadeSoFar, State, Task, Work
 from app.processes import Here, Place, Stopped
 from app.storage import Storage, Unreachable
@@ -74,7 +74,7 @@ class Run(Work):
         return self._step("begin")
 
     def advance(self, state: State) -> State:
-        """A block of the search: what it added (see app/jobs/generations.py)."""
+        """A block of the search: what it added (see app/jobs/stored_state.py)."""
         return self._step("advance", state)
 
     def finish(self, state: State) -> State:

@@ -9,8 +9,7 @@ from typing import Any
 import pytest
 
 from app.jobs import at_work
-from app.jobs.generations import whole
-from app.jobs.packed import unpacked
+from app.jobs.stored_state import unpacked, whole
 from app.jobs.work import State, Task, Work
 from app.storage import Storage
 from app.tables import MatrixRow

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from app.jobs.generations import added, whole
+from app.jobs.stored_state import added, whole
 from ident.fit import genetic
 
 State = dict[str, Any]

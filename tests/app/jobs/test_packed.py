@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from app.jobs.packed import packed, unpacked
+from app.jobs.stored_state import packed, unpacked
 
 TABLE = np.random.default_rng(3).standard_normal((40, 6)).tolist()
 

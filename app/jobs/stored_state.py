@@ -1,8 +1,11 @@
-"""The long arrays of a state as texts.
+"""The state of a search as the queue stores it: each generation once, and the long arrays as texts.
 
-Where a service answers, the history of a search would be millions of numbers in as many lists: the interpreter looks
-at each of them whenever it collects, and writes each as decimals for the queue, while nobody is answered. A text is one
-object, whatever its length, and has every bit of every number.
+A search's state holds the whole history so far. What a step adds to it is stored with the step that made it, and the
+whole is put together from the steps again, bit for bit: also where the process that made the first of them was killed.
+
+Where a service answers, that history would be millions of numbers in as many lists: the interpreter looks at each of
+them whenever it collects, and writes each as decimals for the queue, while nobody is answered. A text is one object,
+whatever its length, and has every bit of every number.
 """
 
 from __future__ import annotations
@@ -12,8 +15,35 @@ from typing import Any
 
 import numpy as np
 
+from app.jobs.work import State
+
 _FEWEST = 32  # numbers: fewer are shorter as they are
 _LIST, _SHAPE = "float64", "shape"
+
+
+def added(before: State, made: State) -> State:
+    """What a step made of the state `before`, without the generations that this knew.
+
+    The first new generation is the population that was waiting in the state before: it is not stored again.
+    """
+    history = made["state"].get("history")
+    if history is None or "history" not in before:
+        return made
+    known = len(before["history"])
+    new = [dict(entry) for entry in history[known:]]
+    if new and new[0]["population"] == before["population"]:
+        del new[0]["population"]
+    return {**made, "known": known, "state": {**made["state"], "history": new}}
+
+
+def whole(before: State, stored: State) -> State:
+    """What the step made; what a version before this one stored is whole already."""
+    if "known" not in stored:
+        return stored
+    waiting = {"population": before["population"]}
+    new = [waiting | entry for entry in stored["state"]["history"]]
+    history = [*before["history"][: stored["known"]], *new]
+    return {"outcome": stored["outcome"], "state": {**stored["state"], "history": history}}
 
 
 def packed(value: Any) -> Any:
