@@ -19,7 +19,7 @@ from ident.readers import PACKED
 from ident.readers.column_names import is_time
 from ident.readers.hold import are_band_limited
 from ident.readers.table import MINUS, some_of
-from ident.run import CHANNELS
+from ident.run import BENCH, CHANNELS, MOTIONS
 from ident.units.quantity import shown
 from ident.words.listed import first_of
 from ident.words.message import message
@@ -146,7 +146,8 @@ class Draft:
         known, found = self.known(file), []
         output = next((name for name in OUTPUTS if name in known.channels), "")
         wanted = self.answers.output or output
-        drives = {*_DRIVES, *({"velocity", "displacement"} if wanted == "force" else ())}
+        bench = self.answers.common.get("kind") in BENCH
+        drives = {"command", *(("current",) if bench else ()), *(MOTIONS if wanted == "force" else ())}
         if not drives & known.channels.keys() and self._said(file, "command") != NONE:
             driven = ", or say --output force where the motion drives" if "force" in known.channels else ""
             what = f"which column of {_listed(file)} is the command, or the force that drives{driven}"

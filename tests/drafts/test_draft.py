@@ -344,3 +344,13 @@ def test_a_column_of_times_that_is_none_leaves_the_rate_to_be_said():
         Draft(files, Answers(files={"d.csv": FileAnswers()}))
     with pytest.raises(Unusable, match="no channel 'motion'"):
         FileAnswers({"motion": Answer("x")})
+
+
+def test_a_current_beside_a_speed_is_no_command_unless_the_kind_is_of_a_bench():
+    """A log of a motor: what drove it is asked, and not refused when the description is read."""
+    text = table("Time (s),Current (A),Speed (RPM)")
+    draft = Draft([raw(text)], Answers(serial="A1"))
+    assert [one.key for one in draft.missing] == ["channel command"]
+    answered = Draft([raw(text)], Answers(serial="A1", channels={"command": Answer("Current (A)", "A")}))
+    assert not answered.missing
+    assert not any("command" in one.key for one in Draft([raw(text)], Answers(common={"kind": "static"})).missing)
