@@ -14,21 +14,16 @@ from ident.effects.effect import Effect
 from ident.errors import Unusable
 from ident.export.machine import ExportedMachine
 from ident.hybrid.lags_as_states import with_states
-
-Array = NDArray[np.float64]
+from ident.hybrid.state_space import StateSpace
 
 
 @dataclass(frozen=True, eq=False)
-class LinearPart:
-    """x' = A x + B u, y = C x + D u in SI: A (n, n), B (n, 1), C (p, n), D (p, 1), and what each row is called.
+class LinearPart(StateSpace):
+    """x' = A x + B u, y = C x + D u of one input, in SI, and what each input, output and state is called.
 
     `left_out` are effects that are on and have no linear response.
     """
 
-    A: Array
-    B: Array
-    C: Array
-    D: Array
     input: str
     outputs: tuple[str, ...]
     states: tuple[str, ...]

@@ -6,15 +6,13 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ident.errors import Unusable
-
-Array = NDArray[np.float64]
+from ident.hybrid.state_space import StateSpace
 
 
 @dataclass(frozen=True)
-class SampledController:
+class SampledController(StateSpace):
     """x(k+1) = A x(k) + B [d(k), y(k)],  u(k) = C x(k) + D [d(k), y(k)].
 
     d is the displacement that is wanted and y the one that is measured, both m; u is the command of the actuator, m.
@@ -22,10 +20,6 @@ class SampledController:
     is, in words. Raises Unusable where the shapes do not go together or a number is not finite.
     """
 
-    A: Array
-    B: Array
-    C: Array
-    D: Array
     sample_rate: float
     name: str = ""
 
@@ -40,11 +34,6 @@ class SampledController:
         if not all(np.isfinite(getattr(self, name)).all() for name in expected) or not self.sample_rate > 0:
             raise Unusable("bad-controller", "a number is not finite, or the sample rate not positive", "controller",
                            "design it again")  # fmt: skip
-
-    @property
-    def order(self) -> int:
-        """The number of its states."""
-        return len(self.A)
 
     def to_json(self) -> dict[str, Any]:
         """As plain JSON data."""

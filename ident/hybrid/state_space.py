@@ -1,4 +1,8 @@
-"""Small linear systems as matrices: put behind each other, sampled, evaluated; continuous or sampled alike."""
+"""Small linear systems as matrices: put behind each other, sampled, evaluated; continuous or sampled alike.
+
+A controller and an exported linear part are such systems. :class:`ident.linear.LinearModel` is the batch of plants that
+a fit evaluates, :class:`ident.hybrid.rational.Rational` a transfer function that is to be inverted without rounding.
+"""
 
 from __future__ import annotations
 
