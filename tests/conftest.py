@@ -139,8 +139,8 @@ FEW = {
 
 
 @contextlib.contextmanager
-def of_few_effects(full: bool) -> Iterator[None]:
-    """In the short form a diagnosis ranks eight effects of the catalogue, of several places.
+def of_few_effects(full: bool, *beside: str) -> Iterator[None]:
+    """In the short form a diagnosis ranks eight effects of the catalogue, of several places, and those named `beside`.
 
     The whole catalogue takes several times as long, and half a minute where its kernels have to be compiled.
     """
@@ -148,8 +148,9 @@ def of_few_effects(full: bool) -> Iterator[None]:
         if not full:
             from ident.diagnosis import candidate_models
 
-            few = tuple(effect for effect in candidate_models.CATALOGUE if effect.name in FEW)
-            assert len(few) == len(FEW)
+            named = FEW | {*beside}
+            few = tuple(effect for effect in candidate_models.CATALOGUE if effect.name in named)
+            assert len(few) == len(named)
             own.setattr(candidate_models, "CATALOGUE", few)
         yield
 

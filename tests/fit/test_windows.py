@@ -19,6 +19,8 @@ from ident.run import Run
 from ident.workflows import diagnose, identify
 
 RATE, GAIN, LAG = 20.0, 0.05, 0.15
+MOTOR = Settings(model="motor", options={"population": 24.0, "generations": 6.0, "elite": 3.0})
+"""A small search: of three parameters it needs no more."""
 
 
 def cylinder(
@@ -55,7 +57,7 @@ def gain(fit) -> float:
 def test_what_an_integrator_sums_up_does_not_move_its_gain(seed):
     """Over whole runs the gain is where the disturbances took the record; its own error does not know of them."""
     matrix = cylinder(seed, wander=1e-3)
-    fit = identify(matrix, Settings(model="motor"))
+    fit = identify(matrix, MOTOR)
     assert gain(fit) == pytest.approx(GAIN, rel=0.08)  # four standard errors
     assert fit.window is not None
     assert 0.5 < fit.window.horizon < 3.0
@@ -70,8 +72,8 @@ def test_a_fit_with_an_effect_is_made_over_the_windows_of_the_fit_without(dead):
     In V of a command of 1 V at most: half of its deviation was the widest that a search allowed.
     """
     matrix = cylinder(6, wander=1e-3, dead=dead)
-    plain = identify(matrix, Settings(model="motor"))
-    fit = identify(matrix, Settings(model="motor", effects=("dead_zone",)))
+    plain = identify(matrix, MOTOR)
+    fit = identify(matrix, replace(MOTOR, effects=("dead_zone",)))
     assert fit.window is not None
     assert plain.window is not None
     assert fit.window.horizon == plain.window.horizon
@@ -85,17 +87,17 @@ def test_a_fit_with_an_effect_is_made_over_the_windows_of_the_fit_without(dead):
 def test_a_fit_with_an_effect_is_made_over_whole_runs_where_it_needed_windows_only_without():
     """What another gain each way adds up to looked like disturbances; with it whole runs are followed to the noise."""
     matrix = cylinder(7, wander=0.0, skew=0.3)
-    plain = identify(matrix, Settings(model="motor"))
+    plain = identify(matrix, MOTOR)
     assert plain.window is not None
     assert plain.error["fit"] > 0.3
-    fit = identify(matrix, Settings(model="motor", effects=("gain_asymmetry",)))
+    fit = identify(matrix, replace(MOTOR, effects=("gain_asymmetry",)))
     assert fit.window is None
     assert fit.error["fit"] < 1.5 * 2e-4 / np.std(matrix.runs[0].measured)
 
 
 def test_the_free_run_is_reported_with_its_interval():
     """What a machine sums up hangs on its gain for as long as the run takes."""
-    fit = identify(cylinder(5, wander=1e-3), Settings(model="motor"))
+    fit = identify(cylinder(5, wander=1e-3), MOTOR)
     assert fit.window is not None
     (found,) = [entry for entry in fit.determined if entry.expression == "Kt / c0"]
     beside = []  # free runs whose gain is as far off as its standard error lets it be
@@ -112,13 +114,13 @@ def test_the_free_run_is_reported_with_its_interval():
 
 def test_a_free_run_that_goes_astray_has_no_interval(monkeypatch):
     monkeypatch.setattr(NormalMatrices, "errors_beside", lambda _, steps: np.full(len(steps), np.nan))
-    fit = identify(cylinder(5, wander=1e-3), Settings(model="motor"))
+    fit = identify(cylinder(5, wander=1e-3), MOTOR)
     assert fit.window is not None
     assert fit.window.free_run == {}
 
 
 def test_without_disturbances_the_whole_run_is_fitted():
-    fit = identify(cylinder(4, wander=0.0), Settings(model="motor"))
+    fit = identify(cylinder(4, wander=0.0), MOTOR)
     assert fit.window is None
     assert gain(fit) == pytest.approx(GAIN, rel=2e-3)
     assert "window" not in fit.to_json()
@@ -136,15 +138,15 @@ def test_windows_over_which_a_record_but_goes_on_are_none(seed):
         x = np.cumsum(speed) / RATE + 1e-4 * random.standard_normal(len(u))
         channels, units = {"command": u, "displacement": x - x[0]}, {"command": "V", "displacement": "m"}
         runs.append(Run(use, "", RATE, channels, units, hold="zoh", use=use))
-    fit = identify(Matrix(Actuator("ANY"), tuple(runs)), Settings(model="motor"))
+    fit = identify(Matrix(Actuator("ANY"), tuple(runs)), MOTOR)
     assert fit.window is None
     assert fit.error["fit"] > 0.8
 
 
 def test_the_error_over_windows_is_counted_from_where_each_was_measured():
     matrix = cylinder(5, wander=1e-3)
-    fit = identify(matrix, Settings(model="motor"))
-    family = CandidateModels.of(matrix, Settings(model="motor"), horizon=fit.window.horizon)
+    fit = identify(matrix, MOTOR)
+    family = CandidateModels.of(matrix, MOTOR, horizon=fit.window.horizon)
     start = {family.preset.parameter(name).in_equations: value for name, value in fit.values.items()}
     refit = family.refit((), start)
     assert refit.error == pytest.approx(fit.window.error["fit"], rel=1e-3)
@@ -159,7 +161,7 @@ def test_the_error_over_windows_is_counted_from_where_each_was_measured():
 @pytest.mark.usefixtures("few_effects")
 def test_a_dead_zone_is_found_below_the_disturbances():
     """In whole runs it takes nothing off an error of tens of per cent. Friction of a load without mass is the same."""
-    found = diagnose(cylinder(6, wander=1e-3, dead=0.2), settings=Settings(model="motor"), most=1)
+    found = diagnose(cylinder(6, wander=1e-3, dead=0.2), settings=MOTOR, most=1)
     assert found.horizon is not None
     best = found.candidates[0]
     assert "dead_zone" in {best.effect, *best.group}
@@ -183,7 +185,7 @@ def test_runs_of_two_lengths_and_rates_have_windows_of_one_time():
     matrix = cylinder(8, wander=1e-3)
     first = matrix.runs[0]
     short = replace(first.part(0, 1500), id="short")
-    fit = identify(replace(matrix, runs=(first, short)), Settings(model="motor"))
+    fit = identify(replace(matrix, runs=(first, short)), MOTOR)
     assert gain(fit) == pytest.approx(GAIN, rel=0.08)
 
 
@@ -200,12 +202,12 @@ def test_the_noise_floor_over_windows_has_the_noise_with_which_each_begins():
     x += 2e-4 * np.random.default_rng(1).standard_normal(len(x))
     channels, units = {"command": u, "displacement": x}, {"command": "V", "displacement": "m"}
     matrix = Matrix(Actuator("CYLINDER"), (Run("r", "", RATE, channels, units, hold="zoh"),))
-    family = CandidateModels.of(matrix, Settings(model="motor"), horizon=1.0)
+    family = CandidateModels.of(matrix, MOTOR, horizon=1.0)
     assert family.floor is not None
     refit = family.refit((), {"m0": 1.0, "c0": 1 / LAG, "Kt": GAIN / LAG})
     assert refit.error == pytest.approx(family.floor, rel=0.03)
     assert family.at_floor(refit)
-    whole = CandidateModels.of(matrix, Settings(model="motor"))
+    whole = CandidateModels.of(matrix, MOTOR)
     assert whole.floor == pytest.approx(2e-4 / np.std(x), rel=0.05)
     assert whole.at_floor(whole.refit((), refit.values))
 

@@ -21,6 +21,7 @@ from ident.presets.suited import in_question, suited
 from ident.readers import read_matrix
 from ident.run import Run
 from ident.workflows import compare, diagnose, identify
+from tests.conftest import of_few_effects
 
 RATE = 200.0
 TIME = np.arange(3000) / RATE
@@ -134,10 +135,11 @@ def test_a_turned_sign_is_said_and_turned_back():
     assert {use: fits[1].error[use] for use in again} == pytest.approx(again, rel=1e-4)
 
 
-def test_hidden_friction_of_a_specimen_is_named_and_the_error_falls_to_the_noise():
+def test_hidden_friction_of_a_specimen_is_named_and_the_error_falls_to_the_noise(full):
     """Dahl's, with a way of its own, within twice the default: a fifth of the motion's deviation."""
     matrix = specimen(5, friction=20.0)
-    found = diagnose(matrix, settings=Settings(model="specimen"), most=1)
+    with of_few_effects(full, "presliding_friction"):
+        found = diagnose(matrix, settings=Settings(model="specimen"), most=1)
     named = {found.verdict.effects[0], *next((c.group for c in found.candidates if c.group), ())}
     assert "presliding_friction" in named
     freed = {"presliding_friction.displacement": (1e-5, 1e-1)}
@@ -159,6 +161,7 @@ def test_a_motor_is_found(seed):
     assert max(fit.error["fit"], fit.error["verify"]) < 0.0115
 
 
+@pytest.mark.usefixtures("few_effects")
 def test_a_hidden_dead_zone_of_a_motor_is_named_in_volts():
     found = diagnose(motor(6, half_width=1.5), settings=Settings(model="motor"), most=1)
     assert found.verdict.effects == ("dead_zone",)
@@ -217,6 +220,7 @@ def test_a_measured_damper_lacks_friction_that_yields_first(measured_data):
     assert fit.error["verify"] < 0.195
 
 
+@pytest.mark.usefixtures("few_effects")
 def test_a_measured_motor_has_a_dead_zone(measured_data):
     """1.9 V ± 0.15 V; in its group there may be dry friction, which stops the run-down, too. No doubt is raised."""
     matrix = read_matrix(measured_data / "dc_motor")
@@ -253,7 +257,7 @@ def test_a_specimen_that_is_moved_in_position_is_one_that_is_moved_in_speed():
         assert fits[1].values[name] == pytest.approx(fits[0].values[name], rel=0.01)
 
 
-def test_a_force_that_was_recorded_as_the_command_drives_a_mass_on_a_spring():
+def test_a_force_that_was_recorded_as_the_command_drives_a_mass_on_a_spring(full):
     """m x″ + c x′ + k x + k₃ x³ = F, by a recursion of its own: in question with what a command drives, and chosen."""
     rng, dt = np.random.default_rng(6), 1.0 / 2000.0
     m, c, k, hard = 0.5, 8.0, 4e3, 4e8
@@ -275,7 +279,8 @@ def test_a_force_that_was_recorded_as_the_command_drives_a_mass_on_a_spring():
     assert "drive" in [model.name for model in in_question(matrix.runs)]
     fit = identify(matrix, Settings(model=""))
     assert fit.model == "drive"
-    found = diagnose(matrix, fit, most=1, propose=False)
+    with of_few_effects(full, "cubic_stiffness"):
+        found = diagnose(matrix, fit, most=1, propose=False)
     assert found.verdict.effects == ("cubic_stiffness",)
     assert found.ladder[-1].error["verify"] < 0.1 * found.ladder[0].error["verify"]
 
