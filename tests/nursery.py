@@ -45,17 +45,18 @@ class Nursery:
         self._own = 0.0
 
     def start(
-        self, log: Path, *arguments: str, code: str = COMMAND, stderr: Path | None = None,
+        self, log: Path, *arguments: str, code: str = COMMAND, first: str = "", stderr: Path | None = None,
         environment: Mapping[str, str] | None = None,
     ) -> int:  # fmt: skip
         """A new process, as ``python -c CODE ARGUMENTS``: by default a command; its number.
 
-        What it says goes to `log`, and its errors to `stderr` where they are to be apart.
+        What it says goes to `log`, and its errors to `stderr` where they are to be apart; what is done `first` holds
+        in the processes that work for it, too.
         """
         for written in (log, stderr or log):
             written.touch()
         said = {"out": str(log.resolve()), "err": str((stderr or log).resolve())}
-        asked = {"code": code, "arguments": arguments, "folder": os.getcwd(), **said}
+        asked = {"code": code, "first": first, "arguments": arguments, "folder": os.getcwd(), **said}
         number: int = self._ask(asked | ({"environment": dict(environment)} if environment is not None else {}))
         return number
 
@@ -122,8 +123,9 @@ def _ended(number: int, within: float) -> tuple[int, float] | None:
 
 
 def _become(
-    code: str, arguments: Sequence[str], folder: str, out: str, err: str, environment: Mapping[str, str] | None = None
-) -> None:
+    code: str, first: str, arguments: Sequence[str], folder: str, out: str, err: str,
+    environment: Mapping[str, str] | None = None,
+) -> None:  # fmt: skip
     """This fork, as the process would be that was started by itself."""
     os.setsid()
     os.chdir(folder)
@@ -134,10 +136,12 @@ def _become(
     if environment is not None:
         os.environ.clear()
         os.environ.update(environment)
+    names = {"__name__": "__main__"}
+    exec(first, names)
     with suppress(AttributeError):
         _serve_forks()
     sys.argv = ["-c", *arguments]
-    exec(code, {"__name__": "__main__"})
+    exec(code, names)
 
 
 def _serve_forks() -> None:

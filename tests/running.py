@@ -28,6 +28,8 @@ from tests.nursery import WAIT, Nursery
 CHROMIUM = "/usr/bin/chromium"
 TOKEN = "a-token-for-tests"
 ENDED = ("succeeded", "failed", "cancelled")
+FEW_EFFECTS = "from tests.conftest import of_few_effects; few = of_few_effects(full=False); few.__enter__()"
+"""Done first, has a service rank a few effects: for a story whose point is another than the whole catalogue."""
 SERVE = """
 import sys
 from pathlib import Path
@@ -86,8 +88,8 @@ def nursery() -> Nursery:
 class Process(Service):
     """A service that runs in a process of this one; it answers once it is made."""
 
-    def __init__(self, data: Path) -> None:
-        self.data, self.port = data, free_port()
+    def __init__(self, data: Path, first: str = "") -> None:
+        self.data, self.port, self._first = data, free_port(), first
         super().__init__(f"http://127.0.0.1:{self.port}", TOKEN)
         self.start()
 
@@ -95,7 +97,7 @@ class Process(Service):
         """Start it on its data folder: also again, after it was killed."""
         said = self.data.with_name(f"{self.data.name}.log")
         given = (str(self.data), str(self.port), TOKEN)
-        self.number = nursery().start(said, *given, code=SERVE, environment=os.environ)
+        self.number = nursery().start(said, *given, code=SERVE, first=self._first, environment=os.environ)
         deadline = time.monotonic() + WAIT
         while time.monotonic() < deadline:
             try:
@@ -112,9 +114,9 @@ class Process(Service):
 
 
 @contextmanager
-def process(data: Path) -> Iterator[Process]:
+def process(data: Path, first: str = "") -> Iterator[Process]:
     """A service on this data folder, for the length of a block."""
-    service = Process(data)
+    service = Process(data, first)
     try:
         yield service
     finally:
@@ -125,11 +127,15 @@ def process(data: Path) -> Iterator[Process]:
 class Forked:
     """A command in a process that may be stopped, continued and killed; what it printed is in the file `said`."""
 
-    def __init__(self, arguments: Sequence[object], environment: Mapping[str, str], stderr: Path | None) -> None:
+    def __init__(
+        self, arguments: Sequence[object], environment: Mapping[str, str], stderr: Path | None, first: str = ""
+    ) -> None:
         self.folder = tempfile.TemporaryDirectory(prefix="command-")
         self.said = Path(self.folder.name) / "said"
         self.errors = stderr or self.said.with_name("errors")
-        self.pid = nursery().start(self.said, *map(str, arguments), stderr=self.errors, environment=environment)
+        self.pid = nursery().start(
+            self.said, *map(str, arguments), first=first, stderr=self.errors, environment=environment
+        )
         self.status: int | None = None
 
     def line(self, until: str) -> str:
@@ -170,10 +176,10 @@ class Forked:
 
 @contextmanager
 def forked(
-    *arguments: object, until: str, stderr: Path | None = None, **environment: str
+    *arguments: object, until: str, stderr: Path | None = None, first: str = "", **environment: str
 ) -> Iterator[tuple[Forked, str]]:
     """A command that has said `until`, and the line in which it did."""
-    made = Forked(arguments, _own(environment), stderr)
+    made = Forked(arguments, _own(environment), stderr, first)
     try:
         yield made, made.line(until)
     finally:
@@ -198,9 +204,10 @@ def started(
 
 
 @contextmanager
-def command(*arguments: object, until: str, anew: bool = False) -> Iterator[str]:
+def command(*arguments: object, until: str, anew: bool = False, first: str = "") -> Iterator[str]:
     """A command that serves; gives the line that has `until` in it, and ends the command as Ctrl-C does."""
-    with (started if anew else forked)(*arguments, until=until) as (process, line):
+    begun = started(*arguments, until=until) if anew else forked(*arguments, until=until, first=first)
+    with begun as (process, line):
         yield line
         process.send_signal(signal.SIGINT)
         assert process.wait(WAIT) == 0

@@ -7,13 +7,15 @@ import re
 import shlex
 import subprocess
 import sys
+import threading
 from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
 import pytest
 import typer
 
-from tests.running import command, free_port
+from tests.running import command, free_port, nursery
 
 ROOT = Path(__file__).resolve().parents[1]
 SLOW = {"compare", "diagnose"}
@@ -36,20 +38,62 @@ def environment(tmp_path_factory: pytest.TempPathFactory) -> Iterator[dict[str, 
             own.delenv(name, raising=False)
         for name, value in named.items():
             own.setenv(name, value)
-        with command("demo", "--port", free_port(), until="token=", anew=True):
+        with command("demo", "--port", free_port(), until="token="):
             yield {**os.environ}
 
 
-def test_the_lines_run_as_they_stand_in_one_terminal(environment: dict[str, str], tmp_path: Path, full: bool) -> None:
-    """In their order, in one shell that stops at the first failure; the last ones reach the demo by themselves."""
+STAND_IN = """servoident() {
+  printf '%s\\0' "$@" > "$STAND_IN/asked"
+  read -r status < "$STAND_IN/ended"
+  cat "$STAND_IN/said"
+  cat "$STAND_IN/errors" >&2
+  return "$status"
+}
+"""
+"""The program as a function of the shell: what it is asked goes to a fork of one that has imported it already."""
+
+
+@contextmanager
+def standing_in(folder: Path, environment: dict[str, str]) -> Iterator[dict[str, str]]:
+    """The environment of a shell in which the function above is answered."""
+    asked, ended = folder / "asked", folder / "ended"
+    for pipe in (asked, ended):
+        os.mkfifo(pipe)
+
+    def answer() -> None:
+        while given := asked.read_text():
+            said, errors = folder / "said", folder / "errors"
+            for text in (said, errors):
+                text.write_text("")
+            number = nursery().start(said, *given.split("\0")[:-1], stderr=errors, environment=environment)
+            ended.write_text(f"{nursery().ended(number)}\n")
+
+    answering = threading.Thread(target=answer, daemon=True)
+    answering.start()
+    yield environment | {"STAND_IN": str(folder)}
+    asked.write_text("")
+    answering.join()
+
+
+def test_the_lines_run_as_they_stand_in_one_terminal(
+    environment: dict[str, str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch, full: bool
+) -> None:
+    """In their order, in one shell that stops at the first failure; the last ones reach the demo by themselves.
+
+    In the short form no line starts an interpreter.
+    """
     (tmp_path / ".venv").symlink_to(sys.prefix)
+    (tmp_path / "pipes").mkdir()
+    monkeypatch.chdir(tmp_path)
     given = lines()
     assert given[0] == ". .venv/bin/activate"
     assert {line.split()[1] for line in given[1:]} >= {"simulate", "check", "fit", "diagnose", "upload", "query"}
     run = [line for line in given if full or line.split()[1] not in SLOW]
-    done = subprocess.run(
-        ["bash", "-e"], input="\n".join(run), cwd=tmp_path, env=environment, capture_output=True, text=True, check=False
-    )
+    with standing_in(tmp_path / "pipes", environment) as shell:
+        done = subprocess.run(
+            ["bash", "-e"], input="\n".join([*([] if full else [STAND_IN]), *run]), env=shell, capture_output=True,
+            text=True, check=False,
+        )  # fmt: skip
     assert done.returncode == 0, done.stderr
     uploaded, _, listed = done.stdout.partition(": 27 runs, new")
     assert re.search(r"matrix \w+ of SIM-0003$", uploaded)

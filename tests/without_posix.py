@@ -46,8 +46,10 @@ from fastapi.testclient import TestClient  # noqa: E402
 from app.cli.program import main  # noqa: E402
 from app.main import create_app  # noqa: E402
 from app.settings import Settings  # noqa: E402
+from ident.diagnosis import candidate_models  # noqa: E402
 from ident.simulation.cache import cache_folder  # noqa: E402
 
+candidate_models.CATALOGUE = candidate_models.CATALOGUE[::11]  # type: ignore[misc]  few of it take the same way
 SMALL = ("--option", "population=20", "--option", "generations=2")
 HEADERS = {"Authorization": "Bearer token"}
 

@@ -21,6 +21,7 @@ from ident.progress import Progress
 from ident.readers import read_matrix
 from ident.workflows import identify
 from tests.app.conftest import reached
+from tests.conftest import of_few_effects
 from tests.hidden_dead_zone import HALF_WIDTH, write, zipped
 
 API = "/api/v1"
@@ -54,9 +55,10 @@ def linear(service: TestClient, matrix: str) -> str:
 
 
 @pytest.fixture(scope="module")
-def diagnosis(service: TestClient, linear: str) -> dict[str, Any]:
-    """Its diagnosis."""
-    job = ended(service, service.post(f"{API}/diagnoses", json={"fit": linear, "max_effects": 2, "seed": 5}))
+def diagnosis(service: TestClient, linear: str, full: bool) -> dict[str, Any]:
+    """Its diagnosis; the whole catalogue is ranked in tests/diagnosis/test_diagnose.py."""
+    with of_few_effects(full):
+        job = ended(service, service.post(f"{API}/diagnoses", json={"fit": linear, "max_effects": 2, "seed": 5}))
     assert (job["kind"], job["state"], job["fit"], job["parent"]) == ("diagnosis", "succeeded", None, linear), job
     found: dict[str, Any] = service.get(f"{API}/diagnoses/{job['diagnosis']}").json()
     seen = job["progress"]["expected"]  # at first sight, while the rest was under way

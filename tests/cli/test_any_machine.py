@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 import yaml
 
+from app.cli import figure_files
 from tests.diagnosis.test_structure_selection import RATE, lag
 
 
@@ -27,9 +28,11 @@ def folder(tmp_path_factory) -> Path:
     return place
 
 
-def test_the_model_is_chosen_and_what_cannot_be_drawn_is_named(servoident, folder, tmp_path):
+def test_the_model_is_chosen_and_what_cannot_be_drawn_is_named(servoident, folder, tmp_path, monkeypatch):
     """It integrates: no frequency response of its own, no curves of what is missing, but the record in time."""
-    done = servoident("fit", folder, "--json", tmp_path / "fit.json")
+    monkeypatch.setattr(figure_files, "FORMATS", ("svg",))  # the others: tests/cli/test_commands.py
+    few = ("--option", "population=16", "--option", "generations=4", "--option", "elite=3")
+    done = servoident("fit", folder, *few, "--json", tmp_path / "fit.json")
     assert done.returncode == 0, done.stderr
     fit = json.loads((tmp_path / "fit.json").read_text())
     assert (fit["model"], fit["structures"][0]["machine"]) == ("open_valve", "open_valve")

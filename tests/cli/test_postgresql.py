@@ -83,12 +83,12 @@ def records(backup: Path) -> dict[str, Any]:
     return {"blobs": listed["blobs"], **listed["tables"]}
 
 
-def test_a_service_and_a_worker_share_the_queue(servoident, database, few, tmp_path):
+def test_a_service_and_a_worker_share_the_queue(servoident, database, few, tmp_path, full):
     """Fits of one matrix all end well, and an approved one is found by its serial number and rechecked."""
     place = ("--database", database, "--data", tmp_path)
     with (
         command("serve", "--port", free_port(), *place, until="token=") as line,
-        command("worker", "--executor", "second", *place, until="waiting for jobs", anew=True),
+        command("worker", "--executor", "second", *place, until="waiting for jobs", anew=full),
     ):
         service = Service.that_said(line)
         nul = service.client.get("/actuators/%00")
