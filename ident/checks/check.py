@@ -21,6 +21,7 @@ from ident.checks.repeats import repeats
 from ident.checks.response import Response, respond
 from ident.checks.rig import BEYOND, beyond_rig
 from ident.checks.scale import scale
+from ident.checks.self_oscillation import oscillating
 from ident.checks.statements import statements
 from ident.checks.summary import RunSummary, Summary, describe
 from ident.checks.timing import timing
@@ -72,5 +73,6 @@ def one_run(run: Run, response: Response | None, actuator: Actuator) -> Iterator
     yield from offset(run)
     yield from feedback(run)
     yield from missing_input(run)
+    yield from oscillating(run)
     yield from ranges(run, actuator)
     yield from beyond_rig(run, actuator)

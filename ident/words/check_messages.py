@@ -88,6 +88,13 @@ CHECKS: Mapping[str, str] = {
         "the command of {run:run} depends on the measured output, so a controller made it: the output predicts "
         "{share:percent} of the innovations of the command. Use the reference of the controller as the command and "
         "state controller or gain, or set closed_loop: false if there is no feedback",
+    "check.self_oscillation":
+        "{run:run} oscillates at {frequency:quantity} with an amplitude of {amplitude:quantity}, which the command "
+        "does not explain. The loop is unstable and has settled in a limit cycle, or something periodic disturbs it. "
+        "Lower the gain, or leave the run out of the fit: no linear model has a limit cycle",
+    "check.growing":
+        "{run:run} oscillates at {frequency:quantity}, and the amplitude doubles in {time:quantity}: the loop is "
+        "unstable. Lower the gain, and leave the run out of the fit",
     "check.amplitude":
         "the command of {run:run} has an RMS of {rms:.4g} {unit}, but the stated amplitude is {stated:.4g} {unit} "
         "({ratio:.3g} times). Correct amplitude, or the unit or scale of the command",
