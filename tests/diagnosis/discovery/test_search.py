@@ -29,6 +29,7 @@ from tests.diagnosis.vary import vary
 from tests.reference import qian_reference as linear
 from tests.reference.outside_reference import Outside, measure_all
 
+pytestmark = pytest.mark.usefixtures("few_effects")
 PLANT, NOISE = linear.Plant(), 0.005
 
 
@@ -121,7 +122,7 @@ def test_a_proposal_is_an_effect_that_anyone_may_add():
     assert fit.values["Cl"] == pytest.approx(1.6 * PLANT.Cl, rel=0.02)  # (1 + 1.2/2) of it in both directions
     again = diagnose(matrix, fit, most=0, custom=(read_effect(term.effect, model="qian2014"),), propose=True)
     assert again.proposals == ()
-    assert "the error is the noise's" in again.notes[0]
+    assert "the error is measurement noise" in again.notes[0]
 
 
 def test_verify_runs_neither_rank_nor_choose_and_what_they_speak_against_says_so():
