@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 import sys
+from functools import cache
 from importlib import metadata
 from itertools import chain
 from typing import Annotated, Any, NoReturn
@@ -104,6 +105,14 @@ program.add_typer(token, name="token")
 program.add_typer(webhook, name="webhook")
 
 
+@cache
+def commands() -> TyperGroup:
+    """The commands with their arguments, made of all signatures once: that takes longer than many a command."""
+    group = typer.main.get_command(program)
+    assert isinstance(group, TyperGroup)
+    return group
+
+
 def speak() -> None:
     """Results hold Greek letters and arrows: pipes and files get UTF-8, a terminal without them its own signs."""
     for stream in (sys.stdout, sys.stderr):
@@ -117,7 +126,7 @@ def main(arguments: list[str] | None = None) -> NoReturn:
     try:
         given = sys.argv[1:] if arguments is None else arguments
         with heard(), logged():
-            status = program(given or ["--help"], prog_name="servoident", standalone_mode=False)
+            status = commands()(given or ["--help"], prog_name="servoident", standalone_mode=False)
         if status == INTERRUPTED:
             raise KeyboardInterrupt
         sys.stdout.flush()

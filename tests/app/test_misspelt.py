@@ -10,11 +10,10 @@ from typing import Any
 
 import httpx
 import pytest
-import typer
 import yaml
 from fastapi.testclient import TestClient
 
-from app.cli.program import program
+from app.cli.program import commands
 from tests.app.conftest import archived, files, unpacked
 from tests.conftest import Program
 from tests.running import TOKEN
@@ -123,7 +122,7 @@ def options(command: Any, path: tuple[str, ...] = ()) -> Iterator[tuple[str, str
 
 def test_no_option_that_takes_a_name_escapes():
     """A new one is misspelt here, or said to take no name of a list."""
-    found = set(options(typer.main.get_command(program)))
+    found = set(options(commands()))
     free = {one for one in found if one[1] in FREE or one in FREE_OF}
     assert found - free == MISSPELT.keys()
     assert len(MISSPELT) > 50
