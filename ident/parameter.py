@@ -66,7 +66,8 @@ class Parameter:
     of_motion: bool = False
     """Whether it is a way, the inverse of one, or a speed of the motion, which measures it in place of the command."""
     sets_steps: bool = False
-    """Whether it is a way that has to be long against what a step of the simulation covers about a reversal."""
+    """Whether steps of a simulation follow it about a reversal: a way over which a force builds up, a speed over which
+    it falls, or the force of dry friction, which jumps there."""
 
     def __post_init__(self) -> None:
         if not self.lower < self.upper:

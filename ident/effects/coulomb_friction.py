@@ -7,7 +7,7 @@ COULOMB_FRICTION = Effect(
     name="coulomb_friction",
     place="load",
     meaning="dry friction of seals and guides, which sticks",
-    strength=Parameter("force", "Fc", "N", 0.0, 200.0, 0.0, "dry friction force"),
+    strength=Parameter("force", "Fc", "N", 0.0, 200.0, 0.0, "dry friction force", sets_steps=True),
     texts=("Ff = Ff + Fc",),
     units={"Ff": "N"},
     looks="flat tops where the speed changes sign; magnitude falls and lag grows at small amplitudes",

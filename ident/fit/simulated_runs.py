@@ -31,7 +31,7 @@ from ident.presets import Preset
 from ident.run import MOTIONS, Run
 from ident.simulation.equilibrium import equilibrium
 from ident.simulation.simulate import Simulation
-from ident.simulation.steps import Modes, steps_at_reversals, steps_needed
+from ident.simulation.steps import Modes, steps_at_jumps, steps_at_passages, steps_at_reversals, steps_needed
 
 Array = NDArray[np.float64]
 _TOGETHER = 1024  # lanes simulated in one go: what is done once for all of them costs little
@@ -321,9 +321,20 @@ class SimulatedRuns:
         least = self.preset.steps if kinks and not self.roughly else 1
         needed = [steps_needed(of or self.chain, found, hold, on, band, least) for hold, band in kinds]
         if not self.roughly:
-            ways = (p for effect in on for p in effect.added[1:] if p.sets_steps)
-            needed += [steps_at_reversals(self._turned, values[way.in_equations]) for way in ways]
+            needed += [self._at_reversals(p.unit, values[p.in_equations], values)
+                       for effect in on for p in effect.added if p.sets_steps]  # fmt: skip
         return np.asarray(np.max(needed, axis=0))
+
+    def _at_reversals(self, unit: str, size: Array, values: Mapping[str, Array]) -> NDArray[np.int64]:
+        """Steps a sample that a way, a speed or a force (v,) asks for where the motion reverses."""
+        rate = min(run.sample_rate for run in self.matrix.runs)
+        if unit == "m":
+            return steps_at_reversals(self._turned, size)
+        if unit == "m/s":
+            return steps_at_passages(self._turned * rate, size)
+        moves = self._motion.get("x", 0.0) > 0 and "m0" in values
+        jumps = 2.0 * np.abs(size) / np.maximum(values["m0"] * rate**2 * self._motion["x"], 1e-300) if moves else 0.0
+        return steps_at_jumps(jumps + np.zeros(len(size)))
 
     @cached_property
     def _turned(self) -> float:

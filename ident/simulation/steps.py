@@ -30,6 +30,11 @@ _SHARE = 0.1
 motion turned is not known. Five times as much puts the way off by 2 %."""
 _AT_REVERSALS = 8
 """Steps a sample at most for reversals: of a way so short that it asks for more the samples hardly tell the length."""
+_MISSED = 5e-4
+"""Of the amplitude of a motion, by which a reversal within a step may put it off. Why: a quarter of the least noise of
+a sensor, 0.2 %."""
+_PASSED = 2.0
+"""Widths of a force that falls with the speed, which may be passed in a step."""
 _FASTER = 1.5
 """Times as fast as at rest is a mode that motion makes faster. Why: less asks for no more steps, which are powers of
 two, and slopes by differences are off by a hundredth where forces are large."""
@@ -42,7 +47,25 @@ def steps_at_reversals(turned: float, ways: Array) -> NDArray[np.int64]:
     `turned` is the way a T² that the motion's largest acceleration a covers in a sample T. In n steps a reversal is
     missed by a T²/n² at most.
     """
-    needed = np.sqrt(turned / (_SHARE * np.maximum(np.abs(ways), 1e-300)))
+    return _at_reversals(np.sqrt(turned / (_SHARE * np.maximum(np.abs(ways), 1e-300))))
+
+
+def steps_at_jumps(jumps: Array) -> NDArray[np.int64]:
+    """Steps a sample, a power of two, for jumps J (v,) of the acceleration where a motion of amplitude x̂ reverses.
+
+    They are given as J T²/x̂, in a sample T. In n steps, which take such a force at its mean, the way is put off by
+    J T²/8n² at most.
+    """
+    return _at_reversals(np.sqrt(jumps / (8.0 * _MISSED)))
+
+
+def steps_at_passages(passed: float, speeds: Array) -> NDArray[np.int64]:
+    """Steps a sample, a power of two, for speeds (v,) over which a force falls; `passed` is the speed's rise in it."""
+    return _at_reversals(passed / (_PASSED * np.maximum(np.abs(speeds), 1e-300)))
+
+
+def _at_reversals(needed: Array) -> NDArray[np.int64]:
+    """As many steps as are needed, as a power of two within what samples tell."""
     return np.asarray(2 ** np.ceil(np.log2(np.clip(needed, 1.0, _AT_REVERSALS))), dtype=np.int64)
 
 
