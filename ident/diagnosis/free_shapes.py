@@ -92,8 +92,9 @@ def trial_from_everywhere(
 ) -> FittedModel:
     """The first refit with a predicted effect, begun again from other places of its shapes until two ends agree.
 
-    And from the strengths that were simulated, as long as it does not come to what was predicted. The best end is gone
-    on with until it stays: a trial's few steps may end far from there.
+    And from the strengths that were simulated, then from the whole search space, as long as it does not come to what
+    was predicted: where the base is one of many that the data do not tell apart, the optimum with the effect may lie
+    beside another. The best end is gone on with until it stays: a trial's few steps may end far from there.
     """
     effects = (*base.effects, prediction.effect)
     ends = [models.trial(effects, prediction.starts, aim)]
@@ -105,6 +106,8 @@ def trial_from_everywhere(
         if keeps(ends, prediction):
             break
         ends.append(models.trial(effects, [start], aim))
+    if not keeps(ends, prediction):
+        ends += models.leading(models.global_starts(effects), aim)
     return models.converged_trial(stable_minimum(ends, lambda end: end.local.error), aim)
 
 

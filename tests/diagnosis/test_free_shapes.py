@@ -18,6 +18,7 @@ from ident.diagnosis.free_shapes import (
     from_the_start,
     is_width,
     keeps,
+    trial_from_everywhere,
     with_free_shapes,
     with_widths,
 )
@@ -98,6 +99,21 @@ def test_an_end_that_keeps_less_than_half_of_a_small_promise_is_begun_again():
     assert not keeps(ends, promised)
     ends[0].local.error = 0.97
     assert keeps(ends, promised)
+
+
+@pytest.mark.parametrize(("near", "best"), [(0.95, 0.2), (0.3, 0.3)])
+def test_an_effect_that_nowhere_comes_to_its_prediction_is_sought_in_the_whole_space(near, best):
+    """A base whose mass the data do not tell from its spring may be far from where the effect explains them."""
+    end, far = (SimpleNamespace(local=SimpleNamespace(error=error)) for error in (near, 0.2))
+    models = SimpleNamespace(
+        trial=lambda *_: end,
+        global_starts=lambda _effects: [far],
+        leading=lambda refits, _aim: list(refits),
+        converged_trial=lambda trial, _aim: trial,
+    )
+    errors = {"after": SimpleNamespace(error=0.3), "before": SimpleNamespace(error=1.0)}
+    promised = SimpleNamespace(effect="backlash", starts=(), elsewhere=((), ()), simulated=({},), **errors)
+    assert trial_from_everywhere(models, SimpleNamespace(effects=()), promised).local.error == best
 
 
 def test_a_width_that_the_data_do_not_determine_is_not_freed():
