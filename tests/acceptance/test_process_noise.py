@@ -1,6 +1,6 @@
 """An integrator with process noise: the gain's standard error is right over windows, and wrong over whole runs.
 
-Seeds 100 to 199 in the long form, the first 24 of them in the short one.
+Seeds 100 to 199 in the long form, the first twelve of them in the short one.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ def deviations(seeds: range) -> np.ndarray:
 
 
 def test_the_gain_lies_within_its_standard_errors_as_often_as_it_should(full):
-    z = deviations(range(100, 200 if full else 124))
+    z = deviations(range(100, 200 if full else 112))
     assert abs(z.mean()) < 1.0
     covered = float(np.mean(np.abs(z) < 1.96))
     assert (0.90 if full else 0.75) <= covered <= (0.98 if full else 1.0)
@@ -35,5 +35,5 @@ def test_the_gain_lies_within_its_standard_errors_as_often_as_it_should(full):
 
 def test_over_whole_runs_it_does_not(full, monkeypatch):
     monkeypatch.setattr(identification, "in_windows", lambda optimum, *_, **__: optimum)
-    z = deviations(range(100, 200 if full else 124))
+    z = deviations(range(100, 200 if full else 112))
     assert np.mean(np.abs(z) < 1.96) < 0.7

@@ -88,7 +88,7 @@ def test_stability_is_lost_where_the_closed_form_loses_it(small):
 def inside_wider():
     """The search for the peak of Fig. 19 inside axes that are widened by 10 %; another seed may be given."""
     target = replace(PRINTED, axes=PRINTED.widened(0.1))
-    return find_peak(changed_machine(fit_of(), SMALL), target, seed=0, starts=6)
+    return find_peak(changed_machine(fit_of(), SMALL), target, seed=0, starts=3)
 
 
 def test_no_single_parameter_makes_the_peak_of_fig_19():
