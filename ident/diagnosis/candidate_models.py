@@ -41,6 +41,12 @@ from ident.words.titles import title
 Array = NDArray[np.float64]
 
 
+def _has_specimen(preset: Preset, matrix: Matrix) -> bool:
+    """Whether something may yield: what is moved, a stated or a measured specimen, or a spring of the machine's own."""
+    yields = preset.data.driven_by in MOTIONS or any(p.name == "k0" for p in preset.parameters)
+    return yields or any(run.specimen or "force" in run.channels for run in matrix.runs)
+
+
 @dataclass
 class CandidateModels:
     """The models of a preset for the fit runs of a matrix, with effects of the catalogue and of the user.
@@ -71,8 +77,7 @@ class CandidateModels:
     ) -> CandidateModels:  # fmt: skip
         """The models of the settings' preset with every effect that it has a place for."""
         preset, matrix = prepare(preset_named(given.model), matrix, given.load, given.preprocessing)
-        there = preset.data.driven_by in MOTIONS or any(run.specimen or "force" in run.channels for run in matrix.runs)
-        listed = (*(effect for effect in CATALOGUE if there or not effect.of_specimen), *custom)
+        listed = (*(effect for effect in CATALOGUE if _has_specimen(preset, matrix) or not effect.of_specimen), *custom)
         known = {
             effect.name: about(effect, preset.middle)
             for effect in listed

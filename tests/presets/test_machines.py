@@ -12,6 +12,7 @@ import pytest
 import scipy.signal
 
 from ident.checks.check import check
+from ident.diagnosis.candidate_models import CandidateModels
 from ident.diagnosis.structure_selection import choose_structure
 from ident.errors import Unusable
 from ident.fit.settings import Settings
@@ -255,6 +256,15 @@ def test_a_specimen_that_is_moved_in_position_is_one_that_is_moved_in_speed():
     assert fits[1].model == "specimen"
     for name in ("cS", "kS"):
         assert fits[1].values[name] == pytest.approx(fits[0].values[name], rel=0.01)
+
+
+def test_the_spring_that_a_force_deflects_may_yield():
+    """A mass on a hysteretic spring: nobody states a specimen there."""
+    force = np.sin(2 * np.pi * 3.0 * TIME)
+    run = Run("a", "", RATE, {"command": force, "displacement": 1e-3 * force}, {"command": "N", "displacement": "m"})
+    matrix = Matrix(Actuator("OSCILLATOR"), (run,))
+    assert "specimen_hysteresis" in CandidateModels.of(matrix, Settings(model="drive")).effects
+    assert "specimen_hysteresis" not in CandidateModels.of(matrix, Settings(model="motor")).effects
 
 
 def test_a_force_that_was_recorded_as_the_command_drives_a_mass_on_a_spring(full):
