@@ -222,6 +222,16 @@ class MissingInputView(BaseModel):
     evidence: str
 
 
+class OscillationView(BaseModel):
+    """A run that swings by itself while every input rests: Hz and 1/s, or 1/sample."""
+
+    run: str
+    frequency: float
+    growth: float
+    cause: str
+    evidence: str
+
+
 class DiagnosisResult(BaseModel):
     """The contract's diagnose JSON.
 
@@ -258,3 +268,4 @@ class DiagnosisResult(BaseModel):
     most_nats: float | None = None
     preprocessing: list[StepView] = Field(default_factory=list)
     missing_inputs: list[MissingInputView] = Field(default_factory=list)
+    oscillation: list[OscillationView] = Field(default_factory=list)

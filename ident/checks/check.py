@@ -15,6 +15,7 @@ from ident.checks.flat import flat
 from ident.checks.gain import force_sign, gain
 from ident.checks.missing_input import missing_input
 from ident.checks.offset import offset
+from ident.checks.oscillation import oscillates
 from ident.checks.passivity import turned_sign
 from ident.checks.ranges import ranges
 from ident.checks.repeats import repeats
@@ -74,5 +75,6 @@ def one_run(run: Run, response: Response | None, actuator: Actuator) -> Iterator
     yield from feedback(run)
     yield from missing_input(run)
     yield from oscillating(run)
+    yield from oscillates(run)
     yield from ranges(run, actuator)
     yield from beyond_rig(run, actuator)

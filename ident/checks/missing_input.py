@@ -13,23 +13,21 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.ndimage import maximum_filter1d, median_filter, minimum_filter1d
+from scipy.ndimage import median_filter
 
+from ident.checks.at_rest import HELD, acting, held, spans
 from ident.checks.finding import Finding
-from ident.run import BENCH, DISTURBANCES, MOTIONS, Run, Samples
+from ident.run import BENCH, Run, Samples
 from ident.words.message import Message, message
 
 TRAVEL = 0.1  # of the output's range: how far it goes when it sets out, in the time that its quick motions take
 QUICK = 0.9  # share of its motions that are slower than a quick one
 RESTS = 0.02  # of its range, within which it rests: more than the noise and the digit of most records
-HELD = 0.002  # of an input's range, within which the input rests
 REST = 2  # durations of a quick motion for which it has rested before it sets out
 LEAST = 2  # times that it sets out: a single one may be a mishap
 LONGEST = 0.05  # of the record, the duration of a quick motion: what is slower shows no rest
 SHORTEST = 8  # samples of a quick motion
 SPIKE = 5  # samples, of which the median is taken: a wrong sample or two are no motion
-STATES = ("load_pressure", "pressure_a", "pressure_b", "spool", "temperature")
-"""Channels that follow from the inputs."""
 
 
 @dataclass(frozen=True)
@@ -57,34 +55,23 @@ def missing_input(run: Run) -> Iterator[Finding]:
 
 def missing_inputs(run: Run) -> tuple[MissingInput, ...]:
     """The stretches in which the output set out from rest while every input rested."""
-    inputs = _inputs(run)
-    if run.kind in BENCH or not inputs or np.ptp(run.measured) == 0 or not _held(inputs, (REST + 1) * SHORTEST).any():
+    inputs = acting(run)
+    if run.kind in BENCH or not inputs or np.ptp(run.measured) == 0 or not held(inputs, (REST + 1) * SHORTEST).any():
         return ()
     y = np.asarray(median_filter(run.measured, SPIKE), np.float64)
     motion = _quick(y)
     rest = REST * motion
     if run.length <= rest + motion:
         return ()
-    held = _held(inputs, rest + motion)
-    begins = [int(k[0]) for k in _neighbours(np.flatnonzero(_sets_out(y, motion)), rest) if held[k].all()]
+    at_rest = held(inputs, rest + motion)
+    begins = [int(k[0]) for k in _neighbours(np.flatnonzero(_sets_out(y, motion)), rest) if at_rest[k].all()]
     changes = np.flatnonzero(np.any([np.abs(np.diff(u, prepend=u[0])) > HELD * np.ptp(u) for u in inputs], axis=0))
     since = [begin - max(changes[changes <= begin], default=-rest) for begin in begins]
     if len(begins) < LEAST or max(since) - min(since) <= motion:
         return ()
-    evidence = _evidence(run, y, motion, begins, held)
+    evidence = _evidence(run, y, motion, begins, at_rest)
     times = [(begin + rest) / run.sample_rate for begin in begins]
     return tuple(MissingInput(run.id, time, time + motion / run.sample_rate, evidence) for time in times)
-
-
-def _inputs(run: Run) -> list[Samples]:
-    """All recorded signals that act on the machine; none where nothing drives it.
-
-    These are the command, forces and disturbances, and the motion where something else answers to it.
-    """
-    answers = {run.output, *STATES, *(MOTIONS if run.output in MOTIONS else ())}
-    acting = {name: samples for name, samples in run.channels.items() if name not in answers}
-    driven = {"command", "drive_force", *DISTURBANCES, *MOTIONS} & acting.keys()
-    return list(acting.values()) if driven else []
 
 
 def _quick(y: Samples) -> int:
@@ -99,18 +86,7 @@ def _sets_out(y: Samples, motion: int) -> NDArray[np.bool_]:
     """Whether the output rests from each sample on, and then goes the travel, (n − rest − motion,)."""
     rest, extent = REST * motion, np.ptp(y)
     distance = np.abs(y[rest + motion :] - y[rest:-motion])
-    return np.asarray((_range(y, rest)[: len(distance)] <= RESTS * extent) & (distance >= TRAVEL * extent))
-
-
-def _held(inputs: Sequence[Samples], samples: int) -> NDArray[np.bool_]:
-    """Whether every input rests over so many samples from each on, (n − samples + 1,)."""
-    return np.asarray(np.all([_range(u, samples) <= HELD * np.ptp(u) for u in inputs], axis=0))
-
-
-def _range(x: Samples, samples: int) -> Samples:
-    """The largest less the least of so many samples from each on, (n − samples + 1,)."""
-    spread = maximum_filter1d(x, samples) - minimum_filter1d(x, samples)
-    return np.asarray(spread[samples // 2 : len(x) - (samples - 1 - samples // 2)], np.float64)
+    return np.asarray((spans(y, rest)[: len(distance)] <= RESTS * extent) & (distance >= TRAVEL * extent))
 
 
 def _neighbours(places: NDArray[np.intp], apart: int) -> list[NDArray[np.intp]]:
@@ -119,11 +95,11 @@ def _neighbours(places: NDArray[np.intp], apart: int) -> list[NDArray[np.intp]]:
     return [group for group in groups if len(group)]
 
 
-def _evidence(run: Run, y: Samples, motion: int, begins: Sequence[int], held: NDArray[np.bool_]) -> Message:
+def _evidence(run: Run, y: Samples, motion: int, begins: Sequence[int], at_rest: NDArray[np.bool_]) -> Message:
     """How often and when it set out, and in which share of the rest of its inputs it moves at half of that speed."""
     rest, unit = REST * motion, run.units.get(run.output, "1")
     distance = np.abs(y[motion:] - y[:-motion])
-    moved = distance[rest:][: len(held)][held[: len(distance) - rest]]
+    moved = distance[rest:][: len(at_rest)][at_rest[: len(distance) - rest]]
     least = 0.5 * min(distance[begin + rest] for begin in begins)
     by_time = unit.removesuffix("/s") + "/s²" if unit.endswith("/s") else f"{unit}/{run.time_unit}"
     speed = least * run.sample_rate / motion, by_time

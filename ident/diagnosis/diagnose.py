@@ -7,6 +7,7 @@ from contextlib import suppress
 from dataclasses import dataclass, replace
 
 from ident.checks.missing_input import missing_inputs
+from ident.checks.oscillation import oscillation
 from ident.diagnosis.alternative_structures import alternative_models
 from ident.diagnosis.ambiguity import challenged, delay_sentences, lag_pairs, other_machines
 from ident.diagnosis.budget import SearchBudget
@@ -26,7 +27,7 @@ from ident.diagnosis.selection_loop import select
 from ident.diagnosis.sentences import alternative_sentences, dispensable_sentence, horizon_sentence
 from ident.diagnosis.stages import EFFECTS, ERROR_BUDGET, FURTHER, LABELS, LATER, NEXT_RUN, TERMS, Stages, not_looked_at
 from ident.diagnosis.undetermined import rested
-from ident.diagnosis.unfitted import unranked, unsearched, with_missing_inputs
+from ident.diagnosis.unfitted import unranked, unsearched, with_missing_inputs, with_oscillations
 from ident.diagnosis.verdict import Findings, conclude
 from ident.effects.effect import Effect
 from ident.errors import TimeIsUp, Unusable
@@ -45,16 +46,18 @@ def diagnose(matrix: Matrix, fit: FitResult, custom: Sequence[Effect], budget: S
     do not go together. Where an input of the runs to fit is not recorded, no effect is looked for.
     """
     models = models_of(matrix, fit, custom)
+    swings = [swing for run in matrix.runs if (swing := oscillation(run))]
     missing = [stretch for run in matrix.runs for stretch in missing_inputs(run)]
     of_fit = {run.id for run in matrix.of_use("fit")}
     if unrecorded := [stretch for stretch in missing if stretch.run in of_fit]:
-        return unsearched(matrix, fit, unrecorded, 0.0)
+        return with_oscillations(unsearched(matrix, fit, unrecorded, 0.0), swings)
     with budget.budget.running():
         try:
             diagnosis = Diagnoser(models, matrix, fit, custom, budget).diagnosis()
         except TimeIsUp:
             diagnosis = unranked(matrix, fit, budget.seconds_taken)
-    return with_missing_inputs(replace(diagnosis, seconds=budget.seconds_taken), missing)
+    diagnosis = with_missing_inputs(replace(diagnosis, seconds=budget.seconds_taken), missing)
+    return with_oscillations(diagnosis, swings)
 
 
 def models_of(matrix: Matrix, fit: FitResult, custom: Sequence[Effect]) -> CandidateModels:

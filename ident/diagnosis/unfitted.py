@@ -7,6 +7,7 @@ from dataclasses import replace
 from importlib.metadata import version
 
 from ident.checks.missing_input import MissingInput
+from ident.checks.oscillation import Oscillation
 from ident.diagnosis.result import NO_ERRORS, Baseline, Diagnosis, Rung, Verdict
 from ident.diagnosis.stages import EFFECTS, LATER, not_looked_at
 from ident.fit.result import FitResult
@@ -48,6 +49,15 @@ def with_missing_inputs(found: Diagnosis, missing: Sequence[MissingInput]) -> Di
     said = message("verdict.missing_input_validation", evidence=missing[0].evidence)
     verdict = replace(found.verdict, text=f"{said} {found.verdict.text}")
     return replace(found, verdict=verdict, missing_inputs=tuple(stretch.to_json() for stretch in missing))
+
+
+def with_oscillations(found: Diagnosis, swings: Sequence[Oscillation]) -> Diagnosis:
+    """The diagnosis with what the machine does by itself, said first; as it is where it does nothing."""
+    if not swings:
+        return found
+    said = message("verdict.oscillation", evidence=swings[0].evidence, cause=swings[0].cause)
+    verdict = replace(found.verdict, text=f"{said} {found.verdict.text}")
+    return replace(found, verdict=verdict, oscillation=tuple(swing.to_json() for swing in swings))
 
 
 def _of_fit(matrix: Matrix, fit: FitResult, why: Message, seconds: float) -> Diagnosis:

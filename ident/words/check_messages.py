@@ -84,6 +84,13 @@ CHECKS: Mapping[str, str] = {
         "the samples",
     "check.missing_input":
         "{evidence}. An input is not recorded: add its channel, or keep only rows without it",
+    "oscillation":
+        "in {run:run} the {output} swings by itself at {frequency:quantity}, with a growth of {growth:quantity}, from "
+        "{start:.4g} to {end:.4g} {unit}, while every input rests",
+    "oscillation.loop": "Reduce the gain of the loop, or its delay: at this gain it is at its stability limit",
+    "oscillation.open":
+        "State the gain if a loop is closed, and reduce it; else look for a source that is not recorded",
+    "check.oscillation": "{evidence}. {cause}",
     "check.closed_loop":
         "the command of {run:run} depends on the measured output, so a controller made it: the output predicts "
         "{share:percent} of the innovations of the command. Use the reference of the controller as the command and "

@@ -85,6 +85,7 @@ VERDICT: Mapping[str, str] = {
         "channel, or keep only rows without it.",
     "verdict.missing_input_validation":
         "An input is not recorded in validation data: {evidence}. The errors there contain it.",
+    "verdict.oscillation": "The machine oscillates: {evidence}. {cause}.",
     "verdict.bounded":
         "The strength of {effect} ended at the bound of its search. It may be larger, or stand for another effect: "
         "search within wider bounds.",

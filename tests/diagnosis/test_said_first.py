@@ -1,14 +1,18 @@
-"""Where an input is not recorded no effect is named for it, and it is said first."""
+"""What the records show before anything is fitted is said first: an input that is not recorded, an oscillation."""
 
 from __future__ import annotations
 
+import numpy as np
 import pytest
 
+from ident.checks.oscillation import oscillation
 from ident.diagnosis.budget import SearchBudget
 from ident.diagnosis.diagnose import diagnose
-from ident.diagnosis.result import Diagnosis
+from ident.diagnosis.result import Diagnosis, Verdict
+from ident.diagnosis.unfitted import with_oscillations
 from ident.fit.result import FitResult
 from ident.matrix import Actuator, Matrix
+from tests.checks import test_oscillation as tested
 from tests.checks.test_missing_input import RAISED, lowering, record
 
 FIT = FitResult(
@@ -28,6 +32,15 @@ def test_nothing_is_named_for_an_input_that_is_not_recorded(found):
     assert found.verdict.text.startswith("An input is not recorded")
     assert found.summary[0] == "Missing: an input that is not in the record of run loader."
     assert found.baseline.error["fit"] == 0.5
+
+
+def test_an_oscillation_is_said_first_with_its_frequency_and_growth():
+    swings = tested.record(0.02 * np.sin(2 * np.pi * 12.3 * tested.T), gain=7.0)
+    found = with_oscillations(Diagnosis(candidates=(), verdict=Verdict(text="The rest.")), [oscillation(swings)])
+    assert found.verdict.text.startswith(
+        "The machine oscillates: in run loop the displacement swings by itself at 12.3"
+    )
+    assert set(found.to_json()["oscillation"][0]) == {"run", "frequency", "growth", "cause", "evidence"}
 
 
 def test_the_json_says_where_the_input_acted_and_is_read_again(found):

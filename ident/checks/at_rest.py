@@ -1,0 +1,47 @@
+"""Where the inputs of a run rest: what the machine does there, it does by itself."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.ndimage import maximum_filter1d, minimum_filter1d
+
+from ident.run import DISTURBANCES, MOTIONS, Run, Samples
+
+HELD = 0.002  # of an input's range, within which the input rests
+STATES = ("load_pressure", "pressure_a", "pressure_b", "spool", "temperature")
+"""Channels that follow from the inputs."""
+
+
+def acting(run: Run) -> list[Samples]:
+    """All recorded signals that act on the machine; none where nothing drives it.
+
+    These are the command, forces and disturbances, and the motion where something else answers to it.
+    """
+    answers = {run.output, *STATES, *(MOTIONS if run.output in MOTIONS else ())}
+    signals = {name: samples for name, samples in run.channels.items() if name not in answers}
+    driven = {"command", "drive_force", *DISTURBANCES, *MOTIONS} & signals.keys()
+    return list(signals.values()) if driven else []
+
+
+def held(inputs: Sequence[Samples], samples: int) -> NDArray[np.bool_]:
+    """Whether every input rests over so many samples from each on, (n − samples + 1,)."""
+    return np.asarray(np.all([spans(u, samples) <= HELD * np.ptp(u) for u in inputs], axis=0))
+
+
+def spans(x: Samples, samples: int) -> Samples:
+    """The largest less the least of so many samples from each on, (n − samples + 1,)."""
+    found = maximum_filter1d(x, samples) - minimum_filter1d(x, samples)
+    return np.asarray(found[samples // 2 : len(x) - (samples - 1 - samples // 2)], np.float64)
+
+
+def rests(inputs: Sequence[Samples], least: int) -> list[slice]:
+    """The stretches of at least so many samples in which every input rests."""
+    length = len(inputs[0])
+    if length < least:
+        return []
+    begins = np.flatnonzero(held(inputs, least))
+    groups = np.split(begins, np.flatnonzero(np.diff(begins) > 1) + 1)
+    return [slice(int(group[0]), int(group[-1]) + least) for group in groups if len(group)]
