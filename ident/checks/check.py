@@ -15,14 +15,13 @@ from ident.checks.flat import flat
 from ident.checks.gain import force_sign, gain
 from ident.checks.missing_input import missing_input
 from ident.checks.offset import offset
-from ident.checks.oscillation import oscillates
 from ident.checks.passivity import turned_sign
 from ident.checks.ranges import ranges
 from ident.checks.repeats import repeats
 from ident.checks.response import Response, respond
 from ident.checks.rig import BEYOND, beyond_rig
 from ident.checks.scale import scale
-from ident.checks.self_oscillation import oscillating
+from ident.checks.self_oscillation import self_oscillating
 from ident.checks.statements import statements
 from ident.checks.summary import RunSummary, Summary, describe
 from ident.checks.timing import timing
@@ -74,7 +73,6 @@ def one_run(run: Run, response: Response | None, actuator: Actuator) -> Iterator
     yield from offset(run)
     yield from feedback(run)
     yield from missing_input(run)
-    yield from oscillating(run)
-    yield from oscillates(run)
+    yield from self_oscillating(run)
     yield from ranges(run, actuator)
     yield from beyond_rig(run, actuator)

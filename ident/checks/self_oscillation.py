@@ -1,9 +1,6 @@
-"""An oscillation that the command does not make: a loop beyond its stability, growing or settled in a limit cycle.
+"""An oscillation that a machine or its loop makes by itself, grown to a limit cycle or growing.
 
-What the command explains is taken from the output, G U of their averaged spectra. A mode of a loop beyond its stability
-is a line in what is left, whose amplitude A(t) in a band around it grows as exp(σ t), or is constant. A mode that noise
-drives has the fluctuating amplitude of narrow-band noise, std(A)/mean(A) = 0.52 (Rice 1944); one that the command
-drives is explained, or lies at a multiple of a command that repeats itself.
+It is looked for while every input rests, where few periods show it, and then in what the command does not explain.
 """
 
 from __future__ import annotations
@@ -12,168 +9,70 @@ import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-import numpy as np
-import scipy  # signal, which takes a third of a second to load, is loaded where it is first used
-from numpy.typing import NDArray
-
 from ident.checks.finding import Finding
-from ident.run import Run, Samples
-from ident.words.message import message
-
-Spectrum = NDArray[np.complex128]
-LONGEST = 131_072
-"""Samples that are looked at, the last of the record: there a mode that grows is largest."""
-SHORTEST = 256
-"""Samples: of fewer nothing is said."""
-BAND = 0.2
-"""Of the frequency, either way: the band in which the amplitude is followed."""
-CYCLES = 60
-"""Cycles that a record has of an oscillation, at least: the amplitude of fewer is constant by chance."""
-STEADY = 0.2
-"""std(A)/mean(A) up to which an amplitude is constant; narrow-band noise has 0.52, over 60 cycles 0.3 at least."""
-SHARE = 0.5
-"""Of the output's variance that the oscillation has, at least: a limit cycle is most of it, a resonance may be less."""
-GROWTH = 3.0
-"""ln of the times by which an amplitude grows over the second half of a record, at least: 20 times."""
-STRAIGHT = 0.98
-"""Correlation of ln A with time from which on it grows as a mode does."""
-REPEATED = 0.9
-"""Correlation with itself a period later from which on a command repeats itself."""
-MULTIPLE = 0.1
-"""Of the frequency of a command that repeats itself: an oscillation so near a multiple of it is driven."""
-CHANCE = 0.3
-"""Coherence of two signals of sixteen frames that have nothing to do with each other: 99 % of it lies below."""
-_FRAMES = 16  # of the averaged spectra
+from ident.checks.oscillation_at_rest import AtRest, oscillation_at_rest
+from ident.checks.unexplained_oscillation import Unexplained, unexplained_oscillation
+from ident.run import Run
+from ident.words.message import Message, message
 
 
 @dataclass(frozen=True)
 class SelfOscillation:
-    """`frequency` in Hz, `growth` σ in 1/s, 0 where it has settled; `amplitude` in the output's unit, at the end."""
+    """An oscillation of a run that its inputs do not make: `frequency` in Hz (or 1/sample), `growth` σ in 1/s.
 
+    σ is 0 where it has settled. `evidence` is what the run shows of it, `cause` what may make it, with the remedy.
+    `of_loop`: no source outside the loop can be meant.
+    """
+
+    run: str
     frequency: float
     growth: float
-    amplitude: float
+    evidence: Message
+    cause: Message
+    of_loop: bool
+
+    def to_json(self) -> dict[str, str | float]:
+        """In the contract's words."""
+        return {
+            "run": self.run, "frequency": self.frequency, "growth": self.growth, "cause": str(self.cause),
+            "evidence": str(self.evidence),
+        }  # fmt: skip
 
 
-def oscillating(run: Run) -> Iterator[Finding]:
-    """An error where the output oscillates by itself."""
+def self_oscillating(run: Run) -> Iterator[Finding]:
+    """An error where the loop oscillates by itself; a doubt where a source that is not recorded may drive it."""
     found = self_oscillation(run)
-    if found is None:
-        return
-    frequency, amplitude = (found.frequency, "Hz"), (found.amplitude, run.units[run.output])
-    if found.growth:
-        text = message("check.growing", run=run.id, frequency=frequency, time=(math.log(2) / found.growth, "s"))
-    else:
-        text = message("check.self_oscillation", run=run.id, frequency=frequency, amplitude=amplitude)
-    yield Finding.of(run.id, "fault", "self-oscillation", text)
+    if found is not None:
+        text = message("check.self_oscillation", evidence=found.evidence, cause=found.cause)
+        yield Finding.of(run.id, "fault" if found.of_loop else "doubt", "self-oscillation", text)
 
 
 def self_oscillation(run: Run) -> SelfOscillation | None:
-    """The oscillation of a run's output that its command does not make; None where there is none."""
-    if "command" not in run.channels or run.length < SHORTEST or run.stepped:
-        return None
-    u, y = (_detrended(signal[-LONGEST:]) for signal in (run.command, run.measured))
-    if not y.std() > 0 or not np.all(np.isfinite(u)):
-        return None
-    found = _growing(u, y, run.sample_rate) or _settled(_unexplained(u, y), float(y.std()), run.sample_rate)
-    return None if found is None or _repeats(u, found.frequency / run.sample_rate) else found
+    """The oscillation of a run's output that its inputs do not make; None where there is none."""
+    if at_rest := oscillation_at_rest(run):
+        return _at_rest(run, at_rest)
+    unexplained = unexplained_oscillation(run)
+    return None if unexplained is None else _unexplained(run, unexplained)
 
 
-def _detrended(signal: Samples) -> Samples:
-    n = np.linspace(-1.0, 1.0, len(signal))
-    flat: Samples = signal - signal.mean() - n * float(n @ signal) / float(n @ n)
-    return flat
+def _at_rest(run: Run, found: AtRest) -> SelfOscillation:
+    seconds, closed = run.time_unit == "s", run.gain is not None or bool(run.closed_loop)
+    evidence = message(
+        "oscillation.at_rest", run=run.id, output=run.output, start=found.start, end=found.end, unit=run.time_unit,
+        frequency=(found.frequency, "Hz" if seconds else "1/sample"),
+        growth=(found.growth, "1/s" if seconds else "1/sample"),
+    )  # fmt: skip
+    cause = message("oscillation.loop" if closed else "oscillation.open")
+    return SelfOscillation(run.id, found.frequency, found.growth, evidence, cause, closed)
 
 
-def _unexplained(u: Samples, y: Samples) -> Samples:
-    """What is left of the output without G u, G = S_uy/S_uu over Hann frames of half overlap (Welch 1967)."""
-    n = len(u)
-    frame = max(64, 2 * n // (_FRAMES + 1))
-    starts = np.arange(0, n - frame + 1, frame // 2)
-    window = np.hanning(frame)
-    U, Y = (np.array([np.fft.rfft(window * signal[at : at + frame]) for at in starts]) for signal in (u, y))
-    uu, yy, uy = (np.mean(a.conj() * b, axis=0) for a, b in ((U, U), (Y, Y), (U, Y)))
-    both = np.maximum((uu * yy).real, 1e-300)
-    related = np.clip((np.abs(uy) ** 2 / both - CHANCE) / (1.0 - CHANCE), 0.0, 1.0)
-    G = related * uy / np.maximum(uu.real, 1e-300)
-    at, known = np.fft.rfftfreq(n), np.fft.rfftfreq(frame)
-    whole = np.interp(at, known, G.real) + 1j * np.interp(at, known, G.imag)
-    left: Samples = y - np.fft.irfft(whole * np.fft.rfft(u), n)
-    return left
-
-
-def _settled(left: Samples, size: float, rate: float) -> SelfOscillation | None:
-    """The strongest oscillation of what is left of an output of a deviation `size`, where its amplitude is constant."""
-    z = _strongest(left)
-    if z is None:
-        return None
-    amplitude = np.abs(z)
-    if np.std(amplitude) > STEADY * np.mean(amplitude) or np.mean(amplitude**2) / 2 < SHARE * size**2:
-        return None
-    return SelfOscillation(_frequency(z, rate), 0.0, float(amplitude.mean()))
-
-
-def _growing(u: Samples, y: Samples, rate: float) -> SelfOscillation | None:
-    """The strongest oscillation of an output over the second half of a record, where it grows, and the command not so.
-
-    Earlier it may be hidden by what the command makes.
-    """
-    z = _strongest(y)
-    if z is None:
-        return None
-    z = z[len(z) // 2 :]
-    amplitude, time = np.abs(z), np.arange(len(z)) / rate
-    logarithm = np.log(np.maximum(amplitude, 1e-300))
-    growth = float(np.polyfit(time, logarithm, 1)[0])
-    if growth * time[-1] < GROWTH or np.corrcoef(time, logarithm)[0, 1] < STRAIGHT:
-        return None
-    first, last = (float(np.std(part)) for part in np.array_split(u[-len(z) :], 2))
-    if last > np.exp(GROWTH / 2) * first:  # what a command that grows makes grows with it
-        return None
-    return SelfOscillation(_frequency(z, rate), growth, float(amplitude[-1]))
-
-
-def _strongest(signal: Samples) -> Spectrum | None:
-    """The strongest oscillation of a signal (n,): z(t), |z| its amplitude, around whose frequency all else is left out.
-
-    A window of Hann over time, moved along z = 2 y exp(−jω t), passes ω ± BAND ω. None where it is none of CYCLES.
-    """
-    n = len(signal)
-    spectrum = np.abs(np.fft.rfft(signal * np.hanning(n)))
-    at = CYCLES + int(np.argmax(spectrum[CYCLES:]))
-    window = np.hanning(int(2 * n / (BAND * at)) + 2)
-    turned = 2 * signal * np.exp(-2j * np.pi * at / n * np.arange(n))
-    if at >= (1 - BAND) * n / 2:
-        return None
-    kept = scipy.signal.fftconvolve(turned, window / window.sum(), "valid")
-    z: Spectrum = kept * np.exp(2j * np.pi * at / n * np.arange(len(kept)))
-    return z
-
-
-def _frequency(z: Spectrum, rate: float) -> float:
-    """The frequency (Hz) of an oscillation: of its steps from sample to sample, those of most amplitude count most."""
-    return float(np.angle(np.sum(z[1:] * z[:-1].conj()))) * rate / (2 * np.pi)
-
-
-def _repeats(u: Samples, frequency: float) -> bool:
-    """Whether a command repeats itself and an oscillation (1/sample) is a multiple of its own frequency."""
-    n = len(u)
-    products = np.fft.irfft(np.abs(np.fft.rfft(u, 2 * n)) ** 2)[: n // 2] / np.arange(n, n - n // 2, -1)
-    if not products[0] > 0:
-        return False
-    alike = products / products[0]
-    fallen = int(np.argmax(alike < 0))  # before it does, a slow signal is like itself
-    peaks = np.flatnonzero((alike[1:-1] >= REPEATED) & (alike[1:-1] >= alike[:-2]) & (alike[1:-1] >= alike[2:])) + 1
-    peaks = peaks[peaks > fallen] if fallen else peaks[:0]
-    if not len(peaks):
-        return False
-    period = _summit(alike, int(peaks[0]))
-    period = _summit(alike, int(peaks[-1])) / max(1, round(peaks[-1] / period))  # of many, whose error is less
-    return bool(abs(frequency * period - round(frequency * period)) < MULTIPLE)
-
-
-def _summit(of: Samples, at: int) -> float:
-    """The place of a peak between samples: of the parabola through three."""
-    before, there, after = of[at - 1 : at + 2]
-    bend = before - 2 * there + after
-    return at + (0.5 * (before - after) / bend if bend else 0.0)
+def _unexplained(run: Run, found: Unexplained) -> SelfOscillation:
+    frequency, amplitude = (found.frequency, "Hz"), (found.amplitude, run.units[run.output])
+    if found.growth:
+        evidence = message(
+            "oscillation.growing", run=run.id, frequency=frequency, time=(math.log(2) / found.growth, "s")
+        )
+    else:
+        evidence = message("oscillation.unexplained", run=run.id, frequency=frequency, amplitude=amplitude)
+    cause = message("oscillation.unstable" if found.growth else "oscillation.limit_cycle")
+    return SelfOscillation(run.id, found.frequency, found.growth, evidence, cause, True)

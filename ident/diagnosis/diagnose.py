@@ -7,7 +7,7 @@ from contextlib import suppress
 from dataclasses import dataclass, replace
 
 from ident.checks.missing_input import missing_inputs
-from ident.checks.oscillation import oscillation
+from ident.checks.self_oscillation import self_oscillation
 from ident.diagnosis.alternative_structures import alternative_models
 from ident.diagnosis.ambiguity import challenged, delay_sentences, lag_pairs, other_machines
 from ident.diagnosis.budget import SearchBudget
@@ -46,7 +46,7 @@ def diagnose(matrix: Matrix, fit: FitResult, custom: Sequence[Effect], budget: S
     do not go together. Where an input of the runs to fit is not recorded, no effect is looked for.
     """
     models = models_of(matrix, fit, custom)
-    swings = [swing for run in matrix.runs if (swing := oscillation(run))]
+    swings = [swing for run in matrix.runs if (swing := self_oscillation(run))]
     missing = [stretch for run in matrix.runs for stretch in missing_inputs(run)]
     of_fit = {run.id for run in matrix.of_use("fit")}
     if unrecorded := [stretch for stretch in missing if stretch.run in of_fit]:

@@ -7,7 +7,7 @@ from dataclasses import replace
 from importlib.metadata import version
 
 from ident.checks.missing_input import MissingInput
-from ident.checks.oscillation import Oscillation
+from ident.checks.self_oscillation import SelfOscillation
 from ident.diagnosis.result import NO_ERRORS, Baseline, Diagnosis, Rung, Verdict
 from ident.diagnosis.stages import EFFECTS, LATER, not_looked_at
 from ident.fit.result import FitResult
@@ -51,7 +51,7 @@ def with_missing_inputs(found: Diagnosis, missing: Sequence[MissingInput]) -> Di
     return replace(found, verdict=verdict, missing_inputs=tuple(stretch.to_json() for stretch in missing))
 
 
-def with_oscillations(found: Diagnosis, swings: Sequence[Oscillation]) -> Diagnosis:
+def with_oscillations(found: Diagnosis, swings: Sequence[SelfOscillation]) -> Diagnosis:
     """The diagnosis with what the machine does by itself, said first; as it is where it does nothing."""
     if not swings:
         return found

@@ -5,14 +5,14 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from ident.checks.oscillation import oscillation
+from ident.checks.self_oscillation import self_oscillation
 from ident.diagnosis.budget import SearchBudget
 from ident.diagnosis.diagnose import diagnose
 from ident.diagnosis.result import Diagnosis, Verdict
 from ident.diagnosis.unfitted import with_oscillations
 from ident.fit.result import FitResult
 from ident.matrix import Actuator, Matrix
-from tests.checks import test_oscillation as tested
+from tests.checks import test_oscillation_at_rest as tested
 from tests.checks.test_missing_input import RAISED, lowering, record
 
 FIT = FitResult(
@@ -36,7 +36,7 @@ def test_nothing_is_named_for_an_input_that_is_not_recorded(found):
 
 def test_an_oscillation_is_said_first_with_its_frequency_and_growth():
     swings = tested.record(0.02 * np.sin(2 * np.pi * 12.3 * tested.T), gain=7.0)
-    found = with_oscillations(Diagnosis(candidates=(), verdict=Verdict(text="The rest.")), [oscillation(swings)])
+    found = with_oscillations(Diagnosis(candidates=(), verdict=Verdict(text="The rest.")), [self_oscillation(swings)])
     assert found.verdict.text.startswith(
         "The machine oscillates: in run loop the displacement swings by itself at 12.3"
     )

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from ident.checks.oscillation import oscillates, oscillation
+from ident.checks.self_oscillation import self_oscillating, self_oscillation
 from ident.run import Run
 
 RATE = 500.0
@@ -26,10 +26,10 @@ def record(swings: np.ndarray, command: np.ndarray = STEP, **stated: float) -> R
 @pytest.mark.parametrize("growth", [0.0, 0.6])
 def test_what_swings_by_itself_has_its_frequency_within_2_percent_and_its_growth(growth):
     run = record(0.02 * np.exp(growth * T) * np.sin(2 * np.pi * 12.3 * T), gain=7.0)
-    found = oscillation(run)
+    found = self_oscillation(run)
     assert found.frequency == pytest.approx(12.3, rel=0.02)
     assert found.growth == pytest.approx(growth, abs=0.05)
-    assert "Reduce the gain" in next(oscillates(run)).text
+    assert "Reduce the gain" in next(self_oscillating(run)).text
     assert found.to_json()["frequency"] == found.frequency
 
 
@@ -44,11 +44,11 @@ def test_what_swings_by_itself_has_its_frequency_within_2_percent_and_its_growth
     ],
 )
 def test_what_an_input_or_the_mains_explain_and_what_dies_down_is_none(swings, command):
-    assert oscillation(record(swings, command)) is None
+    assert self_oscillation(record(swings, command)) is None
 
 
 def test_the_ripple_of_what_turns_is_driven_round_and_no_oscillation():
     swings = record(0.1 * np.sin(2 * np.pi * 12.3 * T))
     turns = replace(swings, output="velocity", channels={**swings.channels, "velocity": swings.measured})
-    assert oscillation(swings) is not None
-    assert oscillation(turns) is None
+    assert self_oscillation(swings) is not None
+    assert self_oscillation(turns) is None

@@ -7,17 +7,14 @@ over whole periods, are straight lines in time, whose slopes are the error of ω
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ident.checks.at_rest import acting, rests
-from ident.checks.finding import Finding
 from ident.noise.power_density import hann
 from ident.run import BENCH, Run, Samples
-from ident.words.message import Message, message
 
 PERIODS = 10  # of a stretch at least: fewer tell no growth
 SAMPLES = 8  # a period at least
@@ -29,35 +26,19 @@ MAINS, NEAR = (50.0, 60.0), 0.003  # Hz, and the relative distance within which 
 
 
 @dataclass(frozen=True)
-class Oscillation:
-    """A stretch of a run in which the output swings by itself: frequency in Hz (or 1/sample), growth σ in 1/s.
+class AtRest:
+    """A stretch in which the output swings while every input rests, `start` to `end` in s; Hz, and growth σ in 1/s.
 
-    `evidence` is what the run shows of it, `cause` what may make it.
+    Where the run's time is in samples, all are by the sample.
     """
 
-    run: str
+    start: float
+    end: float
     frequency: float
     growth: float
-    evidence: Message
-    cause: Message
-
-    def to_json(self) -> dict[str, str | float]:
-        """In the contract's words."""
-        return {
-            "run": self.run, "frequency": self.frequency, "growth": self.growth, "cause": str(self.cause),
-            "evidence": str(self.evidence),
-        }  # fmt: skip
 
 
-def oscillates(run: Run) -> Iterator[Finding]:
-    """A doubt where the output swings by itself."""
-    found = oscillation(run)
-    if found is not None:
-        text = message("check.oscillation", evidence=found.evidence, cause=found.cause)
-        yield Finding.of(run.id, "doubt", "oscillation", text)
-
-
-def oscillation(run: Run) -> Oscillation | None:
+def oscillation_at_rest(run: Run) -> AtRest | None:
     """The oscillation of the longest stretch that shows one while every input rests; None where none does."""
     inputs = acting(run)
     if run.kind in BENCH or not inputs:
@@ -70,7 +51,7 @@ def oscillation(run: Run) -> Oscillation | None:
         if found is not None:
             frequency, growth = found[0] * run.sample_rate, found[1] * run.sample_rate
             if run.time_unit != "s" or all(abs(frequency - mains) > NEAR * mains for mains in MAINS):
-                return _told(run, stretch, frequency, growth)
+                return AtRest(stretch.start / run.sample_rate, stretch.stop / run.sample_rate, frequency, growth)
     return None
 
 
@@ -108,15 +89,3 @@ def _averaged(turning: NDArray[np.complex128], period: int) -> NDArray[np.comple
     """The means over one period after the other."""
     whole = len(turning) // period
     return np.asarray(turning[: whole * period].reshape(whole, period).mean(axis=1))
-
-
-def _told(run: Run, stretch: slice, frequency: float, growth: float) -> Oscillation:
-    """The oscillation with what is said of it."""
-    start, end = stretch.start / run.sample_rate, stretch.stop / run.sample_rate
-    seconds = run.time_unit == "s"
-    evidence = message(
-        "oscillation", run=run.id, output=run.output, start=start, end=end, unit=run.time_unit,
-        frequency=(frequency, "Hz" if seconds else "1/sample"), growth=(growth, "1/s" if seconds else "1/sample"),
-    )  # fmt: skip
-    cause = message("oscillation.loop" if run.gain is not None or run.closed_loop else "oscillation.open")
-    return Oscillation(run.id, frequency, growth, evidence, cause)

@@ -1,0 +1,162 @@
+"""An oscillation that the command does not make: a loop beyond its stability, growing or settled in a limit cycle.
+
+What the command explains is taken from the output, G U of their averaged spectra. A mode of a loop beyond its stability
+is a line in what is left, whose amplitude A(t) in a band around it grows as exp(σ t), or is constant. A mode that noise
+drives has the fluctuating amplitude of narrow-band noise, std(A)/mean(A) = 0.52 (Rice 1944); one that the command
+drives is explained, or lies at a multiple of a command that repeats itself.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import scipy  # signal, which takes a third of a second to load, is loaded where it is first used
+from numpy.typing import NDArray
+
+from ident.run import Run, Samples
+
+Spectrum = NDArray[np.complex128]
+LONGEST = 131_072
+"""Samples that are looked at, the last of the record: there a mode that grows is largest."""
+SHORTEST = 256
+"""Samples: of fewer nothing is said."""
+BAND = 0.2
+"""Of the frequency, either way: the band in which the amplitude is followed."""
+CYCLES = 60
+"""Cycles that a record has of an oscillation, at least: the amplitude of fewer is constant by chance."""
+STEADY = 0.2
+"""std(A)/mean(A) up to which an amplitude is constant; narrow-band noise has 0.52, over 60 cycles 0.3 at least."""
+SHARE = 0.5
+"""Of the output's variance that the oscillation has, at least: a limit cycle is most of it, a resonance may be less."""
+GROWTH = 3.0
+"""ln of the times by which an amplitude grows over the second half of a record, at least: 20 times."""
+STRAIGHT = 0.98
+"""Correlation of ln A with time from which on it grows as a mode does."""
+REPEATED = 0.9
+"""Correlation with itself a period later from which on a command repeats itself."""
+MULTIPLE = 0.1
+"""Of the frequency of a command that repeats itself: an oscillation so near a multiple of it is driven."""
+CHANCE = 0.3
+"""Coherence of two signals of sixteen frames that have nothing to do with each other: 99 % of it lies below."""
+_FRAMES = 16  # of the averaged spectra
+
+
+@dataclass(frozen=True)
+class Unexplained:
+    """`frequency` in Hz, `growth` σ in 1/s, 0 where it has settled; `amplitude` in the output's unit, at the end."""
+
+    frequency: float
+    growth: float
+    amplitude: float
+
+
+def unexplained_oscillation(run: Run) -> Unexplained | None:
+    """The oscillation of a run's output that its command does not make; None where there is none."""
+    if "command" not in run.channels or run.length < SHORTEST or run.stepped:
+        return None
+    u, y = (_detrended(signal[-LONGEST:]) for signal in (run.command, run.measured))
+    if not y.std() > 0 or not np.all(np.isfinite(u)):
+        return None
+    found = _growing(u, y, run.sample_rate) or _settled(_unexplained(u, y), float(y.std()), run.sample_rate)
+    return None if found is None or _repeats(u, found.frequency / run.sample_rate) else found
+
+
+def _detrended(signal: Samples) -> Samples:
+    n = np.linspace(-1.0, 1.0, len(signal))
+    flat: Samples = signal - signal.mean() - n * float(n @ signal) / float(n @ n)
+    return flat
+
+
+def _unexplained(u: Samples, y: Samples) -> Samples:
+    """What is left of the output without G u, G = S_uy/S_uu over Hann frames of half overlap (Welch 1967)."""
+    n = len(u)
+    frame = max(64, 2 * n // (_FRAMES + 1))
+    starts = np.arange(0, n - frame + 1, frame // 2)
+    window = np.hanning(frame)
+    U, Y = (np.array([np.fft.rfft(window * signal[at : at + frame]) for at in starts]) for signal in (u, y))
+    uu, yy, uy = (np.mean(a.conj() * b, axis=0) for a, b in ((U, U), (Y, Y), (U, Y)))
+    both = np.maximum((uu * yy).real, 1e-300)
+    related = np.clip((np.abs(uy) ** 2 / both - CHANCE) / (1.0 - CHANCE), 0.0, 1.0)
+    G = related * uy / np.maximum(uu.real, 1e-300)
+    at, known = np.fft.rfftfreq(n), np.fft.rfftfreq(frame)
+    whole = np.interp(at, known, G.real) + 1j * np.interp(at, known, G.imag)
+    left: Samples = y - np.fft.irfft(whole * np.fft.rfft(u), n)
+    return left
+
+
+def _settled(left: Samples, size: float, rate: float) -> Unexplained | None:
+    """The strongest oscillation of what is left of an output of a deviation `size`, where its amplitude is constant."""
+    z = _strongest(left)
+    if z is None:
+        return None
+    amplitude = np.abs(z)
+    if np.std(amplitude) > STEADY * np.mean(amplitude) or np.mean(amplitude**2) / 2 < SHARE * size**2:
+        return None
+    return Unexplained(_frequency(z, rate), 0.0, float(amplitude.mean()))
+
+
+def _growing(u: Samples, y: Samples, rate: float) -> Unexplained | None:
+    """The strongest oscillation of an output over the second half of a record, where it grows, and the command not so.
+
+    Earlier it may be hidden by what the command makes.
+    """
+    z = _strongest(y)
+    if z is None:
+        return None
+    z = z[len(z) // 2 :]
+    amplitude, time = np.abs(z), np.arange(len(z)) / rate
+    logarithm = np.log(np.maximum(amplitude, 1e-300))
+    growth = float(np.polyfit(time, logarithm, 1)[0])
+    if growth * time[-1] < GROWTH or np.corrcoef(time, logarithm)[0, 1] < STRAIGHT:
+        return None
+    first, last = (float(np.std(part)) for part in np.array_split(u[-len(z) :], 2))
+    if last > np.exp(GROWTH / 2) * first:  # what a command that grows makes grows with it
+        return None
+    return Unexplained(_frequency(z, rate), growth, float(amplitude[-1]))
+
+
+def _strongest(signal: Samples) -> Spectrum | None:
+    """The strongest oscillation of a signal (n,): z(t), |z| its amplitude, around whose frequency all else is left out.
+
+    A window of Hann over time, moved along z = 2 y exp(−jω t), passes ω ± BAND ω. None where it is none of CYCLES.
+    """
+    n = len(signal)
+    spectrum = np.abs(np.fft.rfft(signal * np.hanning(n)))
+    at = CYCLES + int(np.argmax(spectrum[CYCLES:]))
+    window = np.hanning(int(2 * n / (BAND * at)) + 2)
+    turned = 2 * signal * np.exp(-2j * np.pi * at / n * np.arange(n))
+    if at >= (1 - BAND) * n / 2:
+        return None
+    kept = scipy.signal.fftconvolve(turned, window / window.sum(), "valid")
+    z: Spectrum = kept * np.exp(2j * np.pi * at / n * np.arange(len(kept)))
+    return z
+
+
+def _frequency(z: Spectrum, rate: float) -> float:
+    """The frequency (Hz) of an oscillation: of its steps from sample to sample, those of most amplitude count most."""
+    return float(np.angle(np.sum(z[1:] * z[:-1].conj()))) * rate / (2 * np.pi)
+
+
+def _repeats(u: Samples, frequency: float) -> bool:
+    """Whether a command repeats itself and an oscillation (1/sample) is a multiple of its own frequency."""
+    n = len(u)
+    products = np.fft.irfft(np.abs(np.fft.rfft(u, 2 * n)) ** 2)[: n // 2] / np.arange(n, n - n // 2, -1)
+    if not products[0] > 0:
+        return False
+    alike = products / products[0]
+    fallen = int(np.argmax(alike < 0))  # before it does, a slow signal is like itself
+    peaks = np.flatnonzero((alike[1:-1] >= REPEATED) & (alike[1:-1] >= alike[:-2]) & (alike[1:-1] >= alike[2:])) + 1
+    peaks = peaks[peaks > fallen] if fallen else peaks[:0]
+    if not len(peaks):
+        return False
+    period = _summit(alike, int(peaks[0]))
+    period = _summit(alike, int(peaks[-1])) / max(1, round(peaks[-1] / period))  # of many, whose error is less
+    return bool(abs(frequency * period - round(frequency * period)) < MULTIPLE)
+
+
+def _summit(of: Samples, at: int) -> float:
+    """The place of a peak between samples: of the parabola through three."""
+    before, there, after = of[at - 1 : at + 2]
+    bend = before - 2 * there + after
+    return at + (0.5 * (before - after) / bend if bend else 0.0)
