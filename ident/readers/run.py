@@ -11,6 +11,7 @@ from ident.readers.clock import evened, read_clock
 from ident.readers.past import with_past
 from ident.readers.run_description import RunDescription, TimeColumn
 from ident.readers.table import Array, Table, numeric
+from ident.readers.trend import without_trend
 from ident.run import Run, Samples
 from ident.units.quantity import Scale, shown
 from ident.words.number import count as samples
@@ -24,7 +25,7 @@ def read_run(described: RunDescription, table: Table) -> Run:
     """The run with its samples, float64, contiguous, its own memory.
 
     Raises Unusable: ``missing-column``, ``not-numeric``, ``unequal-lengths``, ``rows-outside``, ``too-short``,
-    ``not-finite``, ``zero-variance``, ``time-not-monotonic``.
+    ``not-finite``, ``zero-variance``, ``time-not-monotonic``, ``nothing-left``.
     """
     labels = described.labels
     places = {name: f"{run_name(labels.id)} channels.{name}" for name in described.channels}
@@ -43,7 +44,7 @@ def read_run(described: RunDescription, table: Table) -> Run:
         if name != "command" or not channels[name][0]:  # one that is held is a step from nothing at its first sample
             check_moves(channels[name], places[name])
     if described.time is None:
-        return with_past(replace(labels, channels=channels), raw, described, LARGEST)
+        return _without_trend(with_past(replace(labels, channels=channels), raw, described, LARGEST), described)
     _check_stamps(table, described.time, places["time"])
     scale = Scale(described.time.factor, 0.0, "s")
     time = in_si(part(raw["time"], described, places["time"]), scale, places["time"])
@@ -57,7 +58,11 @@ def read_run(described: RunDescription, table: Table) -> Run:
     run = replace(
         labels, channels=channels, sample_rate=rate, clock_jitter=clock.jitter, gaps=clock.gaps, evened=not even
     )
-    return with_past(run, raw, described, LARGEST)
+    return _without_trend(with_past(run, raw, described, LARGEST), described)
+
+
+def _without_trend(run: Run, described: RunDescription) -> Run:
+    return without_trend(run, described.trend, described.outputs)
 
 
 def _check_stamps(table: Table, time: TimeColumn, where: str) -> None:

@@ -11,6 +11,7 @@ from ident.readers.channel_description import ChannelDescription, describe_chann
 from ident.readers.fields import Fields
 from ident.readers.loop_settings import loop_gain, sample_rate
 from ident.readers.source import inside
+from ident.readers.trend import TRENDS
 from ident.run import BENCH, HOLDS, KINDS, MOTIONS, USES, Run, Specimen
 from ident.units.quantity import quantity, shown, split, unit_scale
 from ident.words.nearest import did_you_mean
@@ -18,7 +19,7 @@ from ident.words.run_name import run_name
 
 RUN = (
     "id", "file", "sample_rate", "time", "specimen", "gain", "amplitude", "kind", "hold", "output", "use", "skip_rows",
-    "rows", "channels", "disturbance", "position_range", "frequency", "rated_current",
+    "rows", "trend", "channels", "disturbance", "position_range", "frequency", "rated_current",
     "closed_loop",
 )  # fmt: skip
 
@@ -51,6 +52,7 @@ class RunDescription:
     skip_rows: int
     rows: tuple[int, int] | None
     hold_stated: bool = True
+    trend: str = "none"
 
 
 def describe_run(data: Any, where: str) -> RunDescription:
@@ -86,7 +88,8 @@ def describe_run(data: Any, where: str) -> RunDescription:
         closed_loop=fields.truth("closed_loop") if "closed_loop" in fields else None,
     )
     rows, hold_stated = describe_rows(fields), "hold" in fields
-    return RunDescription(labels, outputs, channels, time, fields.whole("skip_rows"), rows, hold_stated)
+    trend = describe_trend(fields, kind)
+    return RunDescription(labels, outputs, channels, time, fields.whole("skip_rows"), rows, hold_stated, trend)
 
 
 def _driven_unit(units: dict[str, str]) -> str:
@@ -112,6 +115,15 @@ def describe_hold(fields: Fields, kind: str) -> str:
         what = "the current of a bench is drawn or held between its samples"
         raise Unusable("bench-hold", what, fields.place("hold"), "use linear or zoh")
     return hold
+
+
+def describe_trend(fields: Fields, kind: str) -> str:
+    """What is taken out of every signal. Raises Unusable: ``unknown-trend``; ``bench-trend`` for a bench."""
+    trend = fields.choice("trend", TRENDS, "none")
+    if trend != "none" and kind in BENCH:
+        what = "the procedures of a bench measure the means of its signals"
+        raise Unusable("bench-trend", what, fields.place("trend"), "write trend: none")
+    return trend
 
 
 def describe_outputs(fields: Fields, kind: str, channels: dict[str, ChannelDescription]) -> tuple[str, ...]:

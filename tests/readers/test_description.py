@@ -51,6 +51,8 @@ CASES = [  # what is written, by what it is replaced, code, words of the message
     ("file: runs/first.csv", "file: C:/first.csv", "outside-folder", "run first file"),
     ("gain: 7", "rows: [10, 5]", "bad-rows", "run first rows"),
     ("gain: 7", "rows: [10]", "not-a-pair", "run first rows"),
+    ("gain: 7", "trend: curve", "unknown-trend", "none, mean, line"),
+    ("kind: blwn", "kind: static\n    trend: mean", "bench-trend", "run first trend"),
     ("gain: 7", "skip_rows: -1", "not-a-number", "run first skip_rows"),
     ("gain: 7", "position_range: [2 mm, 1 mm]", "empty-range", "position_range"),
     ("unit: mm}\n      displacement", "unit: mm, scale: 0}\n      displacement", "zero-scale", "command scale"),

@@ -6,11 +6,13 @@ const dialog = document.querySelector("#mend");
 const form = dialog.querySelector("form");
 const problem = form.querySelector("[role=alert]");
 const channels = form.querySelector("tbody");
-const LABELS = ["use", "gain", "amplitude", "specimen.mass", "specimen.stiffness", "specimen.damping"];
+const LABELS = ["use", "gain", "amplitude", "specimen.mass", "specimen.stiffness", "specimen.damping", "rows", "trend"];
+const ABSENT = { use: "fit", trend: "none" }; // what a label is that the description does not state
 let description, run;
 
 const inside = (data, path) => path.split(".").reduce((found, name) => found?.[name], data);
-const text = (value) => (value === undefined || value === null ? "" : String(value));
+const text = (value) => (value === undefined || value === null ? "" : [value].flat().join(", "));
+const label = (entry, path) => text(inside(entry, path)) || (ABSENT[path] ?? "");
 
 const inverted = (channel) => ["true", "yes"].includes(text(channel.invert).toLowerCase()); // a description holds words, but for whole numbers
 
@@ -19,7 +21,7 @@ function fill(entry) {
   form.querySelector("[data-id]").textContent = entry.id;
   problem.textContent = "";
   form.elements.all.checked = false;
-  for (const path of LABELS) form.elements[path].value = text(inside(entry, path)) || (path === "use" ? "fit" : "");
+  for (const path of LABELS) form.elements[path].value = label(entry, path);
   channels.replaceChildren(...Object.entries(entry.channels).map(([name, channel]) => row(name, channel)));
 }
 
@@ -38,8 +40,8 @@ function row(name, channel) {
 function changes() {
   const found = {};
   for (const path of LABELS) {
-    const now = form.elements[path].value.trim(), before = text(inside(run, path)) || (path === "use" ? "fit" : "");
-    if (now !== before) put(found, path, now || null);
+    const now = form.elements[path].value.trim(), before = label(run, path);
+    if (now !== before) put(found, path, path === "rows" && now ? now.split(/[\s,;]+/).map(Number) : now || null);
   }
   for (const each of channels.rows) {
     const [unit, invert] = each.querySelectorAll("input");
