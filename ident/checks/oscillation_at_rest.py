@@ -22,6 +22,7 @@ SIZE = 0.01  # of the output's range, that the amplitude has at least
 SHARE = 0.5  # of the power that is as quick or quicker, that the oscillation has at least; and of it a smooth one
 WIDTH = 3  # lines to either side of the largest that a Hann window spreads it over, and growth with it
 DIES = 0.1  # logarithm of the amplitude lost over the stretch, beyond which it rings down
+GROWS = 0.5  # logarithm of the amplitude gained over the stretch, below which it has settled
 MAINS, NEAR = (50.0, 60.0), 0.003  # Hz, and the relative distance within which it may be picked up from them
 
 
@@ -78,7 +79,8 @@ def _swings(y: Samples, least: float) -> tuple[float, float] | None:
     amplitude, off = 2.0 * _rms(turning), 2.0 * _rms(turning - smooth)
     if amplitude < least or off**2 > (1.0 - SHARE) * amplitude**2 or size[0] * n < -DIES:
         return None
-    return frequency + float(phase[0]) / (2.0 * np.pi), float(size[0])
+    growth = float(size[0]) if size[0] * n > GROWS else 0.0
+    return frequency + float(phase[0]) / (2.0 * np.pi), growth
 
 
 def _rms(x: NDArray[np.complex128]) -> float:
