@@ -14,6 +14,7 @@ from collections.abc import Set as AbstractSet
 from dataclasses import dataclass, replace
 from functools import lru_cache
 from graphlib import CycleError, TopologicalSorter
+from types import CodeType
 from typing import Any
 
 import numpy as np
@@ -27,7 +28,7 @@ from ident.chain.linearity import LINEAR, OTHER, ZERO, degree
 from ident.chain.refusals import of_other_unit, unfit
 from ident.effects.effect import Effect
 from ident.equations.equation import Equation
-from ident.equations.grammar import FUNCTIONS, TIME
+from ident.equations.grammar import ARITHMETIC, TIME
 from ident.errors import Unusable
 from ident.linear import LinearModel
 from ident.matrix import Actuator
@@ -192,9 +193,13 @@ class Chain:
         Dry friction takes nothing here: what it takes hangs on the step.
         """
         values = dict(known)
-        for equation in self.signals:
-            values[equation.target] = 0.0 if dry_friction(equation) else equation.value(values)
+        exec(self._signals_in_turn, ARITHMETIC, values)  # own text, each name checked: equations.equation
         return values
+
+    @cached_property
+    def _signals_in_turn(self) -> CodeType:
+        lines = (f"{equation.target} = {_still(equation)}" for equation in self.signals)
+        return compile("\n".join(lines), "<signals>", "exec")
 
     @cached_property
     def exponents(self) -> tuple[str, ...]:
@@ -257,7 +262,7 @@ class Chain:
             rates = ", ".join(equation.python for equation in self.equations if equation.is_rate)
             returned = f"    return ({rates},), {self.signal(output)}"
             source = "\n".join(["def evaluate(u, states, values):", *lines, returned])
-            namespace: dict[str, Any] = {"__builtins__": {}, **FUNCTIONS}
+            namespace = dict(ARITHMETIC)
             exec(compile(source, "<chain>", "exec"), namespace)  # own text, each name checked: equations.equation
             self._evaluators[output] = namespace["evaluate"]
         return self._evaluators[output]

@@ -21,7 +21,7 @@ from types import CodeType
 from typing import Any
 
 from ident.cached import cached_property
-from ident.equations.grammar import FUNCTIONS, parsed, reads, refused, tree_of
+from ident.equations.grammar import ARITHMETIC, parsed, reads, refused, tree_of
 
 
 @dataclass(frozen=True)
@@ -86,9 +86,8 @@ class Equation:
 
     def value(self, known: Mapping[str, Any]) -> Any:
         """The right-hand side where every quantity it reads has a value: numbers or arrays that broadcast."""
-        namespace = {"__builtins__": {}, **FUNCTIONS}
         # The tree passed the grammar, so nothing but arithmetic on `known` can happen here.
-        return eval(_code(self.text), namespace, dict(known))
+        return eval(_code(self.text), ARITHMETIC, known)
 
     @cached_property
     def python(self) -> str:

@@ -51,6 +51,9 @@ x(t − T), and `dry` the friction force that takes at most `limit`, and at most
 overshoot (PCHIP), and straight beyond the ends.
 """
 
+ARITHMETIC: dict[str, Any] = {"__builtins__": {}, **FUNCTIONS}
+"""All that an equation which passed the grammar finds when Python carries it out."""
+
 DYNAMIC = ("lag", "lag2", "delay", "dry")
 """The functions that remember."""
 

@@ -14,7 +14,7 @@ from types import CodeType
 from typing import Any
 
 from ident.chain.chain import INPUT, INPUT_RATE, MEASURED, STEP, Chain
-from ident.equations.grammar import DYNAMIC, FUNCTIONS, TABLES, TIME, reads, tree_of
+from ident.equations.grammar import ARITHMETIC, DYNAMIC, TABLES, TIME, reads, tree_of
 from ident.equations.interpolation import coefficient
 from ident.errors import Unusable
 
@@ -205,9 +205,12 @@ def _folded(node: ast.expr, plain: Mapping[str, float]) -> ast.expr:
     return node
 
 
+_KNOWN = {**ARITHMETIC, "coefficient": coefficient}
+
+
 def constant(node: ast.expr, values: Mapping[str, Any]) -> Any:
     """The value of an expression of symbols for all lanes."""
-    return eval(_code(node), {"__builtins__": {}, **FUNCTIONS, "coefficient": coefficient}, dict(values))
+    return eval(_code(node), _KNOWN, values)
 
 
 @lru_cache(maxsize=8192)
