@@ -3,15 +3,21 @@
 from __future__ import annotations
 
 import io
+import sqlite3
 import zipfile
 from collections.abc import Iterator
+from contextlib import closing
 from functools import lru_cache
 from pathlib import Path
 
 import numpy as np
 import pytest
+from alembic import command
+from alembic.config import Config
 from fastapi.testclient import TestClient
+from sqlalchemy import make_url
 
+from app import database
 from app.main import create_app
 from app.settings import Settings
 from tests.reference import qian_reference as reference
@@ -78,6 +84,31 @@ def archived(contents: dict[str, bytes]) -> bytes:
         for name, content in contents.items():
             archive.writestr(name, content)
     return buffer.getvalue()
+
+
+@pytest.fixture(scope="session", autouse=True)
+def _empty_databases(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
+    """The first database that is made passes through all revisions; those after it are copies, of SQLite's own kind."""
+    upgrade, made = command.upgrade, tmp_path_factory.mktemp("empty") / "made.sqlite"
+
+    def copied(config: Config, revision: str) -> None:
+        url = make_url(config.attributes["url"])
+        place = Path(url.database or ".")
+        if url.get_backend_name() != "sqlite" or revision != "head" or place.exists():
+            upgrade(config, revision)
+            return
+        if not made.exists():
+            database.migrate(f"sqlite:///{made}", "heads")
+        try:
+            with closing(sqlite3.connect(made)) as old, closing(sqlite3.connect(place)) as new:
+                old.backup(new)
+        except sqlite3.Error:  # is said as the migration says it
+            place.unlink(missing_ok=True)
+            upgrade(config, revision)
+
+    with pytest.MonkeyPatch.context() as own:
+        own.setattr(command, "upgrade", copied)
+        yield
 
 
 @pytest.fixture(scope="session")
