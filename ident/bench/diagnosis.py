@@ -60,7 +60,7 @@ class BenchDiagnoser:
     def __init__(self, matrix: Matrix, fit: FitResult, custom: tuple[Effect, ...], course: SearchBudget) -> None:
         self.matrix, self.fit, self.course = matrix, fit, course
         self.complete = False
-        self._known_errors: dict[int, dict[str, float | None]] = {}
+        self._known_errors: dict[Refit, dict[str, float | None]] = {}
         bench = bench_set(matrix)
         self.records = {use: tuple(r for r in bench.records if r.use == use) for use in ("fit", "verify")}
         self.preset, _, values = fitted(fit, matrix)
@@ -138,10 +138,10 @@ class BenchDiagnoser:
 
     def _errors(self, refit: Refit) -> dict[str, float | None]:
         """What is known of them stays known where there is no time left."""
-        known = self._known_errors.get(id(refit), {})
+        known = self._known_errors.get(refit, {})
         on = {use: known.get(use) or self._mean(refit, self.records[use], "error") for use in ("fit", "verify")}
         found = {"fit": on["fit"], "held_out": refit.held_out_error, "verify": on["verify"]}
-        return self._known_errors.setdefault(id(refit), found) | found
+        return self._known_errors.setdefault(refit, found) | found
 
     def _unstable(self, refit: Refit) -> dict[str, tuple[str, ...]]:
         """By the use of records the ids of those on which the model is unstable, where there is time to simulate."""

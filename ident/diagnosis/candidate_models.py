@@ -111,6 +111,18 @@ class CandidateModels:
         contradicted = frozenset(run for run, error in left.items() if (floor := floors[run]) and floor > ratio * error)
         return replace(self, contradicted=contradicted, _known={}, _compared={}, bars={}) if contradicted else self
 
+    def with_effects(self, effects: Mapping[str, Effect], given: Settings) -> CandidateModels:
+        """The models of other effects, and of what is given of these."""
+        return replace(self, effects=effects, given=given, _known={})
+
+    def with_shapes(self, effects: Mapping[str, Effect]) -> CandidateModels:
+        """The same models, their effects with other shapes: what the best takes by chance is another, too."""
+        return replace(self, effects=effects, _known={}, bars={})
+
+    def with_given(self, given: Settings) -> CandidateModels:
+        """The same models, with other values held fixed or bounded."""
+        return replace(self, given=given, _known={})
+
     def over_windows(self, horizon: float | None, memory: float | None) -> CandidateModels:
         """The same models, fitted over other windows."""
         return replace(self, horizon=horizon, memory=memory, _known={}, _compared={}, bars={})

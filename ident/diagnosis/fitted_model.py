@@ -29,7 +29,7 @@ from ident.words.plus_minus import NOT_DETERMINED
 Array = NDArray[np.float64]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class FittedModel:
     """A model with these effects at its optimum: `values` by the equations' names, SI."""
 

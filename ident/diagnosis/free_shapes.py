@@ -43,7 +43,7 @@ def freed(effect: Effect) -> Effect:
 def with_free_shapes(models: CandidateModels, names: Iterable[str]) -> CandidateModels:
     """The models with every width of these effects free."""
     effects = {name: freed(effect) if name in names else effect for name, effect in models.effects.items()}
-    return replace(models, effects=effects, _known={}, bars={})
+    return models.with_shapes(effects)
 
 
 def from_the_start(models: CandidateModels, base: FittedModel) -> CandidateModels:

@@ -38,7 +38,7 @@ class Moves:
     report: Report
     listener: Callable[[Selection], None] = lambda _selection: None
     start: FittedModel | None = None
-    _without: dict[tuple[int, str], FittedModel] = field(default_factory=dict)
+    _without: dict[tuple[FittedModel, str], FittedModel] = field(default_factory=dict)
     _ranking_so_far: list[Candidate] = field(default_factory=list)
 
     def __post_init__(self) -> None:
@@ -183,10 +183,10 @@ class Moves:
     def _less(self, selection: Selection, name: str) -> FittedModel:
         """The last model without one of its effects, judged."""
         fitted = selection.fitted
-        known = self._without.get((id(fitted), name))
+        known = self._without.get((fitted, name))
         if known is None:
             effects = tuple(effect for effect in fitted.effects if effect != name)
-            known = self._without[id(fitted), name] = self.models.refit(effects, without_effect(fitted.values, name))
+            known = self._without[fitted, name] = self.models.refit(effects, without_effect(fitted.values, name))
             _ = known.finite and known.held_out
         return known
 

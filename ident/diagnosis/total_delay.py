@@ -50,7 +50,7 @@ def total_delay(models: CandidateModels, base: FittedModel, refit: FittedModel) 
     (constant,) = constants
     least = refit.space.bounds(refit.values)[constant.in_equations][0]
     fixed = {**models.given.fixed, constant.name: least}
-    short = replace(models, given=replace(models.given, fixed=fixed), _known={})
+    short = models.with_given(replace(models.given, fixed=fixed))
     start = {**refit.values, constant.in_equations: least}
 
     def other(effect: str) -> FittedModel:

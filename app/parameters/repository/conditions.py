@@ -19,7 +19,7 @@ _READ = ("ids", "serial", "batch", "model", "approved_after", "approved_before")
 SET, VALUE, APPROVAL = SetRow.number.expression, ValueRow.number.expression, ApprovalRow.number.expression
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Condition:
     """The numbers of the sets that meet it, found by its index; the test of one set; and the same as a way to walk.
 

@@ -59,7 +59,7 @@ def numbers(session: Session, wanted: Wanted, before: int | None, limit: int) ->
             return _walked(session, asked, given, top, 0, limit)
     common = np.sort(reduce(partial(np.intersect1d, assume_unique=True), narrow.values()))
     common = common[: None if before is None else np.searchsorted(common, before)][::-1]
-    tests = [*asked.tests, *(one.test for one in (*asked.few.of, *asked.others.of) if id(one) not in narrow)]
+    tests = [*asked.tests, *(one.test for one in (*asked.few.of, *asked.others.of) if one not in narrow)]
     return _tested(session, common.tolist(), tests, given, limit) if tests else common[:limit].tolist()
 
 
@@ -120,14 +120,14 @@ def _walked(session: Session, asked: _Asked, given: Mapping[str, Any], upto: int
     return list(session.scalars(asked.walk, {**given, "upto": upto, "after": max(after, 0), "most": limit}))
 
 
-def _collected(session: Session, asked: _Collection, given: Mapping[str, Any]) -> dict[int, NDArray[np.int64]]:
-    """The numbers of the sets that meet each condition that few meet, by its id; each number once."""
+def _collected(session: Session, asked: _Collection, given: Mapping[str, Any]) -> dict[Condition, NDArray[np.int64]]:
+    """The numbers of the sets that meet each condition that few meet; each number once."""
     found = {}
     texts = session.execute(asked.query, {**given, "most": FEW + 1}).one() if asked.of else ()
     for condition, text in zip(asked.of, texts, strict=True):
         each = np.fromstring(text, np.int64, sep=",") if text else np.empty(0, np.int64)
         if len(each) <= FEW:
-            found[id(condition)] = each
+            found[condition] = each
     return found
 
 

@@ -134,7 +134,7 @@ class TermSearch:
         if not (gained > bar and sound):
             self._reject(next(one for one in family.given.custom if one["name"] == name), refit, gained, bar)
             return False
-        self.models = replace(self.models, effects=family.effects, given=family.given, _known={})
+        self.models = self.models.with_effects(family.effects, family.given)
         without, self.base = self.base, self.models.refit(refit.effects, refit.values)
         self._prune(name)
         proposal = self._proposal(candidate, seen, name, gained, bar, few)
@@ -266,7 +266,7 @@ def _built(
         return None
     bounds = {**searching.given.bounds, **searched_bounds(own, candidate.terms)}
     given = replace(searching.given, custom=(*searching.given.custom, own), bounds=bounds)
-    family = replace(searching, effects={**searching.effects, name: effect}, given=given, _known={})
+    family = searching.with_effects({**searching.effects, name: effect}, given)
     # It may close a circle of signals with what was found before.
     return (candidate, family) if family.fit_together((*base.effects, name)) else None
 
