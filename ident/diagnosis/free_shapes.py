@@ -11,6 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
+from itertools import chain
 
 import numpy as np
 
@@ -20,6 +21,7 @@ from ident.diagnosis.fitted_model import FittedModel
 from ident.diagnosis.model_comparison import improves
 from ident.diagnosis.screening import Prediction, predict
 from ident.diagnosis.tie_breaking import stable_minimum
+from ident.effects import CATALOGUE
 from ident.effects.effect import Effect
 from ident.fit.given import effect_of
 from ident.fit.uncertainty import DETERMINED
@@ -93,8 +95,8 @@ def trial_from_everywhere(
     """The first refit with a predicted effect, begun again from other places of its shapes until two ends agree.
 
     And from the strengths that were simulated, then from the whole search space, as long as it does not come to what
-    was predicted: where the base is one of many that the data do not tell apart, the optimum with the effect may lie
-    beside another. The best end is gone on with until it stays: a trial's few steps may end far from there.
+    was predicted: where the data do not separate the base from others, the optimum with the effect may lie near one of
+    those. The best end is gone on with until it stays: a trial's few steps may end far from there.
     """
     effects = (*base.effects, prediction.effect)
     ends = [models.trial(effects, prediction.starts, aim)]
@@ -125,6 +127,12 @@ def bounds_of_freed(refit: FittedModel, effects: Mapping[str, Effect]) -> dict[s
     bounds = refit.space.bounds(refit.values)
     added = [p for name in refit.effects if name in effects for p in effects[name].added[1:]]
     return {p.name: bounds[p.in_equations] for p in added if p.searched and p.in_equations in bounds}
+
+
+def freed_widths(refit: FittedModel) -> int:
+    """How many shapes of a refit's effects are free that the catalogue has usual values of."""
+    added = chain.from_iterable(effect.added[1:] for effect in CATALOGUE if effect.name in refit.effects)
+    return sum(is_width(p) and p.in_equations in refit.space.names for p in added)
 
 
 def held_widths(refit: FittedModel, effects: Mapping[str, Effect]) -> dict[str, float]:

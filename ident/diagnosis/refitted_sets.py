@@ -1,6 +1,8 @@
 """The models that a search refitted, and the gain of each set of effects over the fitted one.
 
 All gains are under one disturbance spectrum, that of the best of these models, with the fitted one as its reference.
+Each width that was freed takes off the gain that is worth a parameter. At its bounds an effect is often another one:
+friction that builds up over no way is Coulomb's. So it explains as much, and no more.
 """
 
 from __future__ import annotations
@@ -10,9 +12,11 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from ident.diagnosis.criteria import CRITERIA
 from ident.diagnosis.evidence.comparison import common_disturbance, gain, most
 from ident.diagnosis.evidence.probability import NOTHING, SetGains
 from ident.diagnosis.fitted_model import FittedModel
+from ident.diagnosis.free_shapes import freed_widths
 
 
 @dataclass
@@ -32,8 +36,15 @@ class RefittedSets:
                 self.best[added] = model
 
     def gains(self) -> SetGains:
-        """What speaks for each of them, in nats."""
+        """What speaks for each of them, in nats, less what its free widths are charged."""
         base = self.base.residuals_held_out
         disturbance = common_disturbance([base, *(model.residuals_held_out for model in self.best.values())])
-        gains = {added: gain(base, model.residuals_held_out, disturbance) for added, model in self.best.items()}
+        gains = {
+            added: gain(base, model.residuals_held_out, disturbance) - self._charge(model)
+            for added, model in self.best.items()
+        }
         return SetGains({NOTHING: 0.0, **gains}, most(base, disturbance))
+
+    def _charge(self, model: FittedModel) -> float:
+        """The gain that the widths are worth which a model has free and the fitted one has not, in nats."""
+        return CRITERIA.evidence.least_gain * (freed_widths(model) - freed_widths(self.base))

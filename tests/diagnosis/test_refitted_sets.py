@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
 import pytest
 
+from ident.diagnosis.criteria import CRITERIA
 from ident.diagnosis.evidence.comparison import Residuals
 from ident.diagnosis.evidence.energy_bands import EnergyBands, Record
 from ident.diagnosis.evidence.probability import NOTHING
@@ -17,11 +19,12 @@ NOISE = 0.01 * np.random.default_rng(21).standard_normal(600)
 BANDS = EnergyBands((Record(1.0, floor=1e-4),), (600,))
 
 
-def refit(*effects: str, left: float, finite: bool = True) -> Any:
-    """A refit with these effects that leaves noise and so much of a sine; seed 21."""
+def refit(*effects: str, left: float, finite: bool = True, free: Sequence[str] = ()) -> Any:
+    """A refit with these effects, and free shapes, that leaves noise and so much of a sine; seed 21."""
     residuals = Residuals((NOISE + left * np.sin(np.arange(600) / 7.0),), BANDS)
     held_out = SimpleNamespace(score=residuals.power**0.5)
-    return SimpleNamespace(effects=effects, finite=finite, held_out=held_out, residuals_held_out=residuals)
+    space = SimpleNamespace(names=free)
+    return SimpleNamespace(effects=effects, finite=finite, held_out=held_out, residuals_held_out=residuals, space=space)
 
 
 def test_the_best_refit_of_each_set_is_kept_and_its_gain_is_over_the_fitted_model():
@@ -34,3 +37,13 @@ def test_the_best_refit_of_each_set_is_kept_and_its_gain_is_over_the_fitted_mode
     assert found.gains[NOTHING] == 0.0
     assert found.gains[frozenset("a")] > 50
     assert found.most == pytest.approx(found.gains[frozenset("a")], rel=0.05)
+
+
+def test_a_width_that_was_freed_is_charged_as_a_parameter():
+    """Friction that builds up over no way explains what Coulomb's does: the one with a number more is less probable."""
+    width = "presliding_friction__displacement"
+    sets = RefittedSets(refit(left=0.1))
+    sets.met([refit("coulomb_friction", left=0.0), refit("presliding_friction", left=0.0, free=[width])])
+    found = sets.gains().gains
+    lost = found[frozenset({"coulomb_friction"})] - found[frozenset({"presliding_friction"})]
+    assert lost == pytest.approx(CRITERIA.evidence.least_gain)
