@@ -66,6 +66,17 @@ def test_a_brake_that_the_record_cuts_off_is_told_by_what_is_left_of_it(begins, 
     assert slopes(v[turn], 1)[at] == pytest.approx(sign * a[turn][at], abs=1e-9)
 
 
+@pytest.mark.parametrize("began", [0.1, 0.4])
+@pytest.mark.parametrize("backwards", [False, True])
+def test_a_record_that_begins_just_before_a_short_brake_has_the_speed_from_which_it_brakes(began, backwards):
+    """Two samples within tell the brake, the first one when it began."""
+    x, v, a = trapezoid(np.arange(20.0), [(began, -0.4), (2.7, 0.0)], 1.0)
+    turn, sign = (slice(None, None, -1), -1.0) if backwards else (slice(None), 1.0)
+    at = [-1, -2, -3] if backwards else [0, 1, 2]
+    assert slopes(x[turn], 2)[at] == pytest.approx(sign * v[turn][at], abs=1e-9)
+    assert curvatures(x[turn])[at] == pytest.approx(a[turn][at], abs=1e-9)
+
+
 def test_a_motion_that_turns_at_once_has_its_speed_before_and_behind():
     k = np.arange(20.0)
     assert slopes(np.where(k < 9.3, k, 18.6 - k), 2) == pytest.approx(np.where(k < 9.3, 1.0, -1.0), abs=1e-12)

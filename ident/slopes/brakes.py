@@ -24,6 +24,7 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 _SHORTEST, _LONGEST = 4, 7  # samples from line to line: two within, of which one tells how long a brake lasts
+_EXACT = 1e-5  # of a time since when a brake acts, by which two samples of it may differ in it
 _CUT_OFF = 3  # samples at an end at most that a brake has there
 SAME = 1e-3
 """Of what a brake moves a sample by, that a sample may be off; of the largest second difference, that is none."""
@@ -99,19 +100,33 @@ def _cut_off(way: Array, rates: Array) -> Brake | None:
     first, rate = int(known[0]), bend[known[0]] if abs(bend[known[0]]) > least else 0.0
     k = np.arange(first + 1)
     slope = way[first + 1] - way[first] - 0.5 * rate + rate * (k - first)
-    if not first:
-        return Brake(slice(0, 1), slope, np.array([rate]))
     beside = (way[: first + 1] - way[first] - 0.5 * (slope + slope[-1]) * (k - first))[:-1]
+    curvature = np.full(first + 1, rate)
+    while len(beside):
+        found = _piece_before(beside, curvature[len(beside)], rates)
+        if found is None:
+            return None
+        change, within = found
+        here = len(beside) - len(within)
+        since = within[0] + np.arange(here, -1, -1)
+        slope[: here + 1] -= change * since
+        slope[here + 1 : len(beside)] -= change * within[1:]
+        curvature[: len(beside)] += change
+        beside = beside[:here] - 0.5 * change * since[:-1] ** 2
+    return Brake(slice(0, first + 1), slope, curvature)
+
+
+def _piece_before(beside: Array, rate: float, rates: Array) -> tuple[float, Array] | None:
+    """By how much the piece before one of a curvature is more curved, and since when at the samples in it."""
     sign, roots = np.sign(beside[-1]), np.sqrt(np.abs(beside))
     others = rates[np.sign(rates) == sign]
-    if first > 1:
-        change = 2.0 * sign * (roots[-2] - roots[-1]) ** 2
-    else:
+    alone = len(beside) == 1 or rate != 0.0
+    change = 2.0 * sign * (roots[-2] - roots[-1]) ** 2 if not alone else 0.0
+    if alone:
         change = -rate if rate else others[0] if len(others) else 0.0
     if change * sign <= 0.0:
         return None
     since = roots * np.sqrt(2.0 / np.abs(change))
-    if since[-1] > 1.0 + SAME or np.max(np.abs(np.diff(since) + 1.0), initial=0.0) > SAME * since[0]:
-        return None
-    slope[:-1] -= change * since
-    return Brake(slice(0, first + 1), slope, np.append(np.full(first, rate + change), rate))
+    alike = np.abs(since - since[-1] - np.arange(len(since) - 1, -1, -1)) < _EXACT * since[0]
+    first = int(np.argmin(alike[::-1])) if not alike.all() else len(since)
+    return None if since[-1] > 1.0 + SAME or not first else (change, since[len(since) - first :])
