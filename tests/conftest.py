@@ -58,22 +58,28 @@ def pytest_addoption(parser: pytest.Parser) -> None:
 
 
 LONGEST = (
-    "browser/test_workbench", "browser/test_monkey", "app/test_hybrid", "diagnosis/test_total_delay", "test_project",
-    "bench/test_acceptance", "cli/test_service_commands", "cli/test_postgresql", "faults/test_workers",
-    "test_readme", "test_site", "diagnosis/test_time_budget", "app/test_own_effects", "faults/test_kill",
-    "test_windows", "acceptance/test_measured", "test_additions", "cli/test_effects", "fit/test_fifth_order",
-    "test_wheel", "diagnosis/test_structure_selection", "app/test_older_database", "diagnosis/discovery/test_search",
-    "app/test_contract", "diagnosis/discovery/test_free_curves", "cli/test_commands", "app/test_diagnoses",
-    "app/backup/test_backup", "readers/test_random_tables", "app/test_bench", "fit/test_end_stops",
-    "presets/test_machines", "diagnosis/test_diagnose", "test_notebooks", "fit/test_beginnings",
-    "bench/test_procedures", "acceptance/test_identification", "bench/test_recovery", "fit/test_windows",
-    "bench/test_diagnosis", "bench/test_figures", "cli/test_diagnose", "bench/test_identification",
-    "effects/test_contract", "faults/test_mixed_load", "effects/test_every_pair", "app/test_service",
-    "cli/test_any_machine", "bench/test_continued", "checks/test_check", "app/test_adding", "app/access/test_roles",
-    "faults/test_older_jobs", "acceptance/test_rounding", "residuals/test_curves", "bench/test_calibration",
-    "readers/test_damage", "app/test_demo", "readers/test_lab_formats", "hybrid/test_what_if",
+    "browser/test_workbench", "browser/test_monkey", "cli/test_postgresql", "cli/test_service_commands",
+    "faults/test_workers", "faults/test_kill", "faults/test_mixed_load", "faults/test_older_jobs",
+    "app/backup/test_backup", "test_project", "diagnosis/test_diagnose",
+    "diagnosis/discovery/test_search", "diagnosis/test_structure_selection", "test_readme", "app/test_hybrid",
+    "test_site", "app/test_contract", "app/test_diagnoses", "cli/test_diagnose", "acceptance/test_identification",
+    "cli/test_commands", "checks/test_check", "app/access/test_roles", "app/test_own_effects", "test_windows",
+    "test_wheel", "bench/test_figures", "effects/test_contract", "diagnosis/test_prediction_horizon",
+    "app/test_bad_inputs", "presets/test_machines", "effects/test_every_pair", "diagnosis/test_time_budget",
+    "acceptance/test_rounding", "bench/test_acceptance", "app/test_service", "acceptance/test_one_error",
+    "bench/test_procedures", "diagnosis/test_alternative_structures", "fit/test_beginnings", "cli/test_any_machine",
+    "residuals/test_curves", "app/test_bench", "hybrid/test_what_if", "app/access/test_audit",
+    "diagnosis/discovery/test_free_curves", "cli/test_effects", "fit/test_windows", "test_additions", "app/test_adding",
+    "bench/test_calibration", "readers/test_random_tables", "acceptance/test_measured", "diagnosis/test_free_shapes",
+    "bench/test_recovery", "fit/test_custom_fit", "test_notebooks", "reference/test_nonlinear_reference",
+    "app/test_misspelt", "figures/test_figures", "diagnosis/test_measured",
+    "diagnosis/discovery/test_auxiliary_channels", "readers/test_lab_formats", "diagnosis/discovery/test_any_machine",
+    "app/test_older_database", "checks/test_unit_factor",
 )  # fmt: skip
-"""Files that take longest, the longest first; the files of the browser stay together and go with their first."""
+"""Files that take longest, those that wait for a browser or a service before the others, the dearest first.
+
+The files of the browser stay together and go with their first; mypy takes a minute in a fresh clone.
+"""
 
 OWN_SERVICE = "tests/browser/test_workbench.py"
 """Has a service of its own, and takes so long that it has a worker to itself."""
