@@ -10,8 +10,11 @@ from pathlib import Path
 
 from app.environment import enter, say
 
-SYSTEM_PACKAGES = {"chromium": "usr/bin/chromium", "postgresql": "usr/lib/postgresql/*/bin/pg_ctl"}
-"""Debian packages that some tests need, and the program by which each is recognised."""
+SYSTEM_PACKAGES = {
+    "chromium-headless-shell": "usr/bin/chromium-headless-shell", "postgresql": "usr/lib/postgresql/*/bin/pg_ctl",
+}  # fmt: skip
+"""Debian packages that some tests need, and the program by which each is known; chromium will do, but takes longer."""
+APT = ["apt-get", "-o", "Acquire::Retries=0", "-o", "Acquire::http::Timeout=20"]  # s: without a network it soon ends
 
 
 def install_system_packages() -> None:
@@ -24,13 +27,13 @@ def install_system_packages() -> None:
         return
     say(f"installing {', '.join(missing)} with apt-get")
     environment = {**os.environ, "DEBIAN_FRONTEND": "noninteractive"}
-    for command in (["apt-get", "update"], ["apt-get", "install", "-y", "--no-install-recommends", *missing]):
+    for command in ([*APT, "update"], [*APT, "install", "-y", "--no-install-recommends", *missing]):
         done = subprocess.run(
             command, env=environment, capture_output=True, text=True, check=False, stdin=subprocess.DEVNULL
         )
         if done.returncode:
             reason = (done.stderr.strip().splitlines() or ["no reason given"])[-1]
-            say(f"{' '.join(command[:2])} failed: {reason}; tests that need {', '.join(missing)} are skipped")
+            say(f"apt-get {command[len(APT)]} failed: {reason}; tests that need {', '.join(missing)} are skipped")
             return
 
 

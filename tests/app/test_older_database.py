@@ -17,7 +17,7 @@ from typing import Any
 import pytest
 
 from tests.conftest import ROOT
-from tests.running import Process, process
+from tests.running import FEW_EFFECTS, Process, process
 
 STORED = ROOT / "tests" / "stored"
 KEPT = STORED / "before"
@@ -38,8 +38,8 @@ class Older:
 
 
 @pytest.fixture(scope="module", params=["before", "revision_0004"])
-def older(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Older]:
-    """Each of them, on a data folder of its own."""
+def older(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory, full: bool) -> Iterator[Older]:
+    """Each of them, on a data folder of its own; in the short form eight effects are ranked."""
     folder, data = STORED / request.param, Path(tmp_path_factory.mktemp("older"))
     for name in ("servoident", "queue"):
         with sqlite3.connect(data / f"{name}.sqlite") as database:
@@ -48,7 +48,7 @@ def older(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFacto
         blob = data / "blobs" / name[:2] / name
         blob.parent.mkdir(parents=True, exist_ok=True)
         blob.write_bytes(content.encode("utf-8"))
-    with process(data) as running:
+    with process(data, "" if full else FEW_EFFECTS) as running:
         yield Older(running, json.loads((folder / "answers.json").read_text(encoding="utf-8")))
 
 

@@ -8,11 +8,11 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import pytest
-from playwright.sync_api import Browser, BrowserContext, Page
+from playwright.sync_api import Browser, Page
 
 from tests.app.conftest import zipped
-from tests.browser.window import Window, signed_in
-from tests.running import CHROMIUM, Service, process
+from tests.browser.window import Window, hearing, signed_in
+from tests.running import CHROMIUM, FEW_EFFECTS, Service, process
 
 HERE = Path(__file__).resolve().parent
 SCREENSHOTS = HERE.parents[1] / "build" / "screenshots"
@@ -22,7 +22,7 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     """Skip, with the reason, where there is no browser."""
     if shutil.which(CHROMIUM):
         return
-    reason = f"no browser: {CHROMIUM} does not exist (apt-get install chromium)"
+    reason = f"no browser: {CHROMIUM} does not exist (apt-get install chromium-headless-shell)"
     for item in items:
         if HERE in item.path.parents:
             item.add_marker(pytest.mark.skip(reason=reason))
@@ -38,9 +38,9 @@ def browser_type_launch_args() -> dict[str, object]:
 
 
 @pytest.fixture(scope="session")
-def site(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Service]:
-    """A service for all tests."""
-    with process(tmp_path_factory.mktemp("site")) as service:
+def site(tmp_path_factory: pytest.TempPathFactory, full: bool) -> Iterator[Service]:
+    """A service for all tests; in the short form its diagnoses rank eight effects."""
+    with process(tmp_path_factory.mktemp("site"), "" if full else FEW_EFFECTS) as service:
         yield service
 
 
@@ -77,25 +77,11 @@ def window(
     yield from signed_in(launch_browser, browser_type_launch_args, site)
 
 
-@pytest.fixture(scope="module")
-def of_file(window: Window) -> Iterator[Window]:
-    """The same for the tests of a file: stylesheets and scripts are fetched and compiled once."""
-    yield window
-    window.renew()
-
-
 @pytest.fixture
-def context(of_file: Window) -> BrowserContext:
-    """The context of a test's page."""
-    return of_file.context
-
-
-@pytest.fixture
-def page(of_file: Window, context: BrowserContext) -> Iterator[Page]:
-    """A page of its own for each test; nothing that one leaves in the browser is there for the next."""
-    made = context.new_page()
-    yield made
-    of_file.close(made)
+def page(window: Window) -> Iterator[Page]:
+    """The page of the window; nothing that a test leaves in the browser is there for the next."""
+    yield window.page
+    window.clear()
 
 
 @dataclass
@@ -110,10 +96,13 @@ class Watch:
 def watch(page, site) -> Iterator[Watch]:
     """Listens to every test's page; at the end nothing was complained of and nothing left the origin."""
     seen = Watch([], [])
-    page.on("console", lambda message: seen.complaints.append(message.text) if message.type != "log" else None)
-    page.on("pageerror", lambda error: seen.complaints.append(str(error)))
-    page.on("request", lambda request: seen.requests.append(request.url))
-    yield seen
+    heard = {
+        "console": lambda message: seen.complaints.append(message.text) if message.type != "log" else None,
+        "pageerror": lambda error: seen.complaints.append(str(error)),
+        "request": lambda request: seen.requests.append(request.url),
+    }
+    with hearing(page, heard):
+        yield seen
     assert seen.complaints == []
     foreign = [url for url in seen.requests if not url.startswith((site.address, "data:", "blob:"))]
     assert foreign == []

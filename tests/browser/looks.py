@@ -1,4 +1,4 @@
-"""How a page looks: in both themes and two widths nothing sticks out, and axe-core finds no barrier."""
+"""How a page looks: in both themes, at a desk and on a phone nothing sticks out, and axe-core finds no barrier."""
 
 from __future__ import annotations
 
@@ -7,9 +7,10 @@ from pathlib import Path
 from typing import Any
 
 from axe_playwright_python.sync_playwright import Axe
-from playwright.sync_api import Page, expect
+from playwright.sync_api import Page, ViewportSize, expect
 
 WIDTHS = (1280, 820)
+PHONE: ViewportSize = {"width": 390, "height": 844}
 COLOURS = ("color-contrast", "link-in-text-block")  # axe's rules of colour: a theme changes nothing else
 DRAWING = ".plot[aria-busy=true]:visible"
 
@@ -29,6 +30,19 @@ def everywhere(page: Page, folder: Path | None, name: str) -> None:
                 page.screenshot(path=folder / f"{name}-{width}-{theme}.png", full_page=True)
         found = barriers(page, rules)
         assert not found, "\n".join([f"{name}, {theme}", *found])
+
+
+def on_a_phone(page: Page, folder: Path | None, name: str) -> None:
+    """The page does not scroll sideways; what can be pressed is 24 px large, or has so much room; all of it is open."""
+    page.set_viewport_size(PHONE)
+    for closed in page.locator("details:not([open]) > summary").all():
+        if closed.is_visible():
+            closed.click()
+    expect(page.locator(DRAWING)).to_have_count(0, timeout=120_000)
+    assert page.evaluate("document.documentElement.scrollWidth") <= PHONE["width"]
+    assert barriers(page, ("target-size",)) == []
+    if folder:
+        page.screenshot(path=folder / f"phone-{name}.png", full_page=True)
 
 
 def barriers(page: Page, rules: Sequence[str] = ()) -> list[str]:

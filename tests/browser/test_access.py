@@ -6,15 +6,16 @@ import re
 from collections.abc import Iterator
 
 import pytest
-from playwright.sync_api import Browser, BrowserContext, expect
+from playwright.sync_api import BrowserContext, expect
 
 from tests.browser.looks import everywhere
+from tests.browser.window import Window
 
 
 @pytest.fixture
-def stranger(browser: Browser) -> Iterator[BrowserContext]:
-    """A window that nobody signed in."""
-    with browser.new_context() as made:
+def stranger(window: Window) -> Iterator[BrowserContext]:
+    """Somebody else at the same browser, who has not signed in."""
+    with window.stranger() as made:
         yield made
 
 

@@ -189,7 +189,6 @@ def test_a_comparison_of_what_is_not_there_says_so(fits, page, site, watch):
 
 
 def test_a_value_is_copied_with_its_unit_and_a_table_with_tabs(page, site, fitted):
-    page.context.grant_permissions(["clipboard-read", "clipboard-write"], origin=site.address)
     page.goto(f"{site.address}/fits/{fitted}#parameters")
     stored = site.client.get(f"/fits/{fitted}").json()["result"]["parameters"]["tau"]
     button = page.get_by_role("button", name=re.compile("^Copy τ = "))

@@ -7,6 +7,7 @@ from __future__ import annotations
 import io
 import json
 from collections.abc import Callable, Iterator
+from contextlib import AbstractContextManager
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -17,15 +18,13 @@ from playwright.sync_api import Browser, ElementHandle, Error, JSHandle, Page, R
 
 from tests.app.conftest import zipped
 from tests.app.test_drafts import record
-from tests.browser.window import Window, signed_in
+from tests.browser.window import LOADED, SETTLED, Window, hearing, signed_in, visit
 from tests.running import Service, process
 
 SEED = 50
 FEW, MANY = 3, 100  # actions on a page: in the short form, and with --full
 FIELDS = 4  # of a form that is filled in before it is sent
 PATIENCE = 1500.0  # ms for an element that something else may cover, or that is gone
-LOADED = 5000.0  # ms for a page: one that an earlier click keeps from loading is asked for again
-SETTLED = 40.0  # ms in which an answer to an action may come
 CONTROLS = "a[href], button, summary, input, select, textarea, [role=tab], [tabindex='0'], th button"
 SPARED = "form.out button"  # signing out: of a stranger there is nothing to be seen but the page that signs in
 REFUSED = "the server responded with a status of 4"  # what the browser notes of each refusal
@@ -47,12 +46,14 @@ class Seen:
     wrong: list[str] = field(default_factory=list)
     answers: list[Response] = field(default_factory=list)
 
-    def listen(self, page: Page) -> None:
+    def listening(self, page: Page) -> AbstractContextManager[None]:
         """Hear everything that a page says."""
-        page.on("console", lambda message: self.said(message.type, message.text))
-        page.on("pageerror", lambda error: self.fault(f"error in the page: {error}"))
-        page.on("response", lambda answer: self.answers.append(answer))  # noqa: PLW0108 - a bound method cannot be marked
-        page.on("dialog", lambda dialog: dialog.dismiss())
+        return hearing(page, {
+            "console": lambda message: self.said(message.type, message.text),
+            "pageerror": lambda error: self.fault(f"error in the page: {error}"),
+            "response": lambda answer: self.answers.append(answer),  # noqa: PLW0108 - a bound method cannot be marked
+            "dialog": lambda dialog: dialog.dismiss(),
+        })  # fmt: skip
 
     def said(self, kind: str, text: str) -> None:
         """A line of the console; that an answer was a refusal is judged by the answer."""
@@ -149,28 +150,26 @@ def test_every_page_of_the_service_is_visited():
 @pytest.mark.parametrize("name", PAGES)
 def test_random_clicks_and_forms_are_answered(name, cage, zoo, filled, tmp_path, full):
     seen, random = Seen(), np.random.default_rng([SEED, PAGES.index(name)])
-    page = cage.context.new_page()
+    page, address = cage.page, zoo.address + filled[name]
     page.set_default_timeout(LOADED)
-    seen.listen(page)
-    address = zoo.address + filled[name]
-    visit(page, address)
-    for _ in range(MANY if full else FEW):
-        try:
-            act(page, random, seen, tmp_path)
-            page.wait_for_timeout(SETTLED)
-        except Error as error:  # covered, moved or gone: nobody could have pressed it
-            seen.steps.append(f"({str(error).splitlines()[0][:80]})")
-        seen.look()
-        others = [one for one in cage.context.pages[1:] if one is not page]
-        for other in others:
-            cage.close(other)
-        if not page.url.startswith(zoo.address) or random.random() < 0.1 or elsewhere(page, address):
-            visit(page, address)
-            if page.get_by_role("heading", name="Sign in").count() and name != "sign-in":
-                visit(page, f"{zoo.address}/?token={zoo.token}")
+    with seen.listening(page):
+        visit(page, address)
+        for _ in range(MANY if full else FEW):
+            try:
+                act(page, random, seen, tmp_path)
+                page.wait_for_timeout(SETTLED)
+            except Error as error:  # covered, moved or gone: nobody could have pressed it
+                seen.steps.append(f"({str(error).splitlines()[0][:80]})")
+            seen.look()
+            for other in page.context.pages[1:]:
+                cage.close(other)
+            if not page.url.startswith(zoo.address) or random.random() < 0.1 or elsewhere(page, address):
                 visit(page, address)
-    seen.look()
-    cage.close(page)
+                if page.get_by_role("heading", name="Sign in").count() and name != "sign-in":
+                    visit(page, f"{zoo.address}/?token={zoo.token}")
+                    visit(page, address)
+        seen.look()
+    cage.clear()
     for job in zoo.client.get("/jobs").json()["items"]:
         if job["state"] in ("queued", "running"):
             zoo.client.delete(f"/jobs/{job['id']}")
@@ -179,34 +178,22 @@ def test_random_clicks_and_forms_are_answered(name, cage, zoo, filled, tmp_path,
 
 def test_what_goes_wrong_on_a_page_is_noted_with_the_way_to_it(cage, zoo):
     """An error in a script, one in the console, an answer of 500, a refusal without a remedy; no other refusal."""
-    seen, page = Seen(["click here"]), cage.context.new_page()
-    seen.listen(page)
-    visit(page, f"{zoo.address}/upload")
-    page.route("**/broken", lambda route: route.fulfill(status=500))
-    problem = {"content_type": "application/problem+json", "status": 422}
-    page.route("**/mute", lambda route: route.fulfill(body='{"what": "no", "remedy": ""}', **problem))
-    page.route("**/told", lambda route: route.fulfill(body='{"what": "no", "remedy": "say yes"}', **problem))
-    page.evaluate("setTimeout(() => { throw new Error('thrown') })")
-    page.evaluate("console.error('said')")
-    for path in ("broken", "mute", "told"):
-        page.evaluate(f"fetch('/{path}').then((answer) => answer.text())")
-    seen.look()
-    cage.close(page)
+    seen, page = Seen(["click here"]), cage.page
+    with seen.listening(page):
+        visit(page, f"{zoo.address}/upload")
+        page.route("**/broken", lambda route: route.fulfill(status=500))
+        problem = {"content_type": "application/problem+json", "status": 422}
+        page.route("**/mute", lambda route: route.fulfill(body='{"what": "no", "remedy": ""}', **problem))
+        page.route("**/told", lambda route: route.fulfill(body='{"what": "no", "remedy": "say yes"}', **problem))
+        page.evaluate("setTimeout(() => { throw new Error('thrown') })")
+        page.evaluate("console.error('said')")
+        for path in ("broken", "mute", "told"):
+            page.evaluate(f"fetch('/{path}').then((answer) => answer.text())")
+        seen.look()
+    cage.clear()
     for told in ("thrown", "console: said", "/broken: 500", "/mute: 422 without a remedy"):
         assert any(told in fault and "after click here" in fault for fault in seen.wrong), told
     assert not any("/told" in fault for fault in seen.wrong)
-
-
-def visit(page: Page, address: str) -> None:
-    """Open a page; once more where an earlier click was on its way to another."""
-    for _ in range(5):
-        try:
-            page.goto(address, wait_until="domcontentloaded", timeout=LOADED)
-        except Error:
-            page.wait_for_timeout(SETTLED)
-        else:
-            return
-    page.goto(address, wait_until="domcontentloaded")
 
 
 def elsewhere(page: Page, address: str) -> bool:

@@ -9,37 +9,48 @@ import pytest
 from playwright.sync_api import Error, expect
 
 from ident.words.engineering import power_of, scaled_unit
+from tests.app.access.table import PAGES
+from tests.app.access.test_audit import RAW
 from tests.app.conftest import zipped
-from tests.browser.looks import WIDTHS, barriers, everywhere
+from tests.browser.looks import WIDTHS, barriers, everywhere, on_a_phone
+from tests.running import Service
 
 FIGURE = "#figure-residual-map"
 
 
-def addresses(matrix: str, fitted: str) -> dict[str, str]:
-    return {
-        "actuators": "/",
-        "actuator": "/actuators/SW/1%20%3Cb%3E",
-        "upload": "/upload",
-        "matrix": f"/matrices/{matrix}",
-        "jobs": "/jobs",
-        "fit": f"/fits/{fitted}",
-        "use": f"/fits/{fitted}/use",
-        "statistics": "/statistics?parameter=tau",
-        "limits": "/limits",
-        "regressions": "/regressions",
-    }
+SHOWN = [call for call in PAGES if call.method == "GET" and not re.search(r"\.svg|\.json", call.path)]
+"""Every page of the service: the table of who may call what is complete, which tests/app/access holds."""
+OF_A_DAY = {
+    "/", "/actuators/{serial}", "/upload", "/matrices/{matrix}", "/jobs", "/fits/{fit}", "/fits/{fit}/use",
+    "/statistics", "/limits", "/regressions",
+}  # fmt: skip
+"""Those looked at in both themes and by all rules; the other tests do so with those that need more than is here."""
 
 
-@pytest.mark.parametrize(
-    "name", ["actuators", "actuator", "upload", "matrix", "jobs", "fit", "use", "statistics", "limits", "regressions"]
-)
-def test_a_page_fits_desk_and_tablet_in_both_themes_and_shuts_nobody_out(name, page, site, matrix, fitted, screenshots):
+@pytest.fixture(scope="module")
+def addresses(site: Service, matrix: str, fitted: str) -> dict[str, str]:
+    """The address of each page, with something on it, by its route."""
+    draft = site.client.post("/drafts", files={"files": ("run.csv", RAW)}).json()["id"]
+    regression = site.client.post("/regressions", json={"serial": "nobody"}).json()["id"]
+    job = site.client.post("/fits", json={"matrix": matrix, "seed": 21}).json()["id"]
+    site.client.delete(f"/jobs/{job}")  # that of a finished fit leads to the fit
+    site.ended(job)
+    about = {
+        "serial": "SW/1%20%3Cb%3E", "matrix": matrix, "fit": fitted, "draft": draft, "regression": regression,
+        "job": job, "path": "nothing/here", "name": "cli",
+    }  # fmt: skip
+    return {call.path: f"{call.path.format(**about)}?{call.query.format(**about)}" for call in SHOWN}
+
+
+@pytest.mark.parametrize("path", [call.path for call in SHOWN])
+def test_a_page_fits_desk_tablet_and_phone_and_shuts_nobody_out(path, page, watch, site, addresses, screenshots):
     """Every field has a label and every column of a table a heading."""
-    page.goto(site.address + addresses(matrix, fitted)[name])
+    page.goto(site.address + addresses[path])
     expect(page.locator("h1")).to_have_count(1)
     unlabelled = page.evaluate(
         """[...document.querySelectorAll("input:not([type=hidden]), select")]
-             .filter((field) => field.labels.length === 0 && !field.ariaLabel).map((field) => field.outerHTML)"""
+             .filter((field) => !field.hidden && field.labels.length === 0 && !field.ariaLabel)
+             .map((field) => field.outerHTML)"""
     )
     assert unlabelled == []
     ragged = page.evaluate(
@@ -47,7 +58,11 @@ def test_a_page_fits_desk_and_tablet_in_both_themes_and_shuts_nobody_out(name, p
              .some((row) => row.cells.length !== table.tHead.rows[0].cells.length)).length"""
     )
     assert ragged == 0
-    everywhere(page, screenshots, name)
+    name = re.sub(r"\W+", "-", path).strip("-") or "actuators"
+    if path in OF_A_DAY:
+        everywhere(page, screenshots, name)
+    on_a_phone(page, screenshots, name)
+    watch.complaints[:] = [said for said in watch.complaints if "404" not in said or path != "/{path}"]
 
 
 def test_a_figure_and_the_ground_follow_the_system_theme(page, site, fitted):

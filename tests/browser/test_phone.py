@@ -1,52 +1,13 @@
-"""Every page on a phone: nothing sticks out, what can be pressed is large enough, and a canvas says what it shows."""
+"""On a phone: what is too small or too wide is found, and a canvas says what it shows."""
 
 from __future__ import annotations
 
 import re
 
-import pytest
 from playwright.sync_api import Page, expect
 
-from tests.app.access.table import PAGES
-from tests.app.access.test_audit import RAW
-from tests.browser.looks import DRAWING, barriers
+from tests.browser.looks import PHONE, barriers
 from tests.running import Service
-
-PHONE = {"width": 390, "height": 844}
-SHOWN = [call for call in PAGES if call.method == "GET" and not re.search(r"\.svg|\.json", call.path)]
-"""Every page of the service: the table of who may call what is complete, which tests/app/access holds."""
-
-
-@pytest.fixture(scope="session")
-def addresses(site: Service, matrix: str, fitted: str) -> dict[str, str]:
-    """The address of each page, with something on it, by its route."""
-    draft = site.client.post("/drafts", files={"files": ("run.csv", RAW)}).json()["id"]
-    regression = site.client.post("/regressions", json={"serial": "nobody"}).json()["id"]
-    job = site.client.post("/fits", json={"matrix": matrix, "seed": 21}).json()["id"]
-    site.ended(job)
-    about = {
-        "serial": "SW/1%20%3Cb%3E", "matrix": matrix, "fit": fitted, "draft": draft, "regression": regression,
-        "job": job, "path": "nothing/here", "name": "cli",
-    }  # fmt: skip
-    return {call.path: f"{call.path.format(**about)}?{call.query.format(**about)}" for call in SHOWN}
-
-
-@pytest.mark.parametrize("path", [call.path for call in SHOWN])
-def test_a_page_fits_a_phone(path, page, watch, site, addresses, screenshots):
-    """The page does not scroll sideways; what can be pressed is 24 px large, or has so much room."""
-    page.set_viewport_size(PHONE)
-    page.goto(site.address + addresses[path])
-    expect(page.locator("h1")).to_have_count(1)
-    for closed in page.locator("details:not([open]) > summary").all():
-        if closed.is_visible():
-            closed.click()
-    expect(page.locator(DRAWING)).to_have_count(0, timeout=120_000)
-    assert page.evaluate("document.documentElement.scrollWidth") <= PHONE["width"]
-    assert barriers(page, ("target-size",)) == []
-    if screenshots:
-        name = re.sub(r"\W+", "-", path).strip("-")
-        page.screenshot(path=screenshots / f"phone-{name}.png", full_page=True)
-    watch.complaints[:] = [said for said in watch.complaints if "404" not in said or path != "/{path}"]
 
 
 def test_what_is_too_small_or_too_wide_for_a_phone_is_found(page: Page, site: Service) -> None:

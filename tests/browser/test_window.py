@@ -2,17 +2,15 @@
 
 from __future__ import annotations
 
-from tests.browser import window
+from tests.browser import window as module
 
 
-def test_a_browser_that_hangs_is_ended_and_another_begun(page, site, of_file, monkeypatch):
+def test_a_browser_that_hangs_is_ended_and_another_begun(page, site, window, monkeypatch):
     """What never comes is waited for, as a page is that does not close."""
     page.goto(f"{site.address}/")
-    before = of_file.context
-    monkeypatch.setattr(window, "LONGEST", 0.5)
-    with of_file.in_time():
+    monkeypatch.setattr(module, "LONGEST", 0.5)
+    with window.in_time():
         page.evaluate("() => new Promise(() => {})")
-    assert of_file.context is not before
-    fresh = of_file.context.new_page()
-    fresh.goto(f"{site.address}/")
-    assert "servoident" in fresh.content()
+    assert window.page is not page
+    window.page.goto(f"{site.address}/")
+    assert "servoident" in window.page.content()

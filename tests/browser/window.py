@@ -1,60 +1,69 @@
-"""A signed-in window of Chromium, which now and then does not close a page: then it is ended, and another begun."""
+"""A signed-in window of Chromium with one page for all tests; where it hangs it is ended, and another begun."""
 
 from __future__ import annotations
 
 import secrets
 import subprocess
 import threading
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
-from typing import cast
+from typing import Any, cast
 
-from playwright.sync_api import Browser, BrowserContext, Error, Page
+from playwright.sync_api import Browser, BrowserContext, Error, Page, ViewportSize
 
 from tests.running import Service
 
+SIZE: ViewportSize = {"width": 1280, "height": 720}
+CLIPBOARD = ["clipboard-read", "clipboard-write"]  # which a browser with a window lets a person's click write
+USUAL = 30_000.0  # ms, for what a page is to show
+LOADED = 5000.0  # ms for a page: one that an earlier click keeps from loading is asked for again
+SETTLED = 40.0  # ms in which an answer to an action may come
 LONGEST = 8.0  # s for what takes milliseconds, on a machine whose cores all have other work
 
 
 class Window:
-    """A context in which someone has signed in; a new one after each `renew`, and where the browser hung."""
+    """A context in which someone has signed in, and its page; another of both where the browser hung."""
 
     def __init__(self, launch: Callable[..., Browser], args: list[str], entrance: str) -> None:
         self._mark = f"--servoident-{secrets.token_hex(8)}"  # by which its process is found
         self._launch, self._args, self._entrance = launch, [*args, self._mark], entrance
         self._browser: Browser | None = None
-        self._made: BrowserContext | None = None
-        self._kept: Page | None = None  # stays open, on an answer that does nothing: making a page takes most of a test
+        self._page: Page | None = None
 
     @property
-    def context(self) -> BrowserContext:
-        """Where pages are opened."""
-        if self._browser is None or not self._browser.is_connected():
-            self._browser, self._made = self._launch(args=self._args), None
-        if self._made is None:
-            self._made = self._browser.new_context()
-            self._kept = self._made.new_page()
-            self._kept.goto(self._entrance)
-            self._kept.goto(f"{self._entrance.partition('?')[0]}api/v1/ready")
-        return self._made
+    def page(self) -> Page:
+        """The page of every test, one after the other: making one takes most of a short test."""
+        if self._browser is None or self._page is None or not self._browser.is_connected():
+            self._browser = self._launch(args=self._args)
+            self._page = self._browser.new_context(permissions=CLIPBOARD).new_page()
+            self._page.goto(self._entrance)
+        return self._page
 
-    def close(self, page: Page) -> None:
-        """Close a page; nothing that it left in the browser is there for the next."""
-        with self.in_time():
-            page.close()
-            context = self.context  # a new one where the browser was ended
-            assert self._kept is not None
-            self._kept.evaluate(
-                "localStorage.clear()"
-            )  # of the closed one, which may go on by itself, nothing is asked
-            context.clear_permissions()
+    @contextmanager
+    def stranger(self) -> Iterator[BrowserContext]:
+        """A context of the same browser in which nobody has signed in."""
+        browser = self.page.context.browser
+        assert browser is not None
+        with browser.new_context() as made:
+            yield made
 
-    def renew(self) -> None:
-        """Have the next page opened in a context of its own."""
+    def close(self, other: Page) -> None:
+        """Close a page that another opened."""
         with self.in_time():
-            if self._made is not None:
-                self._made.close()
-        self._made = None
+            other.close()
+
+    def clear(self) -> None:
+        """Leave nothing of a test for the next: its other pages, its routes, what it stored, how it was shown."""
+        with self.in_time():
+            page = self.page
+            for other in page.context.pages[1:]:
+                other.close()
+            page.unroute_all(behavior="ignoreErrors")
+            page.set_default_timeout(USUAL)
+            visit(page, f"{self._entrance.partition('?')[0]}sign-in")  # on which nothing goes on
+            page.evaluate("localStorage.clear()")
+            page.emulate_media(color_scheme="null")
+            page.set_viewport_size(SIZE)
 
     def end(self) -> None:
         """Close the browser."""
@@ -74,6 +83,28 @@ class Window:
                 raise
         finally:
             hung.cancel()
+
+
+@contextmanager
+def hearing(page: Page, heard: Mapping[str, Callable[[Any], None]]) -> Iterator[None]:
+    """Tells what a page says, by the names of its events, and no longer: the page is that of the next test, too."""
+    for event, told in heard.items():
+        page.on(event, told)  # type: ignore[call-overload]  its names are literals there
+    yield
+    for event, told in heard.items():
+        page.remove_listener(event, told)
+
+
+def visit(page: Page, address: str) -> None:
+    """Open a page; once more where an earlier click was on its way to another."""
+    for _ in range(5):
+        try:
+            page.goto(address, wait_until="domcontentloaded", timeout=LOADED)
+        except Error:
+            page.wait_for_timeout(SETTLED)
+        else:
+            return
+    page.goto(address, wait_until="domcontentloaded")
 
 
 def signed_in(launch: Callable[..., Browser], launch_args: dict[str, object], site: Service) -> Iterator[Window]:
