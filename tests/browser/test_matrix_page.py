@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from base64 import b64encode
+
 import pytest
 from playwright.sync_api import expect
 
@@ -12,8 +14,9 @@ from tests.browser.looks import everywhere
 DROP = """(files) => {
   // What a browser hands over where a folder is dropped: entries, which a folder gives a batch at a time.
   const entry = (path) => path in files
-    ? { isFile: true, fullPath: "/" + path, file: (done) => done(new File([new Uint8Array(files[path])], path)) }
+    ? { isFile: true, fullPath: "/" + path, file: (done) => done(new File([read(files[path])], path)) }
     : { isFile: false, createReader: () => reader(path) };
+  const read = (text) => Uint8Array.from(atob(text), (byte) => byte.charCodeAt(0));
   const reader = (folder) => {
     const below = Object.keys(files).filter((path) => path.startsWith(folder + "/"));
     const names = new Set(below.map((path) => path.slice(folder.length + 1).split("/")[0]));
@@ -105,7 +108,7 @@ def test_a_fit_takes_what_is_chosen(page, site, matrix):
 
 def test_a_dropped_folder_is_uploaded_with_its_paths(page, site):
     page.goto(f"{site.address}/upload")
-    page.evaluate(DROP, {f"SW-DROP/{name}": list(content) for name, content in files("SW-DROP").items()})
+    page.evaluate(DROP, {f"SW-DROP/{name}": b64encode(content).decode() for name, content in files("SW-DROP").items()})
     expect(page.locator("[data-chosen]")).to_contain_text("13 files")
     page.get_by_role("button", name="Upload").click()
     expect(page.locator("h1")).to_have_text("Test data of SW-DROP")

@@ -18,6 +18,7 @@ from playwright.sync_api import Browser, ElementHandle, Error, JSHandle, Page, R
 
 from tests.app.conftest import zipped
 from tests.app.test_drafts import record
+from tests.browser.test_pages import SHORT
 from tests.browser.window import LOADED, SETTLED, Window, hearing, signed_in, visit
 from tests.running import Service, process
 
@@ -108,7 +109,7 @@ def filled(zoo: Service) -> dict[str, str]:
     matrix = client.post("/matrices", files={"files": ("m.zip", zipped("SW-1"))}).json()["id"]
     files = [("files", (f"{name}.csv", record(seed))) for seed, name in enumerate("ab")]
     draft = client.post("/drafts", files=files).json()["id"]
-    first, second = zoo.fit(matrix), zoo.fit(matrix, seed=1)
+    first, second = zoo.fit(matrix, options=SHORT), zoo.fit(matrix, seed=1, options=SHORT)
     for fit in (first, second):
         assert zoo.ended(fit)["state"] == "succeeded"
     client.post(f"/fits/{first}/approve", json={"why": "as measured"})

@@ -16,6 +16,7 @@ from tests.browser.looks import WIDTHS, barriers, everywhere, on_a_phone
 from tests.running import Service
 
 FIGURE = "#figure-residual-map"
+SHORT = {"generations": 4, "population": 20, "elite": 3}  # of a search whose result is only to be there
 
 
 SHOWN = [call for call in PAGES if call.method == "GET" and not re.search(r"\.svg|\.json", call.path)]
@@ -262,7 +263,7 @@ def test_the_whole_way_from_upload_to_approval(page, site, tmp_path):
 def test_drift_is_seen_once_a_second_set_is_approved(page, site, screenshots):
     stored = site.client.post("/matrices", files={"files": ("matrix.zip", zipped("SW-DRIFT"))}).json()
     for seed, bounds in enumerate(({}, {"tau": ["3.7 ms", "4 ms"]}, {"tau": ["3.65 ms", "4 ms"]})):
-        fit = site.fit(stored["id"], seed=seed, bounds=bounds)
+        fit = site.fit(stored["id"], seed=seed, bounds=bounds, options=SHORT)
         assert site.ended(fit)["state"] == "succeeded"
         assert site.client.post(f"/fits/{fit}/approve", json={"why": "as it came"}).status_code == 200
     page.goto(f"{site.address}/?q=SW-DRIFT")
