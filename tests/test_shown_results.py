@@ -48,12 +48,15 @@ def results() -> dict[str, Shown]:
     many = (
         matrix, matrix.runs[0], ident.check(matrix), fit, compared, compared.runs[0], found, found.budget,
         Diagnosis.from_json(json.loads(STORED.read_text())), of_fits([fit, fit]), track(matrix.runs[0]),
-        Experiment(Specimen(2.0), 7.0, 1e-3, "blwn", 30.0, 4.0, 4096.0, separation=3.0, std_errors={"Z0": 0.5}),
+        Experiment(specimen=Specimen(2.0), gain=7.0, amplitude=1e-3, signal="blwn", frequency=30.0, seconds=4.0,
+                   sample_rate=4096.0, separation=3.0, std_errors={"Z0": 0.5}),
         Profile("tau", "s", (1e-3, 2e-3), (0.1, 0.2), (0.0, 9.0), 1e-3, None),
         what_if(of_area, Change(specimen=Specimen(5.0)), (2.0, 3.0)), simulate_hybrid(machine, case),
         share_map(machine, case, masses=[0.0, 0.5], stiffnesses=[0.0, 0.9]),
         design_controller(machine, Specimen(8.75, 17.5e3), sample_rate=4096.0, gain=2.0, piston_area=497e-6, delay=1),
-        Followed(20.0, 40.0, 0, 1e-3, 1e-4, None, None, None, curve, curve, curve, curve, curve, curve),
+        Followed(gain=20.0, limit=40.0, draws=0, feedback_rms=1e-3, both_rms=1e-4, drawn_feedback_rms=None,
+                 drawn_both_rms=None, drawn_ratio=None, t=curve, reference=curve, feedback=curve, both=curve,
+                 low=curve, high=curve),
         Analysis(notes=("a note",)), ident.plan({"gains": [5.0], "amplitudes": ["1 mm"]}),
     )  # fmt: skip
     return {type(one).__name__: one for one in many if one is not None}

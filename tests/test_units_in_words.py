@@ -125,8 +125,17 @@ def test_in_figures_axes_and_captions_have_the_same(name):
 @EVERY
 def test_the_next_run_is_asked_for_in_the_unit_of_the_command(name):
     run = recorded(name).runs[0]
-    asked = Experiment(None, None, run.amplitude, "blwn", 0.1, 100.0, 1.0, unit=run.units["command"],
-                       time_unit=run.time_unit)  # fmt: skip
+    asked = Experiment(
+        specimen=None,
+        gain=None,
+        amplitude=run.amplitude,
+        signal="blwn",
+        frequency=0.1,
+        seconds=100.0,
+        sample_rate=1.0,
+        unit=run.units["command"],
+        time_unit=run.time_unit,
+    )
     size = lab.amplitude(float(f"{run.amplitude:.3g}"), run.units["command"])
     assert f"of {size} RMS" in asked.conditions
     assert ("Hz" in asked.conditions) is (run.time_unit == "s")

@@ -54,7 +54,21 @@ def _result(case: Case, result: Mapping[str, Any], arrays: Mapping[str, Any]) ->
     found = result["scores"]
     scores = None if found["delay"] is None else Scores(**{field.name: found[field.name] for field in fields(Scores)})
     return HybridResult(
-        case, result["controller"], result["effects"], result["stable"], scores, result["command_rms"],
-        result["critical_delay"], result["largest_pole"], result["ended"], result["seconds"],
-        _NONE, arrays["numerical"], arrays["measured"], arrays["reference"], _NONE, _NONE, tuple(result["notes"]),
-    )  # fmt: skip
+        case=case,
+        controller=result["controller"],
+        effects=result["effects"],
+        stable=result["stable"],
+        scores=scores,
+        command_rms=result["command_rms"],
+        critical_delay=result["critical_delay"],
+        radius=result["largest_pole"],
+        ended=result["ended"],
+        seconds=result["seconds"],
+        ground=_NONE,
+        numerical=arrays["numerical"],
+        measured=arrays["measured"],
+        reference=arrays["reference"],
+        command=_NONE,
+        force=_NONE,
+        notes=tuple(result["notes"]),
+    )

@@ -28,7 +28,7 @@ class Head:
     without: str
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class SideView:
     """The fits and their tables; `fixed` are the others in the query of the figure, which is the first one's."""
 
@@ -62,9 +62,16 @@ def side_view(stored: Sequence[Stored], found: SideBySide) -> SideView:
         (run, use, *(one.run_words.get(run, absent).in_print() for one in columns)) for run, use in found.uses.items()
     )
     return SideView(
-        ids[0], found.serials, heads, tuple(column.name for column in found.columns), tuple(found.error_rows()),
-        tuple(found.parameter_rows()), tuple(runs), ",".join(ids), "&".join(f"other={one}" for one in ids[1:]),
-    )  # fmt: skip
+        id=ids[0],
+        serials=found.serials,
+        heads=heads,
+        letters=tuple(column.name for column in found.columns),
+        errors=tuple(found.error_rows()),
+        parameters=tuple(found.parameter_rows()),
+        runs=tuple(runs),
+        fits=",".join(ids),
+        fixed="&".join(f"other={one}" for one in ids[1:]),
+    )
 
 
 def further(known: Iterable[ParameterSetView], fits: Sequence[str]) -> tuple[tuple[str, str], ...]:

@@ -32,7 +32,7 @@ noise: {displacement: 1 um}
 """What the field for an own case begins with: the first case, written out."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class UseView:
     """A fit and what can be done with it: a section a task."""
 
@@ -59,6 +59,14 @@ def use_view(
     model = preset_with(fit.model, fit.effects, fit.settings.get("custom", ()))
     errors = [f"{row.error} on {row.use.lower()} runs" for row in error_rows(fit)]
     return UseView(
-        stored.id, stored.serial, stored.matrix, with_effects(model.title, fit.effects), stored.current,
-        ", ".join(errors), control, hybrid, what_if, tracking,
-    )  # fmt: skip
+        id=stored.id,
+        serial=stored.serial,
+        matrix=stored.matrix,
+        title=with_effects(model.title, fit.effects),
+        current=stored.current,
+        errors=", ".join(errors),
+        control=control,
+        hybrid=hybrid,
+        what_if=what_if,
+        tracking=tracking,
+    )

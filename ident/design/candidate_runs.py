@@ -43,8 +43,18 @@ def candidate_runs(matrix: Matrix, band: float, seed: int = 0) -> Iterator[Exper
     edge = min(band / (2 * np.pi) / 1.25, 0.4 * first.sample_rate)  # the band has a margin that the command has not
     for specimen, gain, amplitude, signal in product(specimens, gains, amplitudes, SIGNALS):
         for share in _SHARES if signal in PERIODIC else (1.0,):
-            found = Experiment(specimen, gain, amplitude, signal, share * edge, seconds, first.sample_rate, seed,
-                               first.units.get("command", "m"), first.time_unit)  # fmt: skip
+            found = Experiment(
+                specimen=specimen,
+                gain=gain,
+                amplitude=amplitude,
+                signal=signal,
+                frequency=share * edge,
+                seconds=seconds,
+                sample_rate=first.sample_rate,
+                seed=seed,
+                unit=first.units.get("command", "m"),
+                time_unit=first.time_unit,
+            )
             if share * edge * seconds >= 2 and _within_stroke(found, matrix.actuator.stroke):
                 yield found
 

@@ -20,7 +20,7 @@ from ident.words.shown import Listing, Shown
 Array = NDArray[np.float64]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Experiment(Shown):
     """One run. `amplitude` is the command's RMS in m, `frequency` that of a sine or saw-tooth, else the upper edge.
 

@@ -25,7 +25,7 @@ _SHOWN = 600  # points of a curve that are kept
 _RATE = 1000.0  # Hz: no structure moves so fast that more samples would show more
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Followed(Shown):
     """Errors (m) of a machine that follows a reference with the feedback alone and with feedforward beside it.
 
@@ -96,13 +96,19 @@ class Followed(Shown):
         rms = found.rms()
         told = {name: float(np.median(rms[name])) if draws else None for name in ("drawn_feedback", "drawn_both")}
         return cls(
-            found.gain, found.limit if np.isfinite(found.limit) else None, draws,
-            float(rms["feedback"]), float(rms["both"]),
-            told["drawn_feedback"], told["drawn_both"],
-            float(np.median(rms["drawn_feedback"] / np.maximum(rms["drawn_both"], 1e-300))) if draws else None,
-            tuple((places / found.sample_rate).tolist()),
+            gain=found.gain,
+            limit=found.limit if np.isfinite(found.limit) else None,
+            draws=draws,
+            feedback_rms=float(rms["feedback"]),
+            both_rms=float(rms["both"]),
+            drawn_feedback_rms=told["drawn_feedback"],
+            drawn_both_rms=told["drawn_both"],
+            drawn_ratio=float(np.median(rms["drawn_feedback"] / np.maximum(rms["drawn_both"], 1e-300)))
+            if draws
+            else None,
+            t=tuple((places / found.sample_rate).tolist()),
             **{name: tuple(curve[places].tolist()) for name, curve in curves.items()},
-        )  # fmt: skip
+        )
 
 
 def rounded(ratio: float) -> str:

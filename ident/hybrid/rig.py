@@ -57,7 +57,7 @@ def name_of(controller: Controller) -> str:
     return getattr(controller, "name", "") or type(controller).__name__.lower()
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, kw_only=True)
 class HybridResult(Shown):
     """What a hybrid simulation gave, SI; the records are (n,) at `sample_rate` (Hz).
 
@@ -182,12 +182,24 @@ def simulate_machine(
         radius = spectral_radius(of, case, acting)
     d, y, u = rig.d[:, 0], rig.y[:, 0], rig.held[case.delay :, 0]
     return HybridResult(
-        case, name_of(acting), dict(effects or {}), kept and (radius is None or radius < 1.0),
-        scores(y, d, wanted, case.sample_rate) if kept else None,
-        float(np.std(u)) if kept else None, critical_delay(case), radius,
-        None if kept else ended / case.sample_rate, perf_counter() - begun,
-        ground, d, y, wanted, u, rig.f[:, 0], _notes(of),
-    )  # fmt: skip
+        case=case,
+        controller=name_of(acting),
+        effects=dict(effects or {}),
+        stable=kept and (radius is None or radius < 1.0),
+        scores=scores(y, d, wanted, case.sample_rate) if kept else None,
+        command_rms=float(np.std(u)) if kept else None,
+        critical_delay=critical_delay(case),
+        radius=radius,
+        ended=None if kept else ended / case.sample_rate,
+        seconds=perf_counter() - begun,
+        ground=ground,
+        numerical=d,
+        measured=y,
+        reference=wanted,
+        command=u,
+        force=rig.f[:, 0],
+        notes=_notes(of),
+    )
 
 
 def _notes(of: Machine) -> tuple[str, ...]:

@@ -238,9 +238,18 @@ def _scaled(asked: AskedRun, peaks: Any, within: Inside) -> PlannedRun | Refused
     worst = within.tightest(found)
     signal = replace(asked.signal, amplitude=factor * asked.signal.amplitude)
     return PlannedRun(
-        asked.id, asked.kind, asked.use, asked.signal.amplitude, signal, None, asked.specimen, asked.gain,
-        worst.limit if worst else "", worst.share if worst else None, found.sizes,
-    )  # fmt: skip
+        id=asked.id,
+        kind=asked.kind,
+        use=asked.use,
+        asked=asked.signal.amplitude,
+        signal=signal,
+        law=None,
+        specimen=asked.specimen,
+        gain=asked.gain,
+        limit=worst.limit if worst else "",
+        share=worst.share if worst else None,
+        peaks=found.sizes,
+    )
 
 
 def _bench_runs(
@@ -266,7 +275,16 @@ def _bench_runs(
         if refused is None and worst is not None and worst.share > 1:
             refused = RefusedRun(asked.id, f"{worst}, whatever its size")
         yield refused or PlannedRun(
-            asked.id, asked.kind, "fit", whole.size, None, law, None, None, worst.limit if worst else "",
-            worst.share if worst else None, found.sizes,
-        )  # fmt: skip
+            id=asked.id,
+            kind=asked.kind,
+            use="fit",
+            asked=whole.size,
+            signal=None,
+            law=law,
+            specimen=None,
+            gain=None,
+            limit=worst.limit if worst else "",
+            share=worst.share if worst else None,
+            peaks=found.sizes,
+        )
     report(Progress(_STAGE, len(todo), len(todo)))

@@ -12,7 +12,7 @@ from ident.words.conditions import amplitude
 from ident.words.percent import percent
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class PlannedRun:
     """One run as it is to be played: `signal`, or at a bench the `law` of its control unit.
 

@@ -29,7 +29,7 @@ _NUMBER = 8  # bytes
 _Head = Mapping[int, str]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class _Channel:
     """One channel: `values` are `first`, `first + stride` and so on of its file; with no `file` they are counted."""
 
@@ -126,7 +126,19 @@ def _channel(head: _Head, in_turn: Mapping[str, int], where: str) -> _Channel:
     offset, factor = _number(head, 240, "0", where), _number(head, 241, "1", where)
     values = _whole_number(head, 220, "", where)
     unit, separator, comma = head.get(202, "").strip("[] "), head.get(230) or "\t", head.get(231) == ","
-    return _Channel(name, unit, file, kind, values, first, stride, offset, factor, separator, comma)
+    return _Channel(
+        name=name,
+        unit=unit,
+        file=file,
+        type=kind,
+        values=values,
+        first=first,
+        stride=stride,
+        offset=offset,
+        factor=factor,
+        separator=separator,
+        comma=comma,
+    )
 
 
 def _explicit(head: _Head) -> bool:

@@ -51,7 +51,7 @@ class Form:
         return line.split(self.delimiter)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Layout:
     """A text table. `skip_rows` lines stand above the names, or above the first row where there are none.
 
@@ -115,8 +115,17 @@ def recognise(text: bytes, where: str, skip_rows: int = 0) -> Layout:
     below = line_start(text, first, start)
     end, notices = _end(text, below, form, shape, cut[first:], where)
     notices += _on_thousands(form, cut[first:], where)
-    return Layout(form, skip_rows + above, found, below, end, skip_rows + first + 1, shape.stamps,
-                  shape.numbers | _seldom(cut[first:], shape, form), (*found.notices, *notices))  # fmt: skip
+    return Layout(
+        form=form,
+        skip_rows=skip_rows + above,
+        heading=found,
+        below=below,
+        end=end,
+        first_line=skip_rows + first + 1,
+        stamps=shape.stamps,
+        numbers=shape.numbers | _seldom(cut[first:], shape, form),
+        notices=(*found.notices, *notices),
+    )
 
 
 def head_lines(text: bytes, start: int, where: str) -> list[str]:
@@ -331,7 +340,15 @@ def _without_rows(text: bytes, start: int, lines: Sequence[str], form: Form, ski
     names = [name.strip().strip("\"'").strip() for name in form.fields(lines[0])]
     found = Heading(0, tuple(names), (), (), None, (), len(names))
     return Layout(
-        form, skip_rows, found, line_start(text, 1, start), len(text), skip_rows + 2, frozenset(), frozenset(), ()
+        form=form,
+        skip_rows=skip_rows,
+        heading=found,
+        below=line_start(text, 1, start),
+        end=len(text),
+        first_line=skip_rows + 2,
+        stamps=frozenset(),
+        numbers=frozenset(),
+        notices=(),
     )
 
 

@@ -26,7 +26,7 @@ from ident.residuals.views import looked_along, unit, view_called, views
 _BAND = 1.96  # standard errors of 95 %
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Curve:
     """One curve: `x` in `x_unit`, `y` with its band in `y_unit`.
 
@@ -92,6 +92,15 @@ def _curve(found: Traces, settled: CurveFit, band: Band | None) -> Curve:
     y_unit = "1" if unknown or view.relative else unit(found.preset, view.at, known)
     y = solution[: len(knots)]
     return Curve(
-        view.name, view.missing, view.against, view.shows, x_unit, y_unit, tuple(knots.tolist()), tuple(y.tolist()),
-        tuple((y - _BAND * deviation).tolist()), tuple((y + _BAND * deviation).tolist()), normal.explained,
-    )  # fmt: skip
+        name=view.name,
+        missing=view.missing,
+        against=view.against,
+        shows=view.shows,
+        x_unit=x_unit,
+        y_unit=y_unit,
+        x=tuple(knots.tolist()),
+        y=tuple(y.tolist()),
+        lower=tuple((y - _BAND * deviation).tolist()),
+        upper=tuple((y + _BAND * deviation).tolist()),
+        explained=normal.explained,
+    )

@@ -159,7 +159,22 @@ def test_a_specimen_lowers_nothing_that_is_not_its_own():
 def test_a_loop_that_is_stable_at_any_gain_has_no_limit_in_words_and_in_json():
     """No infinity stands where a reader, or a JSON parser, expects a number."""
     curve = (0.0, 1.0)
-    found = Followed(20.0, None, 0, 1e-3, 1e-4, None, None, None, curve, curve, curve, curve, curve, curve)
+    found = Followed(
+        gain=20.0,
+        limit=None,
+        draws=0,
+        feedback_rms=1e-3,
+        both_rms=1e-4,
+        drawn_feedback_rms=None,
+        drawn_both_rms=None,
+        drawn_ratio=None,
+        t=curve,
+        reference=curve,
+        feedback=curve,
+        both=curve,
+        low=curve,
+        high=curve,
+    )
     assert found.said[0] == "gain 20 V/m, stable at any gain"
     assert found.to_json()["limit"] is None
     assert Followed.from_json(found.to_json()) == found
