@@ -73,8 +73,7 @@ def named(route: APIRoute) -> str:
 
 def write(app: FastAPI) -> dict[str, Any]:
     """The document of an application's calls."""
-    made = get_openapi(title=app.title, version=app.version, routes=app.routes,
-                       webhooks=app.webhooks.routes)  # fmt: skip
+    made = get_openapi(title=app.title, version=app.version, routes=app.routes, webhooks=app.webhooks.routes)
     made = _with_names_of_results(made)
     components = made.setdefault("components", {})
     _, problem = models_json_schema([(Problem, "serialization")], ref_template="#/components/schemas/{model}")

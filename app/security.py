@@ -49,8 +49,9 @@ class Guard:
             return problem(403, "unknown-host", f"host {host[:80]!r} is not served", "Host", "use the printed address")
         origin = headers.get("origin")
         if origin is not None and origin.partition("://")[2] not in self.hosts:
-            return problem(403, "foreign-origin", "requests from other sites are refused", "Origin",
-                           "open the service's own page")  # fmt: skip
+            return problem(
+                403, "foreign-origin", "requests from other sites are refused", "Origin", "open the service's own page"
+            )
         length = headers.get("content-length", "0")
         if not length.isdecimal() or int(length) > self.settings.largest_upload:
             return refusal(self._too_large("declared", "Content-Length"), connection="close")

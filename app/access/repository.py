@@ -11,9 +11,7 @@ from app.access.who import Who
 from app.tables import AuditRow, SessionRow, TokenRow, now
 
 
-def add_token(
-    session: Session, token: str, name: str, role: str, hashed: str, expires_at: str | None
-) -> TokenRow:  # fmt: skip
+def add_token(session: Session, token: str, name: str, role: str, hashed: str, expires_at: str | None) -> TokenRow:
     """A new token; the commit raises IntegrityError where its id is there already."""
     row = TokenRow(id=token, name=name, role=role, hash=hashed, expires_at=expires_at, created_at=now())
     session.add(row)

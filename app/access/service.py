@@ -94,5 +94,6 @@ def audit(records: Records, after: str | None, limit: int, *, by: str | None, on
 
 
 def _line(row: AuditRow) -> AuditView:
-    return AuditView(id=row.id, at=row.at, token=row.token, name=row.name, action=row.action, object=row.object,
-                     request=row.request)  # fmt: skip
+    return AuditView(
+        id=row.id, at=row.at, token=row.token, name=row.name, action=row.action, object=row.object, request=row.request
+    )

@@ -32,9 +32,10 @@ Blobs = Annotated[
 ]
 Log = Annotated[
     str,
-    typer.Option(metavar="text|json", envvar="SERVOIDENT_LOG", help="Format of the log on standard error.",
-                 show_envvar=False),
-]  # fmt: skip
+    typer.Option(
+        metavar="text|json", envvar="SERVOIDENT_LOG", help="Format of the log on standard error.", show_envvar=False
+    ),
+]
 
 
 def settings(data: Path | None, database: str, **others: Any) -> Settings:

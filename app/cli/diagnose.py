@@ -119,9 +119,7 @@ def diagnose(
     except TimeIsUp:
         _tell(unfitted(records, replace(Settings(), model="", seed=seed, preprocessing=off), budget.taken), json)
         return
-    chosen = settings(
-        named, effect, method, bounds, set_, load, seed, option, preprocessing=off, candidates=True
-    )  # fmt: skip
+    chosen = settings(named, effect, method, bounds, set_, load, seed, option, preprocessing=off, candidates=True)
     given = choice.made(chosen) if given is None else with_candidates_given(given, chosen.bounds, chosen.fixed)
     defined = together((), definitions(custom or []))
     if given is not None:

@@ -97,7 +97,7 @@ Options = Annotated[
 
 def modelled(
     matrix: Matrix, model: str | None, report: Report, preprocessing: Mapping[str, bool]
-) -> tuple[str, StructureChoice]:  # fmt: skip
+) -> tuple[str, StructureChoice]:
     """The model that was named; else the one that fits, and what was found on the way to it.
 
     Raises Unusable where the channels allow none.

@@ -65,10 +65,11 @@ UpTo = Annotated[str | None, typer.Option(metavar="HZ", help="Upper end of the a
 Earlier = Annotated[
     Path | None,
     typer.Option(
-        "--before", metavar="FIT.json",
+        "--before",
+        metavar="FIT.json",
         help="Fit of the machine when its loop was stable, to find the cause. Default: this fit.",
     ),
-]  # fmt: skip
+]
 EarlierGain = Annotated[
     str | None, typer.Option("--before-gain", metavar="KP", help="Gain Kp with which the loop was stable.")
 ]
@@ -149,8 +150,9 @@ def specimen_of(text: str | None) -> Specimen:
         if part.strip():
             name, value = split(part, "--specimen", form)
             if name not in _OF_SPECIMEN:
-                raise Unusable("bad-option", f"a specimen has no {name!r}", "--specimen",
-                               did_you_mean(name, _OF_SPECIMEN))  # fmt: skip
+                raise Unusable(
+                    "bad-option", f"a specimen has no {name!r}", "--specimen", did_you_mean(name, _OF_SPECIMEN)
+                )
             found[name] = quantity(value, _OF_SPECIMEN[name], f"--specimen {name}")
             if found[name] < 0:
                 raise Unusable("bad-number", f"{value} is below 0", f"--specimen {name}", "give 0 or more")

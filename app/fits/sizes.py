@@ -24,9 +24,10 @@ def sizes(context: Context, fit_id: str) -> ErrorSizesView:
     means = {use: _mean(runs) for use, runs in uses.items() if len({one.unit for one in runs}) == 1}
     each = {one.run.id: _mean([one]) for one in compared}
     return ErrorSizesView(
-        uses={use: size for use, size in means.items() if size}, runs={run: size for run, size in each.items() if size},
+        uses={use: size for use, size in means.items() if size},
+        runs={run: size for run, size in each.items() if size},
         whiteness={use: WhitenessView(**asdict(white)) for use, white in by_use(comparison).items()},
-    )  # fmt: skip
+    )
 
 
 def _mean(runs: Sequence[RunComparison]) -> ErrorSize | None:

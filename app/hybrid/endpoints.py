@@ -45,8 +45,9 @@ def design_controller(here: Here, request: ControllerRequest, key: Key = None) -
         return None if found is None else answer(found)
 
     asked = fingerprint("controller", request.model_dump())
-    return once(here.sessions, key, asked, lambda controller: answer(controllers.design(here, request, controller)),
-                find)  # fmt: skip
+    return once(
+        here.sessions, key, asked, lambda controller: answer(controllers.design(here, request, controller)), find
+    )
 
 
 @router.get("/controllers", dependencies=[READERS], response_model_exclude_unset=True)

@@ -47,8 +47,9 @@ def carry_out(context: Context, digest: str) -> RetentionView:
         goers = _goers(context, session, held=True)
         view = _view(context, goers, sizes)
         if view.days is None:
-            raise Failure(409, "no-rule", "the service has no rule for raw runs", "retention",
-                          "start it with --keep-raw DAYS")  # fmt: skip
+            raise Failure(
+                409, "no-rule", "the service has no rule for raw runs", "retention", "start it with --keep-raw DAYS"
+            )
         if view.digest != digest:
             raise Failure(409, "not-as-shown", "other raw runs would go than were shown", "digest",
                           "show the list again, and confirm the new digest")  # fmt: skip

@@ -83,8 +83,9 @@ def _nothing(parameter: str, chosen: Chosen, batches: Callable[[], Sequence[str]
     )
     for where, name, known in asked:
         if name is not None and name not in known and (near := nearest(name, known)) is not None:
-            return Failure(404, "no-sets", f"no approved set here has the {where} {name!r}", where,
-                           f"did you mean {near}?")  # fmt: skip
+            return Failure(
+                404, "no-sets", f"no approved set here has the {where} {name!r}", where, f"did you mean {near}?"
+            )
     return Failure(404, "no-sets", f"no approved set here has {parameter!r}", "parameter",
                    "see /api/v1/parameter-sets for the names, and approve a fit first")  # fmt: skip
 
@@ -116,10 +117,11 @@ def _limits(
 def _outliers(points: Sequence[Point]) -> list[OutlierView]:
     found = outliers([point.value for point in points])
     return [
-        OutlierView(fit=points[one.place].fit, serial=points[one.place].serial, value=points[one.place].value,
-                    score=one.score)
+        OutlierView(
+            fit=points[one.place].fit, serial=points[one.place].serial, value=points[one.place].value, score=one.score
+        )
         for one in found
-    ]  # fmt: skip
+    ]
 
 
 def _drift(points: Sequence[Point]) -> DriftView | None:

@@ -19,8 +19,9 @@ def new(context: Context, request: WebhookRequest, who: str, webhook: str) -> Ne
     key, events = key_of(context.settings), sorted(set(request.events))
     about(f"webhooks/{webhook}")
     with context.sessions.begin() as session:
-        row = WebhookRow(id=webhook, url=request.url, origin=origin, events=events, key=key.print, who=who,
-                         created_at=now())  # fmt: skip
+        row = WebhookRow(
+            id=webhook, url=request.url, origin=origin, events=events, key=key.print, who=who, created_at=now()
+        )
         repository.add(session, row)
     return NewWebhook(**_view(row, 0, "").model_dump(), secret=key.secret(webhook))
 

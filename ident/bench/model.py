@@ -29,7 +29,7 @@ _STRENGTHS = tuple(
     parameter.in_equations
     for effect in (SECOND_LAG, STICTION, SPRING_LOAD, COMMAND_DELAY)
     for parameter in effect.added
-)  # fmt: skip
+)
 
 
 def beyond_fast(chain: Chain) -> Chain | None:

@@ -26,9 +26,7 @@ def model_of(values: Mapping[str, float], supply: float, preset: Preset | None =
     table = SpeedTable.straight(1.0).with_values(values)
     strengths = {name: value for name, value in values.items() if "__" in name}
     chain = beyond_fast(preset.chain) if preset is not None else None
-    return Model(
-        values["T"], values["B"], values["I0"], values["kp"], values["dPfr"], table, supply, strengths, chain
-    )  # fmt: skip
+    return Model(values["T"], values["B"], values["I0"], values["kp"], values["dPfr"], table, supply, strengths, chain)
 
 
 def outputs(preset: Preset, values: Mapping[str, float], matrix: Matrix) -> dict[str, Array]:

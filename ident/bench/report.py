@@ -27,8 +27,9 @@ def to_json(matrix: Matrix, bench: BenchSet, analysis: Analysis, lines: tuple[Li
         "dynamics": None if analysis.dynamics is None else asdict(analysis.dynamics),
         "delay": None if analysis.delay is None else asdict(analysis.delay),
         "speed": None if analysis.speed is None else _speed(analysis.speed),
-        "model": None if whole is None else _model(whole.model)
-        | {"deviations": whole.deviations, "correlation": whole.correlation},
+        "model": None
+        if whole is None
+        else _model(whole.model) | {"deviations": whole.deviations, "correlation": whole.correlation},
         "step_by_step": None if analysis.steps is None else _model(analysis.steps),
         "position_error": {"model": analysis.errors, "step_by_step": analysis.step_errors},
         "sheet": [asdict(line) | {"passed": line.passed} for line in lines],
@@ -38,7 +39,7 @@ def to_json(matrix: Matrix, bench: BenchSet, analysis: Analysis, lines: tuple[Li
         "seconds": analysis.seconds,
         "version": version("servoident"),
         "data_hash": matrix.data_hash,
-    }  # fmt: skip
+    }
 
 
 def _static(found: Static) -> dict[str, Any]:

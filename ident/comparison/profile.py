@@ -86,9 +86,7 @@ class Profile(Shown):
         return [{"value": value, "error": error, "deviance": deviance} for value, error, deviance in entries]
 
 
-def profile(
-    matrix: Matrix, fit: FitResult, name: str, points: int = _POINTS, report: Report = silent
-) -> Profile:  # fmt: skip
+def profile(matrix: Matrix, fit: FitResult, name: str, points: int = _POINTS, report: Report = silent) -> Profile:
     """The profile of a parameter of a fit, over four standard errors to either side, else between its bounds.
 
     Raises Unusable for a parameter that the fit has not, or holds, for a fit over windows, and where the model cannot
@@ -123,8 +121,9 @@ def check_profiled(fit: FitResult, name: str) -> Estimate:
         remedy = did_you_mean(name, (one for one, known in fit.parameters.items() if not known.fixed))
         raise Unusable("unknown-parameter", f"the fit does not search {name!r}", "profile", remedy)
     if fit.window is not None:
-        raise Unusable("bad-option", "a fit over windows has no likelihood of whole runs", "profile",
-                       "use the standard errors")  # fmt: skip
+        raise Unusable(
+            "bad-option", "a fit over windows has no likelihood of whole runs", "profile", "use the standard errors"
+        )
     return estimate
 
 

@@ -82,8 +82,9 @@ def check_names(lines: Sequence[Line], place: str, own: Mapping[str, str], model
             raise Unusable("unknown-name", f"there is no quantity {name[:40]!r}", line.at(name), remedy)
     strength = next(iter(own.values()))
     if not any(strength in line.names for line in lines):
-        raise Unusable("unused-strength", f"the strength {strength} does not appear", lines[-1].where,
-                       "let the equation read it")  # fmt: skip
+        raise Unusable(
+            "unused-strength", f"the strength {strength} does not appear", lines[-1].where, "let the equation read it"
+        )
     return chosen
 
 
@@ -98,7 +99,7 @@ def refuse_symbol(name: str, models: Sequence[Preset]) -> None:
 
 def _refuse_shadows(
     lines: Sequence[Line], place: str, own: Mapping[str, str], model: Preset, known: frozenset[str]
-) -> None:  # fmt: skip
+) -> None:
     seen: dict[str, str] = {}
     of_lines = [(line.at(line.target), line.target) for line in lines if line.target not in _signals(model, place)]
     for where, symbol in (*own.items(), *dict.fromkeys(of_lines)):
@@ -109,8 +110,9 @@ def _refuse_shadows(
         seen[symbol] = where
     for line in lines:
         if line.target in set(own.values()):
-            raise Unusable("name-taken", f"{line.target} is a parameter of the effect", line.at(line.target),
-                           "redefine a signal")  # fmt: skip
+            raise Unusable(
+                "name-taken", f"{line.target} is a parameter of the effect", line.at(line.target), "redefine a signal"
+            )
 
 
 def _signals(model: Preset, place: str, exactly: bool = False) -> frozenset[str]:

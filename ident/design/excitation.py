@@ -21,7 +21,7 @@ _LINES = 64  # of a multisine
 
 def excitation(
     signal: str, rms: float, samples: int, rate: float, frequency: float, seed: int = 0, ramp: float = RAMP
-) -> Array:  # fmt: skip
+) -> Array:
     """The command (samples,), in the unit of `rms`, at `rate`.
 
     `frequency` is the upper edge of noise, multisine and sweep, the frequency of a sine or saw-tooth. The saw-tooth

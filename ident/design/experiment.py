@@ -103,9 +103,10 @@ class Experiment(Shown):
     def entry(self) -> dict[str, Any]:
         """The run as matrix.yaml wants it, once it was recorded beside the command."""
         specimen = self.specimen and {
-            "mass": f"{self.specimen.mass:g} kg", "stiffness": f"{self.specimen.stiffness:g} N/m",
+            "mass": f"{self.specimen.mass:g} kg",
+            "stiffness": f"{self.specimen.stiffness:g} N/m",
             "damping": f"{self.specimen.damping:g} N*s/m",
-        }  # fmt: skip
+        }
         found = {
             "id": f"next-{self.signal}", "file": "runs/next.csv", "sample_rate": f"{self.sample_rate:g} Hz",
             "specimen": specimen, "gain": self.gain, "amplitude": f"{self.amplitude:g} {self.unit}",

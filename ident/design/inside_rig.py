@@ -37,7 +37,7 @@ def machines_of(rivals: Sequence[Rival]) -> tuple[UncertainMachine, ...]:
 
 def inside_rig(
     experiments: Sequence[Experiment], machines: Sequence[UncertainMachine], limits: RigLimits, as_run: AsRun
-) -> list[Experiment]:  # fmt: skip
+) -> list[Experiment]:
     """The runs at amplitudes that stay inside; those that would be left with less than a tenth are left out.
 
     Raises Unusable, with the factor that would do, where none is left.
@@ -67,7 +67,7 @@ def inside_rig(
 
 def proposed_inside(
     one: Experiment, machines: Sequence[UncertainMachine], limits: RigLimits, as_run: AsRun
-) -> tuple[Experiment, Utilisation | None]:  # fmt: skip
+) -> tuple[Experiment, Utilisation | None]:
     """The run that is proposed, made smaller until the models with their effects stay inside; what it takes then."""
     worst = None
     for _ in range(_TRIES):

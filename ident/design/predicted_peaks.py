@@ -160,7 +160,7 @@ class _Corners:
 
 def _linear_peaks(
     chain: Chain, symbols: Mapping[str, Array], signals: Mapping[str, tuple[str, int]], run: Run
-) -> _Corners:  # fmt: skip
+) -> _Corners:
     """The peaks of a chain's linear part at the corners that `symbols` (c,) are."""
     models = {name: chain.linearise(symbols, name) for name in dict.fromkeys(name for name, _ in signals.values())}
     model = next(iter(models.values()))

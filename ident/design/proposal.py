@@ -67,8 +67,9 @@ def propose(in_question: Rivals, matrix: Matrix, seed: int = 0) -> Experiment:
     rivals = _rivals(in_question, matrix)
     worths = _judged(rivals, _candidates(rivals, seed))
     if not worths:
-        raise Unusable("no-experiment", "the models are stable in no run that could be proposed", "models",
-                       "fit the models again")  # fmt: skip
+        raise Unusable(
+            "no-experiment", "the models are stable in no run that could be proposed", "models", "fit the models again"
+        )
     pairs = [worth.separation or 0.0 for worth in worths]
     so_far = _so_far(rivals)
     tells_apart = max(pairs) >= _SEPARATE
@@ -176,7 +177,7 @@ def _recorded(runs: Sequence[Run], outputs: Mapping[str, Array]) -> list[Run]:
 
 def _pairs(
     rivals: Sequence[Rival], runs: Sequence[Run], outputs: Sequence[Mapping[str, Array]], longer: float
-) -> Array:  # fmt: skip
+) -> Array:
     """χ² of each run and each pair of models, (runs, pairs), the mean of both being the machine."""
     found: dict[frozenset[int], Array] = {}
     two = list(permutations(range(len(rivals)), 2))
@@ -201,7 +202,7 @@ def _chi_squared(gram: Array, known: Array, point: Array) -> float:
 
 def _told(
     rival: Rival, m: NormalMatrices, run: Run, outputs: Mapping[str, Array], longer: float
-) -> tuple[float, dict[str, float]]:  # fmt: skip
+) -> tuple[float, dict[str, float]]:
     """Nats that a run tells of a model's parameters, and the share of each standard error that is left."""
     p, sigma = len(rival.point), rival.deviation(float(np.std(outputs[run.id])))
     gram = longer * m.gram[:p, :p] / sigma**2

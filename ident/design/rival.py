@@ -50,9 +50,7 @@ class Rival:
 
     @cached_property
     def _fitness(self) -> SimulatedFitness:
-        shapes = {
-            p.in_equations: self.values[p.in_equations] for e in self.preset.effects for p in e.added[1:]
-        }  # fmt: skip
+        shapes = {p.in_equations: self.values[p.in_equations] for e in self.preset.effects for p in e.added[1:]}
         space = search_space(self.preset, self.matrix, Settings(self.preset.name, fixed=shapes), self.band)
         runs = shortened(self.matrix.of_use("fit"), _SAMPLES)
         return SimulatedFitness(self.preset, self.matrix, runs, self.band, space)

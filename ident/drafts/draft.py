@@ -67,8 +67,9 @@ class Draft:
         names = [file_name(file) for file in self.files]
         for file in self.answers.files:
             if file not in names:
-                raise Unusable("missing-file", f"{shown(file)!r} is none of the files", "files",
-                               f"name one of {some_of(names)}")  # fmt: skip
+                raise Unusable(
+                    "missing-file", f"{shown(file)!r} is none of the files", "files", f"name one of {some_of(names)}"
+                )
 
     def known(self, file: RawFile) -> Known:
         """What the file states and the answers say of it. Raises Unusable where an answer names no column of it."""
@@ -176,8 +177,9 @@ class Draft:
         for file, one in zip(self.files, known, strict=True):
             for doubt in dict.fromkeys(one.doubts):
                 found.setdefault(doubt, []).append(file.name)
-        told = [doubt if len(names) == len(self.files) else f"{first_of(names)}: {doubt}"
-                for doubt, names in found.items()]  # fmt: skip
+        told = [
+            doubt if len(names) == len(self.files) else f"{first_of(names)}: {doubt}" for doubt, names in found.items()
+        ]
         return tuple(dict.fromkeys([*remarks, *told, *self._on_hold(known)]))
 
     def _on_hold(self, known: Sequence[Known]) -> Iterator[str]:
@@ -312,8 +314,7 @@ def _columns(file: RawFile, column: str | int, where: str) -> list[Column]:
     if len(found) < len(numbers):
         why = "; ".join(filter(None, (file.flaw(number) for number in numbers)))
         what = f"column {shown(column)!r} does not hold numbers throughout"
-        raise Unusable("not-numeric", f"{what}: {why}" if why else what, file.name,
-                       "name another column")  # fmt: skip
+        raise Unusable("not-numeric", f"{what}: {why}" if why else what, file.name, "name another column")
     return found
 
 

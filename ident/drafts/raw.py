@@ -137,9 +137,10 @@ class RawFile:
     def named_units(self) -> tuple[str, ...]:
         """The columns whose unit is taken from the end of the name, each with the unit, in words."""
         return tuple(
-            f"{column.name!r} is read in {column.unit}, because of its name" for column in self.columns
+            f"{column.name!r} is read in {column.unit}, because of its name"
+            for column in self.columns
             if column.unit and column.unit == self._suffix(column.number) and not self._has_stated(column.number)
-        )  # fmt: skip
+        )
 
     @property
     def remarks(self) -> tuple[str, ...]:

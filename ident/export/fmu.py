@@ -88,8 +88,9 @@ def _description(machine: ExportedMachine, guid: str) -> bytes:
     _variable(variables, 0, machine.driven_by, {"causality": "input"}, {"start": "0"})
     for number, name in enumerate(machine.outputs, 1):
         shown = name if name != machine.driven_by else f"{name}_out"
-        _variable(variables, number, shown, {"causality": "output", "initial": "calculated"},
-                  {"unit": machine.unit(name)})  # fmt: skip
+        _variable(
+            variables, number, shown, {"causality": "output", "initial": "calculated"}, {"unit": machine.unit(name)}
+        )
     structure = ET.SubElement(root, "ModelStructure")
     for part in ("Outputs", "InitialUnknowns"):
         of = ET.SubElement(structure, part)

@@ -95,7 +95,7 @@ def figure(name: str, subject: object, theme: str = "light", share: float = 1.0,
 
 def of_diagnosis(
     found: Diagnosis, name: str, actuator: Actuator, theme: str = "light", share: float = 1.0, **options: Any
-) -> Chart:  # fmt: skip
+) -> Chart:
     """The figure of a diagnosis: its ladder, the error with each effect added. Raises Unusable for any other."""
     if name != "ladder" or options:
         what = f"no option {next(iter(options))!r}" if options else f"no figure {name!r} of a diagnosis"

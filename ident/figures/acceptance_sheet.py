@@ -70,8 +70,9 @@ def _table(lines: Sequence[Line], of: Look) -> Panel:
         for (_, x), text in zip(_COLUMNS.items(), _texts(line), strict=True):
             kind = "bad" if text == "FAIL" else "cell"
             cells.append(_cell(text, x, row, kind))
-    colour = alt.Color("k:N", legend=None, scale=alt.Scale(domain=["head", "cell", "bad"],
-                                                           range=[of.faint, of.ink, of.series[1]]))  # fmt: skip
+    colour = alt.Color(
+        "k:N", legend=None, scale=alt.Scale(domain=["head", "cell", "bad"], range=[of.faint, of.ink, of.series[1]])
+    )
     height = _ROW * (len(lines) + 1)
     scale = alt.Scale(domain=[-0.5, len(lines) + 0.5], reverse=True, nice=False)
     panel: Panel = (

@@ -96,8 +96,9 @@ def _panel(name: str, title: str, sets: int, height: int, look: Look) -> Panel:
         base.mark_point(color=look.series[1], size=90, strokeWidth=2, shape="diamond").encode(
             opacity=seen, tooltip=tooltip
         ),
-        width=look.across(_WIDTH), height=height,
-    )  # fmt: skip
+        width=look.across(_WIDTH),
+        height=height,
+    )
     return panel
 
 

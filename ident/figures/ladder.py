@@ -43,7 +43,7 @@ def ladder(steps: Sequence[Step], floor: float | None, actuator: Actuator, look:
         base.mark_line(strokeWidth=1.5, opacity=0.6).encode(order="row:Q").transform_window(row="row_number()"),
         base.mark_circle(size=70, opacity=1).encode(tooltip=[alt.Tooltip("step:N", title="Step"), "u:N", "t:N"]),
         named.mark_text(align="left", dx=7, dy=12, fontSize=11).encode(text="t:N"),
-    ]  # fmt: skip
+    ]
     if floor:
         at = alt.Chart(alt.NamedData("steps")).encode(x=alt.datum(100 * floor))
         layers.append(at.mark_rule(color=look.ink, strokeDash=[5, 3], strokeWidth=1.3))

@@ -103,8 +103,9 @@ def _short(value: float) -> float:
 
 
 def _rows(order: Sequence[str], labels: bool) -> alt.Y:
-    axis = alt.Axis(labels=labels, ticks=False, title=None, labelFontSize=8, labelOverlap=False, domain=False,
-                    labelFlush=False)  # fmt: skip
+    axis = alt.Axis(
+        labels=labels, ticks=False, title=None, labelFontSize=8, labelOverlap=False, domain=False, labelFlush=False
+    )
     return alt.Y("r:N", sort=list(order), axis=axis, scale=alt.Scale(paddingInner=0.04, paddingOuter=0))
 
 

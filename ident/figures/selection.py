@@ -50,8 +50,9 @@ def band_of(options: Mapping[str, Any]) -> Band:
     """The options low and high. Raises Unusable where they are no band."""
     found = Band(number(options, LOW), number(options, HIGH))
     if (found.low or 0.0) < 0 or (found.high is not None and found.high <= (found.low or 0.0)):
-        raise Unusable("not-a-band", f"from {found.low} to {found.high}", "figure option low, high",
-                       "let 0 <= low < high, in Hz")  # fmt: skip
+        raise Unusable(
+            "not-a-band", f"from {found.low} to {found.high}", "figure option low, high", "let 0 <= low < high, in Hz"
+        )
     return found
 
 

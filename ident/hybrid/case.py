@@ -103,8 +103,9 @@ class Case:
         if not 0 <= self.place < n:
             raise Unusable("bad-case", f"storey {self.place + 1} of {n}", "physical", f"give a storey from 1 to {n}")
         if np.linalg.eigvalsh(self.stiffness).min() < -1e-9 * np.abs(self.stiffness).max():
-            raise Unusable("bad-case", "the structure does not stand by itself", "structure stiffness",
-                           "correct its stiffness")  # fmt: skip
+            raise Unusable(
+                "bad-case", "the structure does not stand by itself", "structure stiffness", "correct its stiffness"
+            )
         # A substructure without mass has no motion of its own to integrate.
         if np.linalg.eigvalsh(self.numerical_mass).min() <= 0:
             raise Unusable("bad-case", "no mass is left in the numerical part", "physical mass", "give less of it")
@@ -245,8 +246,9 @@ def case_of(data: Any, base: Path | None = Path(), name: str = "case") -> Case:
     Raises Unusable with the field at fault.
     """
     top = Fields(data, "case", _KEYS)
-    structure = Fields(top.need("structure", "give mass, stiffness, damping"), "structure",
-                       ("mass", "stiffness", "damping"))  # fmt: skip
+    structure = Fields(
+        top.need("structure", "give mass, stiffness, damping"), "structure", ("mass", "stiffness", "damping")
+    )
     mass = _matrix(structure, "mass", "mass")
     stiffness = _matrix(structure, "stiffness", "stiffness")
     physical, place = _physical(top, mass, stiffness)
@@ -279,8 +281,9 @@ def _matrix(fields: Fields, key: str, dimension: str) -> Array:
         value, unit = inside.need("matrix", "give its rows"), inside.text("unit")
     rows = value if isinstance(value, list) else [[value]]
     if not all(isinstance(row, list) for row in rows):
-        rows = [[entry if i == j else f"0 {unit or _unit(entry)}" for j in range(len(rows))]
-                for i, entry in enumerate(rows)]  # fmt: skip
+        rows = [
+            [entry if i == j else f"0 {unit or _unit(entry)}" for j in range(len(rows))] for i, entry in enumerate(rows)
+        ]
     if not rows or len(rows) > _STOREYS or any(len(row) != len(rows) for row in rows):
         raise Unusable("bad-case", "no square matrix", where, f"give as many rows as columns, at most {_STOREYS}")
     return np.array([[quantity(_with(entry, unit), dimension, where) for entry in row] for row in rows])

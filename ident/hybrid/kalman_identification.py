@@ -55,8 +55,9 @@ class KalmanIdentification(Identification):
                 raise Unusable("method-does-not-fit", f"{NAME} takes no {what}", "method", "leave them out, or use ga")
         runs = matrix.of_use("fit")
         if not runs:
-            raise Unusable("no-fit-runs", "every run is to verify, none to fit", "runs",
-                           "mark at least one run use: fit")  # fmt: skip
+            raise Unusable(
+                "no-fit-runs", "every run is to verify, none to fit", "runs", "mark at least one run use: fit"
+            )
         started = time.monotonic()
         self.found = filtered(runs, report)
         values = {"tau": self.found.tau, "gain": self.found.gain}

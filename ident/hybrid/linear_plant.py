@@ -70,9 +70,10 @@ def linear_plant(
     values = {names[name]: value for name, value in fit.values.items()}
     written = {effect.name: with_states(effect) for effect in preset.effects}
     kept = tuple(
-        effect for name, effect in written.items()
+        effect
+        for name, effect in written.items()
         if preset.core.with_effects((effect,)).is_linear and values.get(_strength(name, names), 1.0)
-    )  # fmt: skip
+    )
     chain = preset.core.with_effects(kept)
     known = {
         "Kp": preset.data.gains.get("Kp", 1.0) if gain is None else gain,

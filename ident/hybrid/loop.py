@@ -109,8 +109,9 @@ def advance_machine(k: int, rig: Any) -> None:
 
 @jit(nogil=True)
 def _advance(first: int, last: int, rig: Any) -> None:
-    advance_at(rig.code, rig.buffer, rig.window, rig.window, rig.places, rig.places, first, last, _NEVER, rig.spare,
-               LANES)  # fmt: skip
+    advance_at(
+        rig.code, rig.buffer, rig.window, rig.window, rig.places, rig.places, first, last, _NEVER, rig.spare, LANES
+    )
 
 
 @jit(nogil=True)

@@ -77,9 +77,10 @@ class Machine:
         if not core.is_linear:
             return ("the model itself",)
         return tuple(
-            effect.name for effect in self.chain.effects
+            effect.name
+            for effect in self.chain.effects
             if self.values[effect.added[0].in_equations] and not core.with_effects((effect,)).is_linear
-        )  # fmt: skip
+        )
 
 
 def machine(fit: FitResult, case: Case, effects: Mapping[str, float] | None = None) -> Machine:
@@ -88,14 +89,16 @@ def machine(fit: FitResult, case: Case, effects: Mapping[str, float] | None = No
     Raises Unusable where the model has no command that moves a displacement, or the specimen's inertia has no place.
     """
     added = tuple(name.partition(".")[0] for name in effects or {})
-    preset = preset_with(fit.model, tuple({**dict.fromkeys(fit.effects), **dict.fromkeys(added)}),
-                         fit.settings.get("custom", ()))  # fmt: skip
+    preset = preset_with(
+        fit.model, tuple({**dict.fromkeys(fit.effects), **dict.fromkeys(added)}), fit.settings.get("custom", ())
+    )
     if preset.kind != "chain" or preset.data.driven_by != "command" or DISPLACEMENT not in preset.chain.outputs:
         raise Unusable("no-answer", f"the model {fit.model} has no command that moves a displacement", "fit",
                        "give the fit of an actuator")  # fmt: skip
     if "Ps" in preset.core.symbols and case.supply_pressure is None:
-        raise Unusable("not-stated", "this model depends on the supply pressure", "case supply_pressure",
-                       "state it, with its unit")  # fmt: skip
+        raise Unusable(
+            "not-stated", "this model depends on the supply pressure", "case supply_pressure", "state it, with its unit"
+        )
     preset = _with_specimen(preset, case)
     values = {p.in_equations: p.value for effect in preset.effects for p in effect.added}
     values |= {preset.parameter(name).in_equations: value for name, value in fit.values.items()}

@@ -48,8 +48,9 @@ Controller = SampledController | Compensator
 
 def no_controller(sample_rate: float) -> SampledController:
     """u = d: the machine is told what is wanted."""
-    return SampledController(np.zeros((0, 0)), np.zeros((0, 2)), np.zeros((1, 0)), np.array([[1.0, 0.0]]), sample_rate,
-                             "none")  # fmt: skip
+    return SampledController(
+        np.zeros((0, 0)), np.zeros((0, 2)), np.zeros((1, 0)), np.array([[1.0, 0.0]]), sample_rate, "none"
+    )
 
 
 def name_of(controller: Controller) -> str:

@@ -61,10 +61,11 @@ class ShareMap(Shown):
             best = error[np.isfinite(error)]
             longest = delay[np.isfinite(delay)]
             yield (
-                percent(float(mass)), f"{int(stable.sum())} of {stable.size}",
+                percent(float(mass)),
+                f"{int(stable.sum())} of {stable.size}",
                 percent(float(best.min())) if len(best) else "–",
                 quantity(float(longest.max()), "s") if len(longest) else "no limit",
-            )  # fmt: skip
+            )
 
     def to_json(self) -> dict[str, Any]:
         """As plain JSON data; null where there is no number."""

@@ -65,8 +65,9 @@ def _open_loop(case: Case) -> tuple[Array, Array, Array, float]:
     """The loop L = e x(s)/f(s) (m s² + c s + k) in state space: x'' = M⁻¹(e − C x' − K x) of a unit force."""
     n, of = case.storeys, case.physical
     inverse, e = np.linalg.inv(case.numerical_mass), np.eye(n)[case.place]
-    A = np.block([[np.zeros((n, n)), np.eye(n)], [-inverse @ case.numerical_stiffness,
-                                                  -inverse @ case.numerical_damping]])  # fmt: skip
+    A = np.block(
+        [[np.zeros((n, n)), np.eye(n)], [-inverse @ case.numerical_stiffness, -inverse @ case.numerical_damping]]
+    )
     B = np.concatenate([np.zeros(n), inverse @ e])[:, None]
     position = np.concatenate([e, np.zeros(n)])
     speed, rate = position @ A, position @ A @ A

@@ -57,9 +57,7 @@ class Target:
         return {"name": self.name, **found, "roll_off": self.roll_off}
 
 
-QIAN2014_TARGET = Target(
-    numerator=(1.2e6,), denominator=(0.008, 20.0, 65.0, 1200.0), name="Qian et al. 2014, eq. (19)"
-)  # fmt: skip
+QIAN2014_TARGET = Target(numerator=(1.2e6,), denominator=(0.008, 20.0, 65.0, 1200.0), name="Qian et al. 2014, eq. (19)")
 """Eq. (19): 1000 at standstill, from 7.7 rad/s on −40 dB a decade, one at 39 Hz."""
 
 

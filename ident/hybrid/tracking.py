@@ -56,8 +56,9 @@ class Noise:
                                "give a standard deviation above 0, of what is fictitious also 0")  # fmt: skip
 
     @classmethod
-    def of_sensor(cls, sample_rate: float, measurement: float = SENSOR, way: float = TEST_WAY,
-                  speed: float = TEST_SPEED) -> Noise:  # fmt: skip
+    def of_sensor(
+        cls, sample_rate: float, measurement: float = SENSOR, way: float = TEST_WAY, speed: float = TEST_SPEED
+    ) -> Noise:
         """The fictitious noise that the sensor's allows, for a reference of RMS `way` (m) and `speed` (m/s).
 
         Of a parameter θ by which y moves ∂y/∂θ = S (RMS; for k the way, for τ the speed), a filter in its steady state

@@ -46,8 +46,9 @@ def write_folder(
     `plan` is the JSON data of the plan, `measured` the text of matrix.yaml.
     """
     if strange := [name for name in formats if name not in WRITERS]:
-        raise Unusable("unknown-format", f"no command files as {strange[0]!r}", "format",
-                       did_you_mean(strange[0], WRITERS))  # fmt: skip
+        raise Unusable(
+            "unknown-format", f"no command files as {strange[0]!r}", "format", did_you_mean(strange[0], WRITERS)
+        )
     if out.exists() and (not out.is_dir() or any(out.iterdir())):
         raise Unusable("folder-in-use", "the folder is not empty", str(out), "name a new one")
     for folder in ("commands", "runs"):

@@ -73,8 +73,9 @@ class Law:
         middle = 0.5 * stroke
         match self.number:
             case 0:
-                return Law(STATIC, (one, two, factor * three, factor * four), self.seconds, self.start,
-                           self.position_range)  # fmt: skip
+                return Law(
+                    STATIC, (one, two, factor * three, factor * four), self.seconds, self.start, self.position_range
+                )
             case 1:
                 start = middle - factor * (middle - self.start)
                 return Law(FREQUENCY, (one, factor * two, three, four), self.seconds, start)

@@ -140,8 +140,9 @@ def plan(
     within = Inside(limits, least)
     if program == KONONYKHIN:
         if seconds is not None or ramp is not None:
-            raise Unusable("bad-option", "the laws of a bench have their own lengths and ramps", "seconds, ramp",
-                           "leave them out")  # fmt: skip
+            raise Unusable(
+                "bad-option", "the laws of a bench have their own lengths and ramps", "seconds, ramp", "leave them out"
+            )
         machine = None if fit is None else uncertain_bench(fit, spread, actuator, limits)
         name, judged = KONONYKHIN, list(_bench_runs(machine, limits, within, report))
     else:
@@ -254,7 +255,7 @@ def _scaled(asked: AskedRun, peaks: Any, within: Inside) -> PlannedRun | Refused
 
 def _bench_runs(
     machine: UncertainBench | None, limits: RigLimits, within: Inside, report: Report
-) -> Iterator[PlannedRun | RefusedRun]:  # fmt: skip
+) -> Iterator[PlannedRun | RefusedRun]:
     """Each record of a bench, scaled or refused."""
     todo = bench_plans(limits, machine)
     stroke = machine.stroke if machine else (limits.stroke or 0.0)

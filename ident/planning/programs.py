@@ -53,8 +53,9 @@ class Settings:
         if ramp is None:
             return RAMP
         if not 0 < ramp <= seconds / 2:
-            raise Unusable("bad-value", f"a ramp of {ramp:g} s in a run of {seconds:g} s", "ramp",
-                           "give at most half of the run")  # fmt: skip
+            raise Unusable(
+                "bad-value", f"a ramp of {ramp:g} s in a run of {seconds:g} s", "ramp", "give at most half of the run"
+            )
         return ramp / seconds
 
 
@@ -168,6 +169,7 @@ def _kind(given: Any, where: str, band: float, rate: float) -> tuple[str, float]
         raise Unusable("unknown-kind", f"{shown(kind)!r} is no kind of command", where, did_you_mean(kind, KINDS))
     frequency = fields.positive("frequency", "frequency") or band
     if frequency > 0.45 * rate:
-        raise Unusable("out-of-range", f"{frequency:g} Hz at {rate:g} samples a second", where,
-                       f"give at most {0.45 * rate:g} Hz")  # fmt: skip
+        raise Unusable(
+            "out-of-range", f"{frequency:g} Hz at {rate:g} samples a second", where, f"give at most {0.45 * rate:g} Hz"
+        )
     return kind, frequency

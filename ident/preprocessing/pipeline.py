@@ -31,8 +31,9 @@ def off_steps(given: Switches) -> dict[str, bool]:
     """
     for name, on in given.items():
         if name not in NAMES:
-            raise Unusable("unknown-step", f"no step {name!r} of preprocessing", "preprocessing",
-                           did_you_mean(name, NAMES))  # fmt: skip
+            raise Unusable(
+                "unknown-step", f"no step {name!r} of preprocessing", "preprocessing", did_you_mean(name, NAMES)
+            )
         if not isinstance(on, bool):
             raise Unusable("bad-option", f"{name} is {on!r}", "preprocessing", "give true or false")
     return {name: False for name in NAMES if not given.get(name, True)}
@@ -44,9 +45,7 @@ def screen(matrix: Matrix, switches: Switches = ALL_ON) -> Matrix:
     return _applied(steps, Prepared(matrix), off_steps(switches)).matrix
 
 
-def prepare(
-    preset: Preset, matrix: Matrix, load: str = "none", switches: Switches = ALL_ON
-) -> tuple[Preset, Matrix]:  # fmt: skip
+def prepare(preset: Preset, matrix: Matrix, load: str = "none", switches: Switches = ALL_ON) -> tuple[Preset, Matrix]:
     """The model as it suits a matrix, and the matrix as the model is fitted to it, after every step.
 
     `load` "force": the measured force takes the place of the specimen's equation. A matrix that was prepared for

@@ -158,9 +158,7 @@ def by_file(runs: tuple[RunDescription, ...]) -> dict[str, list[tuple[int, RunDe
     return files
 
 
-def read_table(
-    data: bytes, name: str, skip_rows: int, limits: Limits, where: str = "", near: Beside = alone
-) -> Table:  # fmt: skip
+def read_table(data: bytes, name: str, skip_rows: int, limits: Limits, where: str = "", near: Beside = alone) -> Table:
     """The table of a file by the ending of its name; `where` is the run that asks for it, `near` has what lies beside.
 
     Raises Unusable: ``unknown-type``, ``empty-file``, ``bad-rows``, and what the reader raises.

@@ -188,7 +188,7 @@ def _completes(upper: _Row, names: _Row, columns: int) -> bool:
 
 def _named(
     names: _Row, described: Sequence[_Row], upper: _Row | None, columns: int, used: frozenset[int], where: str
-) -> Heading:  # fmt: skip
+) -> Heading:
     """The heading whose names stand in `names`, completed by the line above it; `described` from the lowest up."""
     notices: list[str] = []
     count = max(names.width, upper.width if upper else 0)

@@ -299,7 +299,7 @@ def _on_thousands(form: Form, rows: Sequence[Sequence[str]], where: str) -> tupl
 
 def _end(
     text: bytes, below: int, form: Form, shape: _Shape, head: Sequence[Sequence[str]], where: str
-) -> tuple[int, tuple[str, ...]]:  # fmt: skip
+) -> tuple[int, tuple[str, ...]]:
     """Where the rows end: before a last row that was cut off, which is told with its number."""
     last = len(text)
     while last > below and text[last - 1] in b" \t\r\n":

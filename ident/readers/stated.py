@@ -53,7 +53,7 @@ def described(stated: Mapping[str, Any], file: str, name: str) -> RunDescription
 
 def of_file(
     path: Path, parts: list[bytes], stated: Mapping[str, Any], read: Callable[[RunDescription], Table]
-) -> Matrix:  # fmt: skip
+) -> Matrix:
     """The matrix of one file, which `read` makes a table of. What is to be stated is told with the file's columns.
 
     `parts` are its bytes, and those of the files beside it that `read` adds.

@@ -57,8 +57,7 @@ def correlation(compared: RunComparison, lags: int | None = None) -> Residual:
     u = _centred(run.command) if "command" in run.channels else None
     most = _usual(u, len(e)) if lags is None else lags
     if not 1 <= most <= len(e) // 2:
-        raise Unusable("out-of-range", f"{most} lags of {len(e)} samples", run_name(run.id),
-                       f"give 1 to {len(e) // 2}")  # fmt: skip
+        raise Unusable("out-of-range", f"{most} lags of {len(e)} samples", run_name(run.id), f"give 1 to {len(e) // 2}")
     own = _products(e, e, most)[most:]
     auto = Correlation(np.arange(most + 1.0), own / own[0], _Z / np.sqrt(len(e)))
     if u is None:

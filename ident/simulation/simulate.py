@@ -188,9 +188,7 @@ class Simulation:
                 rows[known_filter.first] = constant(known_filter.input, found)
 
 
-def _batches(
-    groups: NDArray[np.intp], begin: int, end: int, steps: int
-) -> Iterator[tuple[tuple[int, int], int, int]]:  # fmt: skip
+def _batches(groups: NDArray[np.intp], begin: int, end: int, steps: int) -> Iterator[tuple[tuple[int, int], int, int]]:
     """Groups of lanes and samples to be advanced in one go, from one to before another: between them time may be up.
 
     Mostly all of them at once; of long records, or many lanes, some groups after the other, each from the first sample

@@ -71,7 +71,7 @@ def _at_reversals(needed: Array) -> NDArray[np.int64]:
 
 def fastest_mode(
     chain: Chain, values: Mapping[str, Any], output: str, motion: Mapping[str, float] | None = None
-) -> Modes:  # fmt: skip
+) -> Modes:
     """The eigenvalue of the chain's small-signal behaviour that is largest, 1/s, for a batch of values.
 
     About where small signals are taken, and about each state of the `motion` as far as that goes: damping that grows
