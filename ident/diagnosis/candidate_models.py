@@ -397,9 +397,10 @@ class CandidateModels:
     def best_optimum(self, refit: FittedModel) -> FittedModel:
         """The refit, or a better one from where else in the whole search space the error is least.
 
-        Looked for where the records are short and this one leaves more than noise.
+        Looked for where the records are short, unless this one is known to leave noise alone: without a floor a
+        residual may lack memory because the model rings.
         """
-        if not refit.stable or not self.is_short(refit) or not self.residual_above_noise(refit):
+        if not refit.stable or not self.is_short(refit) or self.at_floor(refit):
             return refit
         aim = CRITERIA.estimation.new_optimum * self.trial_error(refit)
         others = [one for one in self.leading(self.global_starts(refit.effects), aim) if one.local.error < aim]

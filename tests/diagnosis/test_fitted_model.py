@@ -130,3 +130,16 @@ def test_a_rung_at_which_the_model_is_unstable_tells_no_error_and_the_next_one_n
     assert [rung.nats for rung in _ladder(steps, [name for name, _ in steps if name])] == [None, None, None, 0.0]
     diagnoser._publish_step(SimpleNamespace(ladder=lambda: steps))
     assert [one.effect for one in course.added] == ["backlash", "null_bias"]
+
+
+@pytest.mark.parametrize(("at_floor", "error"), [(False, 0.2), (True, 0.3)])
+def test_a_better_optimum_is_sought_unless_what_is_left_is_known_to_be_noise(at_floor, error):
+    """Where no floor is known a residual may lack memory, though the model rings where the machine does not."""
+    found, other = (SimpleNamespace(effects=(), values={}, stable=True, finite=True, local=SimpleNamespace(error=of))
+                    for of in (0.3, 0.2))  # fmt: skip
+    models = SimpleNamespace(
+        is_short=lambda _refit: True, at_floor=lambda _refit: at_floor, residual_above_noise=lambda _refit: False,
+        trial_error=lambda refit: refit.local.error, global_starts=lambda _effects: [other],
+        leading=lambda starts, _aim: starts, refit=lambda _effects, _values: other, converged=lambda refit: refit,
+    )  # fmt: skip
+    assert CandidateModels.best_optimum(models, found).local.error == error
