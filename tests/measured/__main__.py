@@ -1,6 +1,6 @@
 """Fit and diagnose measured machines as a new user would:  python -m tests.measured [FOLDER …]  prints the table.
 
-Without folders those beside the checkout. `--page` writes docs/measured.md as well.
+Without folders those beside the checkout. `--page` writes the rows of these machines into docs/measured.md as well.
 """
 
 from __future__ import annotations
@@ -9,6 +9,7 @@ import sys
 from pathlib import Path
 
 from tests.measured.judged import KNOWN, judged
+from tests.measured.page import line, renewed
 
 ROOT = Path(__file__).resolve().parents[2]
 HEADER = (
@@ -23,27 +24,20 @@ HEADER = (
 )
 
 
-def line(cells: tuple[str, ...]) -> str:
-    """A row of a table."""
-    return f"| {' | '.join(cells)} |"
-
-
 def main(arguments: list[str]) -> None:
     """Print a row a machine, as soon as it is there."""
     folders = [Path(name) for name in arguments if name != "--page"]
     folders = folders or [ROOT.parent / "shared" / "data" / name for name in KNOWN]
-    lines = [line(HEADER), line(("---",) * len(HEADER))]
-    print(*lines, sep="\n", flush=True)
-    texts = []
+    print(line(HEADER), line(("---",) * len(HEADER)), sep="\n", flush=True)
+    page = ROOT / "docs" / "measured.md"
     for folder in folders:
         found = judged(folder)
-        lines.append(line(found.row))
-        texts.append(f"**{found.name}.** Known: {KNOWN.get(found.name, 'nothing')}. Said: {found.found.verdict.text}")
-        print(lines[-1], flush=True)
-    if "--page" in arguments:
-        page = ROOT / "docs" / "measured.md"
-        before, mark, _ = page.read_text(encoding="utf-8").partition("<!-- table -->\n")
-        page.write_text("\n".join([before + mark, *lines, "", "\n\n".join(texts), ""]), encoding="utf-8")
+        row, known = line(found.row), KNOWN.get(found.name, "nothing")
+        print(row, flush=True)
+        if "--page" in arguments:
+            text = f"**{found.name}.** Known: {known}. Said: {found.found.verdict.text}"
+            made = renewed(page.read_text(encoding="utf-8"), HEADER, {found.name: row}, {found.name: text})
+            page.write_text(made, encoding="utf-8")
 
 
 if __name__ == "__main__":

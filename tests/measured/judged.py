@@ -21,6 +21,21 @@ KNOWN = {
     "emps": "dry friction of 20.4 N beside 203 N·s/m",
     "crane_actuator": "free run on the second half 47 to 58 %, a linear ARX model 95 %",
     "mts_actuator": "second-order linear model of its authors 5.2 % on both runs",
+    "damper_sine": "viscous and Coulomb friction 16.5 / 15.8 %, viscous and Dahl friction, as published, 12.2 / 9.3 %",
+    "hoop_motor": "linear 13.9 / 14.6 %, with a saturating drive 4.3 / 2.9 %",
+    "hsm150_measured_torque": "J 1.23e-4 kg·m², B 7.2e-5 N·m·s, dry friction 0.033 N·m, constant torque −0.007 N·m",
+    "rc_column": "linear 52 / 83 %, Dahl friction 24 / 34 %, Bouc–Wen with degradation 13 / 24 %",
+    "wheel_loader": "the lever that lowers the boom is not recorded",
+    "coupled_drives": "speed as its absolute value, a resonance; best published black box 0.097 / 0.073 ticks/s",
+    "cascaded_tanks": "overflow and a bent sensor 0.244 V, the best published grey box 0.191 V",
+    "silverbox": "cubic stiffness; best published black box 0.30 / 0.26 mV",
+    "bouc_wen": "hysteresis with free shape; best published black box 1.9e-5 / 1.2e-5 m",
+    "eha": "a lag on extension that grows with the load",
+    "rack": "viscous, dry and Stribeck friction, 25.6 to 23.3 %, fitted only",
+    "motor_generator": "linear 50 / 54 %, fast up and slow down 33 / 36 %",
+    "emps_volts": "mass, viscous and dry friction, constant force: 4.85 mm on the pulses",
+    "emps_newtons": "mass, viscous and dry friction, constant force: 4.85 mm on the pulses",
+    "hsm150": "the commanded torque is not what the drive gives: J from 1.2e-4 to 3.7e-4 kg·m² by run",
 }
 """By the folder's name, what experts found: errors on the fitted and on the held-back record."""
 
