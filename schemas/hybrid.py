@@ -104,13 +104,21 @@ class BeforeRequest(_Asked):
     gain: Finite | None = None
 
 
+class ChooseRequest(_Asked):
+    """What a gain Kp is chosen for: phase_margin (°), gain_margin (dB), bandwidth (Hz), peak (dB), overshoot (%)."""
+
+    quantity: Short
+    value: Finite
+
+
 class WhatIfRequest(_Asked):
     """What is to be changed of the machine of a fit: `set` area, stroke, volume or parameters, in SI or with units.
 
     `fitted` states sizes of the machine that was fitted which its fit does not hold. `gain` are the gains Kp of the
     responses, one or a range. `peak` (Hz) asks for the smallest change that puts a peak there within `tolerance` (2 Hz
     at 45 Hz and in proportion), inside `axes` up to the frequency `up_to`; that takes some seconds. `before` is the
-    loop when it was stable, by which the cause is found where it no longer is.
+    loop when it was stable, by which the cause is found where it no longer is. `choose` asks for the gain that
+    has a margin, say; responses without `gain` are those at it.
     """
 
     set: dict[str, Value] = Field(default_factory=dict, max_length=50)
@@ -118,6 +126,7 @@ class WhatIfRequest(_Asked):
     specimen: SpecimenRequest = Field(default_factory=SpecimenRequest)
     gain: Finite | tuple[Finite, Finite] | None = None
     before: BeforeRequest | None = None
+    choose: ChooseRequest | None = None
     peak: Value | None = None
     tolerance: Value | None = None
     axes: list[AxesRequest] = Field(default_factory=list, max_length=10)

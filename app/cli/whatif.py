@@ -19,6 +19,7 @@ from ident.words.nearest import did_you_mean
 if TYPE_CHECKING:
     from ident.fit.result import FitResult
     from ident.hybrid.changed_machine import Change
+    from ident.hybrid.chosen_gain import GainTarget
     from ident.hybrid.peak_problem import PeakTarget
     from ident.hybrid.what_if import Before
     from ident.run import Specimen
@@ -62,6 +63,14 @@ InAxes = Annotated[
     typer.Option(metavar="KP=LO:HI", help="Required range of |G| at a gain; may be repeated."),
 ]
 UpTo = Annotated[str | None, typer.Option(metavar="HZ", help="Upper end of the axes. Default: peak plus tolerance.")]
+Choose = Annotated[
+    str | None,
+    typer.Option(
+        metavar="QUANTITY=VALUE",
+        help="Choose Kp for one quantity: phase_margin=50 (°), gain_margin=6 (dB), bandwidth=8 (Hz), peak=2 (dB) or "
+        "overshoot=10 (%).",
+    ),
+]
 Earlier = Annotated[
     Path | None,
     typer.Option(
@@ -80,7 +89,7 @@ Out = Annotated[Path | None, typer.Option(metavar="DIR", help="Write the figures
 
 def whatif(
     fit: FitPath, set_: Changed = None, fitted: Fitted = None, specimen: OfSpecimen = None, gain: Gains = None,
-    before: Earlier = None, before_gain: EarlierGain = None,
+    choose: Choose = None, before: Earlier = None, before_gain: EarlierGain = None,
     peak: AtPeak = None, tolerance: Near = None, axes: InAxes = None, up_to: UpTo = None, seed: Seed = 0,
     rig: RigFile = None, json: Json = None, out: Out = None,
 ) -> None:  # fmt: skip
@@ -99,7 +108,8 @@ def whatif(
     gains = None if gain is None else _range(gain, "--gain", "LO:HI")
     target = _target(peak, tolerance, axes or [], up_to)
     with shown() as report:
-        found = what_if(result, change, gains, target, seed, report, rig_in(rig), _before(before, before_gain))
+        found = what_if(result, change, gains, target, seed, report, rig_in(rig), _before(before, before_gain),
+                        _wanted(choose))  # fmt: skip
     if json is not None:
         write_json(found.to_json(), json)
     if json != STANDARD_OUTPUT:
@@ -108,6 +118,17 @@ def whatif(
         write_figures(found, out)
     if found.state == UNSTABLE:
         raise typer.Exit(1)
+
+
+def _wanted(text: str | None) -> GainTarget | None:
+    """What a gain is to be chosen for; the value may end in the unit of its quantity. Raises Unusable."""
+    from ident.hybrid.chosen_gain import GainTarget
+    from ident.hybrid.loop_figures import QUANTITIES
+
+    if text is None:
+        return None
+    name, value = split(text, "--choose", "QUANTITY=VALUE")
+    return GainTarget(name, number(value.removesuffix(QUANTITIES.get(name, "")), "--choose", "QUANTITY=VALUE"))
 
 
 def _before(fit: Path | None, gain: str | None) -> Before | None:

@@ -11,8 +11,9 @@ from app.hybrid.asked import change_of, gains_of, peak_of
 from app.lru import LRU
 from ident.fit.result import FitResult
 from ident.hybrid import what_if as library
+from ident.hybrid.chosen_gain import GainTarget
 from ident.hybrid.what_if import Before, WhatIf
-from schemas.hybrid import BeforeRequest, WhatIfRequest
+from schemas.hybrid import BeforeRequest, ChooseRequest, WhatIfRequest
 
 _MOST = 16  # answers in memory, about 1 MB each: one with a peak takes seconds
 _answers: LRU[WhatIf] = LRU(_MOST)
@@ -24,7 +25,8 @@ def what_if(context: Context, fit: str, request: WhatIfRequest) -> WhatIf:
     def made() -> WhatIf:
         found = _fit(context, fit)
         change, target, before = change_of(found, request), peak_of(request), _before(context, request.before)
-        return library.what_if(found, change, gains_of(request), target, request.seed, before=before)
+        return library.what_if(found, change, gains_of(request), target, request.seed, before=before,
+                               choose=_wanted(request.choose))  # fmt: skip
 
     return _answers.get((str(context.storage.folder), fit, request.model_dump_json()), made)
 
@@ -38,6 +40,11 @@ def _before(context: Context, asked: BeforeRequest | None) -> Before | None:
     if asked is None:
         return None
     return Before(None if asked.fit is None else _fit(context, asked.fit), asked.gain)
+
+
+def _wanted(asked: ChooseRequest | None) -> GainTarget | None:
+    """What a gain is to be chosen for. Raises Unusable."""
+    return None if asked is None else GainTarget(asked.quantity, asked.value)
 
 
 def asked(text: str) -> WhatIfRequest:

@@ -24,6 +24,7 @@ def asked(given: Mapping[str, str]) -> WhatIfRequest:
         "specimen": _quantities(_SPECIMEN, stated),
         "gain": gain,
         "before": _before(stated),
+        "choose": _chosen(stated),
         **_quantities(_PEAK, stated),
         "axes": _axes(stated, gain),
     }
@@ -58,6 +59,13 @@ def _before(stated: Mapping[str, str]) -> dict[str, float | str] | None:
     if "before_fit" in stated:
         found["fit"] = stated["before_fit"]
     return found or None
+
+
+def _chosen(stated: Mapping[str, str]) -> dict[str, float | str] | None:
+    """What a gain is to be chosen for; the quantity always stands in the form."""
+    if "choose_value" not in stated:
+        return None
+    return {"quantity": stated.get("choose", ""), "value": parameter_value(stated["choose_value"], "1", "choose")}
 
 
 def _axes(stated: Mapping[str, str], gain: tuple[float, float] | None) -> list[dict[str, float]]:

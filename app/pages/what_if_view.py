@@ -11,6 +11,7 @@ from app.fits.service import Stored
 from ident.figures import drawings
 from ident.fit.result import Estimate, FitResult
 from ident.hybrid.changed_machine import SIZES
+from ident.hybrid.loop_figures import QUANTITIES
 from ident.hybrid.oil_column import JointChange, PeakSearch
 from ident.hybrid.root_locus import Pole
 from ident.hybrid.what_if import HIGHEST, USUAL_GAINS, Response, WhatIf
@@ -53,6 +54,7 @@ class WhatIfForm:
     parameters: tuple[ValueField, ...]
     has_gain: bool
     usual: tuple[str, str]
+    quantities: tuple[tuple[str, str], ...]
     given: Mapping[str, str]
 
 
@@ -92,8 +94,9 @@ class FactorRow:
 
 @dataclass(frozen=True)
 class WhatIfFound:
-    """The answer; `stability` are sentences, `figures` name and title of each."""
+    """The answer; `chosen` and `stability` are sentences, `figures` name and title of each."""
 
+    chosen: tuple[str, ...]
     unstable: bool
     stability: tuple[str, ...]
     facts: tuple[tuple[str, str], ...]
@@ -169,6 +172,7 @@ def what_if_form(fit: FitResult, given: Mapping[str, str]) -> WhatIfForm:
         parameters=tuple(_value(row, fit.parameters[row.name]) for row in parameter_rows(fit)),
         has_gain=model.kind == "chain" and "Kp" in model.chain.symbols,
         usual=(trimmed(usual[0]), trimmed(usual[1])),
+        quantities=tuple((name, f"{name.replace('_', ' ')} ({unit})") for name, unit in QUANTITIES.items()),
         given=given,
     )
 
@@ -195,6 +199,7 @@ def what_if_found(fit: FitResult, found: WhatIf) -> WhatIfFound:
     named = {row.name: row for row in parameter_rows(fit)}
     peak = found.peak
     return WhatIfFound(
+        chosen=() if found.chosen is None else tuple(found.chosen.sentences()),
         unstable=found.state == UNSTABLE,
         stability=tuple(said for one in found.stability for said in one.text),
         facts=tuple(_facts(found)),

@@ -14,6 +14,7 @@ from ident.errors import Unusable
 from ident.fit.bulk_modulus import BulkModulus, bulk_modulus
 from ident.fit.result import Estimate, FitResult
 from ident.hybrid.changed_machine import Carried, Change, ChangedMachine, changed_machine
+from ident.hybrid.chosen_gain import ChosenGain, GainTarget, choose_gain
 from ident.hybrid.fig_19 import said_of_fig_19
 from ident.hybrid.oil_column import PeakSearch, find_peak
 from ident.hybrid.peak_problem import PeakTarget
@@ -74,7 +75,8 @@ class WhatIf(Shown):
 
     It is None where the machine is stable, or unstable, at all gains that were looked at. `peak` is what was found for
     a peak that was asked for, `with_peak` the responses after the smallest change that puts it there. `stability`
-    judges the loop at each gain; `state` is "unstable" where it is at any.
+    judges the loop at each gain; `state` is "unstable" where it is at any. `chosen` is the gain for a quantity that was
+    asked for.
     """
 
     model: str
@@ -91,9 +93,12 @@ class WhatIf(Shown):
     with_peak: tuple[Response, ...] = ()
     state: str = STABLE
     stability: tuple[Judgement, ...] = ()
+    chosen: ChosenGain | None = None
 
     def listings(self) -> Iterator[Listing | str]:
         """Whether the loop is unstable and why, what was changed, the poles and peaks, what is to be said of them."""
+        if self.chosen is not None:
+            yield from self.chosen.sentences()
         for one in self.stability:
             yield from one.text
         rows = [
@@ -127,6 +132,7 @@ def _in_words(of: Response, after: str = "") -> str:
 def what_if(
     fit: FitResult, change: Change, gains: tuple[float, float] | None = None, peak: PeakTarget | None = None,
     seed: int = 0, report: Report = silent, rig: RigLimits | None = None, before: Before | None = None,
+    choose: GainTarget | None = None,
 ) -> WhatIf:  # fmt: skip
     """The machine of a fit after a change, at the two ends of a range of gains Kp; what would put a `peak` there.
 
@@ -134,11 +140,14 @@ def what_if(
     fitted machine, where something of it was changed. Where limits of the `rig`, or of the fit's matrix, are stated,
     the first notes say which command reaches them.
 
+    Where a gain is to be chosen for a quantity, responses without `gains` are those at it.
+
     Responses are the linearisation of the fitted chain (:meth:`ident.chain.chain.Chain.linearise`). Raises Unusable
     as :func:`ident.hybrid.changed_machine.changed_machine` does, and for gains that are no range above 0.
     """
     machine = changed_machine(fit, change)
-    ends = _gains(machine, gains)
+    chosen = None if choose is None else choose_gain(fit, machine, choose, seed)
+    ends = _gains(machine, (chosen.gain, chosen.gain) if chosen and gains is None else gains)
     band = _band(machine, ends)
     responses = tuple(response(machine, gain, band) for gain in ends)
     oil, found = _oil(fit, machine), None
@@ -153,7 +162,7 @@ def what_if(
         model=fit.model, output=machine.output, actuator=machine.actuator, specimen=machine.specimen,
         parameters=dict(machine.parameters), responses=responses, locus=_locus(machine, ends, judged, critical),
         critical_gain=critical, bulk_modulus=oil,
-        peak=found, with_peak=with_peak,
+        peak=found, with_peak=with_peak, chosen=chosen,
         state=UNSTABLE if any(not one.stable for one in judged) else STABLE, stability=judged,
         notes=(*reached(machine, ends, limits), *_notes(machine, responses, oil), *(found.text if found else ())),
     )  # fmt: skip

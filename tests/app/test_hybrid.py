@@ -242,6 +242,15 @@ def test_an_unstable_loop_is_said_to_be_so_with_its_cause(service, fitted):
     assert service.post(f"{API}/fits/{fitted}/what-if", json=strange).status_code == 404
 
 
+def test_a_gain_is_chosen(service, fitted):
+    """A quantity that there is not is refused with the nearest."""
+    asked = {"choose": {"quantity": "phase_margin", "value": 60}}
+    found = service.post(f"{API}/fits/{fitted}/what-if", json=asked).json()
+    assert found["chosen"]["quantities"]["phase_margin"]["value"] == pytest.approx(60, abs=0.1)
+    refused_by_service(service.post(f"{API}/fits/{fitted}/what-if", json={"choose": {"quantity": "peek", "value": 1}}),
+                       "unknown-quantity")  # fmt: skip
+
+
 def test_a_run_is_followed(service, matrix):
     runs = [run["id"] for run in service.get(f"{API}/matrices/{matrix}").json()["runs"]]
     first = service.get(f"{API}/matrices/{matrix}/track").json()

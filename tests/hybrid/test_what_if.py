@@ -219,6 +219,19 @@ def test_the_command_says_unstable_by_its_status_and_json(servoident, tmp_path):
     assert found["locus"]["marks"][0]["gain"] == found["critical_gain"] == pytest.approx(56.86, abs=0.01)
 
 
+def test_the_command_chooses_a_gain(servoident, tmp_path):
+    """The value may have its unit; the response is that at the chosen gain."""
+    import json
+
+    file = tmp_path / "fit.json"
+    file.write_text(json.dumps(fit_of().to_json()))
+    done = servoident("whatif", file, "--choose", "gain_margin=6 dB", "--json", "-")
+    assert done.returncode == 0, done.stderr
+    found = json.loads(done.stdout)
+    assert found["responses"][0]["gain"] == found["chosen"]["gain"] == pytest.approx(56.86 / 10**0.3, rel=1e-3)
+    assert found["chosen"]["reached"]
+
+
 def test_a_delay_that_the_fit_has_not_is_added(servoident, tmp_path):
     """Stable without it; the command names the effect's parameter, and the delay is the cause."""
     import json

@@ -99,6 +99,12 @@ def test_an_unstable_loop_is_an_alert_with_its_cause(service, fitted):
     assert "The cause is the gain" in alert
 
 
+def test_a_gain_is_chosen_on_the_page(service, fitted):
+    text = page(service, fitted, ask="what-if", choose="phase_margin", choose_value="60").text
+    assert "gives a phase margin of 60 °" in text
+    assert '<option value="phase_margin" selected>' in text
+
+
 def test_what_is_written_into_a_field_stays_text(service, fitted):
     answer = page(service, fitted, ask="what-if", area='"><script>x()</script>')
     assert answer.status_code == 422
