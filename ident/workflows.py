@@ -152,16 +152,20 @@ def study(matrix: Matrix, fit: FitResult) -> Study:
 
 @stated_kinds
 def figure(
-    result: FitResult | Comparison | Diagnosis, name: str, matrix: Matrix | None = None, theme: str = "light",
+    result: FitResult | Comparison | Diagnosis | Matrix, name: str, matrix: Matrix | None = None, theme: str = "light",
     share: float = 1.0, **options: Any,
 ) -> AltairChart:  # fmt: skip
     """The Altair chart of that name: see :func:`ident.figures.figure` for its options, and :func:`study` for several.
 
     A result that was made here knows its data; beside one that was read from a file the `matrix` is given. Of a
-    diagnosis it is the ladder. Raises Unusable for a name that the result has no figure of, and where data are missing.
+    diagnosis it is the ladder, of a matrix its `signals` and `spectra` as measured. Raises Unusable for a name that the
+    result has no figure of, and where data are missing.
     """
     from ident import figures  # noqa: PLC0415
 
+    if isinstance(result, Matrix):
+        recorded = figures.Recorded(result.runs, result.actuator)
+        return figures.shown(figures.figure(name, recorded, theme, share, **options))
     matrix = matrix or result.matrix
     if matrix is None:
         raise Unusable("no-data", "the result does not hold the data that it was made of", f"figure {name}",

@@ -40,6 +40,7 @@ from app.cli.report import report as write_report
 from app.cli.retention import retention
 from app.cli.revise import revise
 from app.cli.serve import serve
+from app.cli.signals import signals
 from app.cli.simulate import simulate
 from app.cli.statistics import statistics
 from app.cli.tidy import tidy
@@ -53,7 +54,7 @@ from app.cli.worker import worker
 from app.cli.workers import workers
 
 GROUPS = {
-    "Data": (simulate, init, join, check),
+    "Data": (simulate, init, join, check, signals),
     "Identification": (fit, compare, profile, diagnose, next_, plan, bench, write_report),
     "Applications": (track, control, hybrid, whatif, export),
     "Service": (serve, worker, workers, demo, upload, query, revise, migrate, backup, restore, tidy, retention, audit),

@@ -2,48 +2,26 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Iterator
 from typing import Any
 
 from app.context import Context
 from app.diagnoses import service as diagnoses
-from app.errors import Failure
+from app.figures.drawn import drawn as drawn_of
 from app.fits import service
 from app.fits.studied import study
-from app.lru import LRU
 from app.profiles import service as profiles
 from app.refits import lineage
-from ident.errors import Unusable
-from ident.figures import MEDIA, figure, render
-from ident.figures.selection import number
 from ident.figures.subjects import Compared, Ladder, Profiled, Step
 from ident.fit.result import FitResult
 from ident.presets import preset
-from ident.words.nearest import did_you_mean
 from ident.words.titles import title
 from schemas.fit import LadderRung
-
-_MOST = 96  # figures in memory, about 100 kB each: fits and their data never change
-_figures: LRU[bytes] = LRU(_MOST)
 
 
 def drawn(context: Context, fit_id: str, name: str, kind: str, options: dict[str, Any]) -> tuple[bytes, str]:
     """A figure of a fit as bytes and their media type."""
-    if kind not in MEDIA:
-        raise Failure(404, "no-such-format", f"no figures as {kind!r}", "figure", did_you_mean(kind, MEDIA))
-    key = json.dumps([str(context.storage.folder), fit_id, name, kind, options], sort_keys=True)
-    return _figures.get(key, lambda: _drawn(context, fit_id, name, kind, dict(options))), MEDIA[kind]
-
-
-def _drawn(context: Context, fit_id: str, name: str, kind: str, options: dict[str, Any]) -> bytes:
-    theme, share = options.pop("theme", "light"), number(options, "share") or 1.0
-    live = bool(options.pop("live", ""))
-    options.pop("share", None)
-    if not 0.2 <= share <= 4:
-        raise Unusable("out-of-range", f"share is {share:g}", "figure option share", "give 0.2 to 4")
-    subject = _subject(context, fit_id, name, options)
-    return render(figure(name, subject, theme, share, **options), kind, live=live)
+    return drawn_of(context, fit_id, name, kind, options, lambda given: _subject(context, fit_id, name, given))
 
 
 def _subject(context: Context, fit_id: str, name: str, options: dict[str, Any]) -> object:

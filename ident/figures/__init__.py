@@ -17,7 +17,7 @@ from ident.figures.frame import unchecked
 from ident.figures.look import look
 from ident.figures.render import MEDIA, AltairChart, Chart, render, shown
 from ident.figures.study import Study
-from ident.figures.subjects import Ladder
+from ident.figures.subjects import Ladder, Recorded
 from ident.fit.result import FitResult
 from ident.matrix import Actuator
 from ident.presets import Preset
@@ -26,8 +26,8 @@ from ident.words.nearest import did_you_mean
 from ident.words.titles import title
 
 __all__ = [
-    "DRAWINGS", "FIGURES", "MEDIA", "AltairChart", "Chart", "Study", "drawings", "figure", "figures_for", "figures_of",
-    "look", "of_diagnosis", "render", "shown",
+    "DRAWINGS", "FIGURES", "MEDIA", "AltairChart", "Chart", "Recorded", "Study", "drawings", "figure", "figures_for",
+    "figures_of", "look", "of_diagnosis", "render", "shown",
 ]  # fmt: skip
 
 _FILES = (
@@ -55,6 +55,8 @@ _FILES = (
     "root_locus",
     "tracking",
     "control_chart",
+    "signals",
+    "spectra",
 )
 """Each with one figure, those of a fit in the order of the tabs of a page."""
 DRAWINGS: tuple[Drawing[Any], ...] = tuple(

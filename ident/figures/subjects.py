@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 from ident.comparison.profile import Profile
 from ident.comparison.side_by_side import SideBySide
+from ident.errors import Unusable
 from ident.fit.result import FitResult
 from ident.hybrid.case import Case
 from ident.hybrid.controller_design import ControllerDesign
@@ -15,7 +16,9 @@ from ident.hybrid.rig import HybridResult
 from ident.hybrid.share_map import ShareMap
 from ident.hybrid.tracked_run import Track
 from ident.matrix import Actuator
+from ident.run import Run
 from ident.statistics import ControlChart
+from ident.words.nearest import did_you_mean
 
 Step = tuple[str, float | None, float | None]
 """Label, error on the runs to fit, error on the runs to verify."""
@@ -28,6 +31,31 @@ class Ladder:
     steps: Sequence[Step]
     floor: float | None
     actuator: Actuator
+
+
+@dataclass(frozen=True)
+class Recorded:
+    """What was measured of an actuator, before any fit."""
+
+    runs: Sequence[Run]
+    actuator: Actuator
+
+    def chosen(self, wanted: str | Sequence[str] | None, most: int) -> tuple[Run, ...]:
+        """The runs of these ids, the first run where none is named.
+
+        Raises Unusable: ``unknown-run``; ``too-many-runs`` for more than `most`.
+        """
+        ids = [wanted] if isinstance(wanted, str) else list(wanted or ())
+        known = {run.id: run for run in self.runs}
+        for name in ids:
+            if name not in known:
+                what = f"there is no run {name!r}"
+                raise Unusable("unknown-run", what, "figure option run", did_you_mean(name, known))
+        if len(ids) > most:
+            raise Unusable(
+                "too-many-runs", f"{len(ids)} runs are chosen", "figure option run", f"choose {most} at most"
+            )
+        return tuple(known[name] for name in dict.fromkeys(ids)) or tuple(self.runs[:1])
 
 
 @dataclass(frozen=True)
