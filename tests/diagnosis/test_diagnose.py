@@ -181,7 +181,7 @@ def test_what_the_catalogue_does_not_hold_is_called_unexplained(full):
     """
     trials = linear.trials(((0, 0), (0.87, 36.3e3), (2.67, 0)))[::4]
     curve = outside.Outside(sensor_curve=0.03)
-    records = outside.measure_all(curve, trials, PLANT, seconds=1.0 if full else 0.5, noise=NOISE, seed=21)
+    records = outside.measure_all(curve, trials, PLANT, seconds=1.0, noise=NOISE, seed=21)
     found = diagnose(matrix_of(records, PLANT), **little(full))
     assert found.ladder[0].error["fit"] > 1.5 * found.noise_floor["fit"]
     assert found.verdict.unexplained
