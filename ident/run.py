@@ -170,7 +170,12 @@ class Run(Shown):
         samples = self.channels.get(channel)
         if samples is None and channel == "velocity" and "displacement" in self.channels:
             samples = slopes(self.channels["displacement"], order=2) * self.sample_rate
-        return self if samples is None else replace(self, channels={**self.channels, "command": samples}, past=None)
+        if samples is None:
+            return self
+        begins = self.assumed_beginning
+        if channel == "velocity" and "displacement" not in self.channels:
+            begins = begins or "moving"  # a force of nothing does not say where it stands
+        return replace(self, channels={**self.channels, "command": samples}, past=None, assumed_beginning=begins)
 
     @cached_property
     def motion(self) -> float:

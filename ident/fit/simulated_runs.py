@@ -30,6 +30,7 @@ from ident.parallel import cores, each
 from ident.presets import Preset
 from ident.run import MOTIONS, Run
 from ident.simulation.equilibrium import equilibrium
+from ident.simulation.inputs import closed
 from ident.simulation.simulate import Simulation
 from ident.simulation.steps import Modes, steps_at_jumps, steps_at_passages, steps_at_reversals, steps_needed
 
@@ -258,13 +259,19 @@ class SimulatedRuns:
 
         Its best ones, and those that stand still at what is measured first where the chain is not linear: what a linear
         model makes of a machine in saturation may lie where no step leads back from. The offset counts with what is
-        left: in saturation a position that is shifted changes nothing else.
+        left: in saturation a position that is shifted changes nothing else. A motion that was given by its speed is
+        guessed to go about the middle, where stops and play lie as far to either side: a linear model does not tell.
         """
         model = linear_model(self.preset.core, values, run, self.matrix.actuator)
         self.sizes = np.maximum(self.sizes, model.sizes(self.band)[0] * run.drive)
         guesses = [first_state(run, model), *(() if self.preset.is_linear else model.standing_at(run.measured[0]))]
         start = np.zeros((1, len(guesses), len(self.chain.begun)))
         start[..., [self.chain.states.index(name) for name in self.preset.core.states]] = guesses
+        for state in self.preset.imposed.keys() & self.chain.states:
+            if self.preset.imposed[state] not in run.channels and "velocity" in run.channels:
+                start[..., self.chain.states.index(state)] = (
+                    begins_about_middle(run.channels["velocity"]) / run.sample_rate
+                )
         if len(guesses) == 1:
             return list(start[0])
         vectors = {name: np.repeat(value, len(guesses)) for name, value in values.items()}
@@ -367,6 +374,13 @@ class SimulatedRuns:
     def _extreme(self) -> tuple[Run, ...]:
         """The runs of the whole matrix on which modes are fastest: whatever part of it is simulated has their steps."""
         return extreme(self.matrix.runs)
+
+
+def begins_about_middle(speed: Array) -> float:
+    """Where a motion of a speed (n,) per sample begins, whose way goes as far to either side."""
+    covered = 0.5 * (speed[1:] + speed[:-1]) + closed(speed)[:-1]
+    way = np.append(0.0, np.cumsum(covered))
+    return float(-0.5 * (way.max() + way.min()))
 
 
 def is_simulated(preset: Preset, matrix: Matrix) -> bool:

@@ -88,7 +88,7 @@ def _record(run: Run, name: str) -> Array:
         return slopes(run.command, order=1) * run.sample_rate
     if name == BEYOND:
         if not derived:
-            return _closed(run.command)
+            return closed(run.command)
         return bends_of_way(run.channels["displacement"], run.command / run.sample_rate) * run.sample_rate
     if name == FORCE:
         return run.channels["force"]
@@ -104,7 +104,7 @@ def _record(run: Run, name: str) -> Array:
     return run.command
 
 
-def _closed(speed: Array) -> Array:
+def closed(speed: Array) -> Array:
     """How much the mean from each sample of a speed (n,) to the next is beyond that of the two: see :func:`drift`."""
     beyond = bends(speed)
     return beyond - drift(speed, 0.5 * (speed[1:] + speed[:-1]) + beyond[:-1])

@@ -19,7 +19,7 @@ from ident.fit.result import FitResult
 from ident.fit.settings import Settings
 from ident.fit.settling import Least, better
 from ident.fit.simulated_fitness import SimulatedFitness
-from ident.fit.simulated_runs import SimulatedRuns, every_run
+from ident.fit.simulated_runs import SimulatedRuns, begins_about_middle, every_run
 from ident.linear import LinearModel
 from ident.matrix import Actuator, Matrix
 from ident.run import Run
@@ -281,3 +281,18 @@ def test_first_states_are_followed_where_what_they_promise_is_worth_it(saturated
     assert off(True).exact(point, worth=lambda _promised: False).error > 2 * followed
     assert off(True)._better(point, 2 * followed) is None
     assert off(False)._better(point, 2 * followed) is not None
+
+
+def test_a_motion_that_is_given_by_its_speed_is_guessed_to_go_about_the_middle():
+    """A sine, from a phase of one radian."""
+    speed = np.cos(0.1 * np.arange(400.0) + 1.0)
+    assert begins_about_middle(speed) == pytest.approx(np.sin(1.0) / 0.1, rel=0.01)
+
+
+def test_where_a_specimen_stands_is_not_told_by_a_force_of_nothing():
+    """It may stand anywhere, where its speed alone was recorded: beside a stop or in the middle of its play."""
+    motion = np.append(np.zeros(20), np.sin(0.3 * np.arange(50.0)))
+    recorded = {"velocity": motion, "force": motion}
+    for channels, begins in ((recorded, "moving"), (recorded | {"displacement": motion}, "at rest")):
+        run = Run("r", "", 100.0, channels, output="force").driven_by("velocity")
+        assert run.begins == begins
