@@ -76,10 +76,12 @@ def recommended(found: Diagnosis, terms: int | None = None) -> End:
 def next_command(found: Diagnosis, file: str = "D.json") -> str:
     """The command that makes the recommended fit, in sentences; "" where a diagnosis has nothing to add.
 
-    Nor is there one where an earlier version did not tell what its refits ended with.
+    Nor is there one where validation data contradict its effects, or where an earlier version did not tell what its
+    refits ended with.
     """
     proposals = found.proposals or ()
-    if not proposals and not any(end.added for end in _rungs(found)):
+    contradicted = found.verdict.standing == "contradicted" and not proposals
+    if contradicted or (not proposals and not any(end.added for end in _rungs(found))):
         return ""
     end = recommended(found)
     command = message("recommended", file=file, effects=end.added, error=end.error.get("fit"))

@@ -33,6 +33,8 @@ def _missing(found: Diagnosis) -> Message:
         if verdict.standing == "contradicted":
             return message("summary.contradicted", effects=named)
         return _missing_and_helping(found, named)
+    if verdict.suspects:
+        return message("summary.label", run=verdict.suspects[0].run)
     if not found.complete:
         return message("summary.stopped")
     if verdict.unexplained:

@@ -12,6 +12,7 @@ SUMMARY: Mapping[str, str] = {
     "summary.helping": "The error falls with {helping:all}, but something else may be the cause.",
     "summary.contradicted":
         "Not confirmed: {effects:all}. The error on estimation data falls, but validation data contradict it.",
+    "summary.label": "The label of {run:run} looks wrong: correct it before you conclude what is missing.",
     "summary.stopped": "Nothing was found so far: the search was stopped.",
     "summary.unlisted": "Missing: something that no listed effect explains.",
     "summary.unlisted_probable":

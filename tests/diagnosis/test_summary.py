@@ -87,6 +87,8 @@ def test_nothing_something_unlisted_and_what_is_contradicted_are_said():
 
 def test_a_wrong_label_and_a_search_that_was_stopped_come_first():
     assert lines(suspects=(Suspect("run-3"),))[2] == "Next: correct the label of run-3, and fit again."
+    unnamed = replace(FOUND, verdict=Verdict(suspects=(Suspect("A"),), unexplained=True))
+    assert unnamed.summary[0].startswith("The label of run A looks wrong")
     mass = Suspect("A", "mass", stated=0.87, found=2.671, unit="kg")
     assert lines(suspects=(mass,))[2] == (
         "Next: correct the label of run A, and fit again. Its mass is stated as 0.8700 kg; the data say 2.671 kg."
