@@ -69,6 +69,7 @@ MISSPELT: dict[tuple[str, str], list[tuple[tuple[str, ...], str]]] = {
     ("hybrid", "--effect"): [(("FIT", "--case", "qian", "--effect", "coulomb-friction2"), "coulomb_friction")],
     ("whatif", "--set"): [(("FIT", "--set", "tua=3 ms"), "tau")],
     ("whatif", "--fitted"): [(("FIT", "--fitted", "strok=100 mm"), "stroke")],
+    ("whatif", "--choose"): [(("FIT", "--choose", "phase_marign=50"), "phase_margin")],
     ("whatif", "--specimen"): [(("FIT", "--specimen", "mas=1 kg"), "mass")],
     ("export", "--format"): [(("FIT", "--format", "fmuu", "--out", "OUT"), "fmu")],
     ("export", "--specimen"): [(("FIT", "--format", "c", "--specimen", "stifness=1 N/m", "--out", "OUT"), "stiffness")],
