@@ -29,7 +29,6 @@ from tests.diagnosis.vary import vary
 from tests.reference import qian_reference as linear
 from tests.reference.outside_reference import Outside, measure_all
 
-pytestmark = pytest.mark.usefixtures("few_effects")
 PLANT, NOISE = linear.Plant(), 0.005
 
 
