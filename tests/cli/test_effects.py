@@ -167,7 +167,7 @@ def test_a_proposed_term_is_kept_with_where_it_comes_from(servoident, diagnosis)
         (("keep", "LAPPED", "--name", "tau"), "tau is the time constant"),
         (("keep", "LAPPED", "--name", "../x"), "is no name of an effect"),
         (("drop", "../x"), "is no name of an effect"),
-        (("keep",), "Missing argument"),
+        (("keep",), "missing argument"),
         (("--json", "-", "keep", "LAPPED"), "an option is before the command keep"),
         (("--server", "http://127.0.0.1:9"), "no answer"),
         (("keep", "nothing", "--server", "http://127.0.0.1:9"), "--name"),
