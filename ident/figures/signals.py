@@ -68,7 +68,7 @@ def _stretch(runs: Sequence[Run], start: float | None, seconds: float | None) ->
     first = 0.0 if start is None else start
     length = longest - first if seconds is None else min(seconds, longest - first)
     if not (0 <= first < longest and length > 0):
-        stretch = f"a stretch from {first:g}" + ("" if seconds is None else f" of {seconds:g}")
+        stretch = f"a stretch from {first:g}" if seconds is None else f"a stretch from {first:g} of {seconds:g}"
         where = " and ".join(run_name(run.id) for run in runs[:2])
         raise Unusable("outside-record", stretch, where, f"stay within 0 to {longest:g}")
     return first, length

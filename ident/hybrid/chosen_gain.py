@@ -149,9 +149,10 @@ def _text(target: GainTarget, gain: float, reached: bool, quantities: Mapping[st
     if reached:
         return f"Kp = {plain(gain, 4)} gives a {name} of {trimmed(target.value)} {unit}."
     nearest = quantities[target.quantity].value
+    closest = "none" if nearest is None else plain(nearest, 3)
     return (
-        f"No gain gives a {name} of {trimmed(target.value)} {unit}. The nearest is "
-        f"{'none' if nearest is None else plain(nearest, 3)} {unit}, at Kp = {plain(gain, 4)}."
+        f"No gain gives a {name} of {trimmed(target.value)} {unit}. The nearest is {closest} {unit}, at "
+        f"Kp = {plain(gain, 4)}."
     )
 
 
