@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from fastapi import APIRouter, HTTPException, Request
+from typing import Annotated
+
+from fastapi import APIRouter, HTTPException, Query, Request
 from fastapi.responses import FileResponse, HTMLResponse, RedirectResponse, Response
 
 from app.access.roles import ADMIN, LAB, READERS
@@ -53,6 +55,12 @@ def draft_column(here: Here, draft: str, file: int, column: int) -> Response:
 def matrix(request: Request, here: Here, matrix: str, cursor: str | None = None) -> HTMLResponse:
     """A matrix: findings, runs, and the form that starts a fit."""
     return page(request, "matrix.html", **service.matrix(here, matrix, cursor))
+
+
+@router.get("/matrices/{matrix}/signals", dependencies=[READERS])
+def signals(request: Request, here: Here, matrix: str, run: Annotated[list[str], Query()] = []) -> HTMLResponse:  # noqa: B006
+    """Some runs as they were measured."""
+    return page(request, "signals.html", of=service.signals(here, matrix, run), vega=assets.VEGA)
 
 
 @router.get("/matrices/{matrix}/thumbnails/{place}.svg", dependencies=[READERS])

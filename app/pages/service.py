@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 from app.actuators import service as actuators
@@ -24,6 +25,7 @@ from app.pages.kept_view import kept_rows
 from app.pages.matrix_view import counted, matrix_view
 from app.pages.next_steps import next_steps, of_fit
 from app.pages.side_view import further, side_view
+from app.pages.signals_view import SignalsView, signals_view
 from app.pages.start_view import start_view
 from app.pages.thumbnails import thumbnail
 from app.parameters import service as parameters
@@ -120,6 +122,11 @@ def matrix(context: Context, matrix_id: str, cursor: str | None) -> Shown:
         "start": start_view(stored, own_effects.every(context)),
         **_fits(context, cursor, matrix=matrix_id),
     }
+
+
+def signals(context: Context, matrix_id: str, runs: Sequence[str]) -> SignalsView:
+    """Some runs of a matrix as they were measured; raises Failure 404, 422."""
+    return signals_view(matrices.get(context, matrix_id), runs)
 
 
 def job_list(context: Context, cursor: str | None) -> Shown:

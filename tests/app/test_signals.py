@@ -21,3 +21,27 @@ def test_what_cannot_be_drawn_says_why(service, matrix):
     assert (wrong.status_code, wrong.json()["code"]) == (422, "unknown-run")
     assert service.get(f"{API}/matrices/nobody/figures/signals.svg").status_code == 404
     assert service.get(f"{API}/matrices/{matrix}/figures/signals.gif").status_code == 404
+
+
+def test_the_page_of_a_data_set_leads_to_its_signals_and_the_runs_that_are_ticked_are_drawn(service, matrix):
+    ids = [run["id"] for run in service.get(f"{API}/matrices/{matrix}").json()["runs"]]
+    assert f"/matrices/{matrix}/signals?run={ids[1]}" in service.get(f"/matrices/{matrix}").text
+    alone = service.get(f"/matrices/{matrix}/signals", params={"run": ids[1]}).text
+    assert f'data-fixed="run={ids[1]}"' in alone
+    assert "Use only the range shown" in alone
+    both = service.get(f"/matrices/{matrix}/signals", params={"run": ids[:2]}).text
+    assert both.count(" checked>") == 2
+    assert "Use only the range shown" not in both
+    assert service.get(f"/matrices/{matrix}/signals", params={"run": "nobody"}).status_code == 404
+    assert service.get(f"/matrices/{matrix}/signals", params={"run": ids[:1] * 9}).status_code == 422
+
+
+def test_a_range_and_a_trend_of_a_run_are_a_revision(service, matrix):
+    """What the page sends: the rows of the file that are shown, and what is removed."""
+    name = service.get(f"{API}/matrices/{matrix}").json()["runs"][0]["id"]
+    change = {"runs": {name: {"rows": [100, 1500], "trend": "line"}}}
+    made = service.post(f"{API}/matrices/{matrix}/revisions", json=change)
+    assert made.status_code == 201, made.text
+    assert made.json()["runs"][0]["samples"] == 1400
+    entry = service.get(f"{API}/matrices/{made.json()['id']}/description").json()["runs"][0]
+    assert (entry["rows"], entry["trend"]) == ([100, 1500], "line")

@@ -1,0 +1,43 @@
+"""Signals as measured: zoomed with the wheel, moved with the mouse, and a range of them made the run that is fitted."""
+
+from __future__ import annotations
+
+import re
+
+from playwright.sync_api import expect
+
+from tests.browser.looks import everywhere
+
+
+def test_a_range_is_chosen_with_the_mouse_and_loses_its_trend(page, site, matrix, screenshots):
+    page.goto(f"{site.address}/matrices/{matrix}")
+    page.locator("#run-0 a").click()
+    figure = page.locator("#figure-signals")
+    canvas, start, length = (
+        figure.locator("canvas"),
+        figure.get_by_label("Start (s)"),
+        figure.get_by_label("Length (s)"),
+    )
+    for drawn in (canvas, page.locator("#figure-spectra canvas")):
+        expect(drawn).to_be_visible(timeout=120_000)  # the first figure of a service waits for Vega to be put together
+    everywhere(page, screenshots, "signals")
+    page.set_viewport_size({"width": 1280, "height": 900})
+    canvas.scroll_into_view_if_needed()
+    box = canvas.bounding_box()
+    page.mouse.move(box["x"] + 0.6 * box["width"], box["y"] + 0.4 * box["height"])
+    for _ in range(3):
+        page.mouse.wheel(0, -100)
+    expect(length).to_have_value(re.compile(r"^0\.256"))  # 0.5 s / 1.25³
+    expect(canvas).to_have_attribute("aria-label", re.compile("signals as measured"))
+    before = float(start.input_value())
+    page.mouse.down()
+    page.mouse.move(box["x"] + 0.7 * box["width"], box["y"] + 0.4 * box["height"], steps=3)
+    page.mouse.up()
+    assert 0 <= float(start.input_value()) < before - 0.02
+    expect(figure.locator(".plot")).to_have_attribute("aria-busy", "false")
+
+    page.get_by_label("Remove").select_option("line")
+    page.get_by_role("button", name="Use only the range shown").click()
+    page.wait_for_url(lambda url: "/signals" not in url)
+    expect(page.get_by_text("· revision of")).to_be_visible()
+    expect(page.locator("#run-0")).to_contain_text("0.2561 s at 4096 Hz")
