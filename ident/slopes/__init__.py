@@ -1,4 +1,4 @@
-"""The slope of a recorded signal at its samples, and what a motion covers between them."""
+"""A recorded signal in, its slopes at the samples and what it covers between them out."""
 
 from ident.slopes.brakes import Brake, brakes
 from ident.slopes.slope import bends, bends_of_way, curvatures, slopes

@@ -1,1 +1,1 @@
-"""Whether a loop is stable: its mode, which part of it makes the mode grow, what would make it stable again."""
+"""A loop in, its judgement out: stable or not, its mode, the part that makes it grow, and what would stabilise it."""
