@@ -113,7 +113,7 @@ class Draft:
             likely = suggested(file.columns).get(channel)
             name = likely.name if likely else "COLUMN"
             option = quote(f"{channel}@{file_name(file)}={name}")
-            raise Unusable(error.code, error.what, error.where, f"for this file type --channel {option}") from None
+            raise Unusable(error.code, error.what, error.where, f"for this file, add --channel {option}") from None
 
     def _hold(self, file: RawFile, channels: Mapping[str, Answer]) -> str:
         """What the command does between samples, by the look of it."""

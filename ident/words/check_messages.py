@@ -79,11 +79,10 @@ CHECKS: Mapping[str, str] = {
         "the sample rate of {run:run} is too low: {share:share} of the step response happens within {samples} samples. "
         "Use at least {least:.3g} Hz",
     "missing_input":
-        "in {run:run} the {output} set out by itself {count} times after it had rested, from {start:.4g} {unit} on, "
-        "while every input rested; with the inputs at rest it moves faster than {speed:quantity} in {share:percent} of "
-        "the samples",
+        "in {run:run} the {output} began to move {count} times while it and every input rested, first at {start:.4g} "
+        "{unit}; with the inputs at rest it moves faster than {speed:quantity} in {share:percent} of the samples",
     "check.missing_input":
-        "{evidence}. An input is not recorded: add its channel, or keep only rows without it",
+        "{evidence}. An input is not recorded: add its channel, or keep only the rows in which it rests",
     "oscillation.at_rest":
         "in {run:run} the {output} swings by itself at {frequency:quantity}, with a growth of {growth:quantity}, from "
         "{start:.4g} to {end:.4g} {unit}, while every input rests",
@@ -221,7 +220,8 @@ CAUSES: Mapping[str, str] = {
     "cause.searched": "without it {range} is searched",
     "hardly":
         "The model explains almost nothing: the error is {error:error} of the output. Likely causes: {causes:terms}.",
-    "missing_input.fit": "An input is not recorded: {evidence}. Add its channel, or keep only rows without it.",
+    "missing_input.fit":
+        "An input is not recorded: {evidence}. Add its channel, or keep only the rows in which it rests.",
     "unstable": "The model is unstable. Likely cause: {causes:terms}.",
 }  # fmt: skip
 """What a fit says that is hardly better than none."""

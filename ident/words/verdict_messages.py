@@ -27,7 +27,7 @@ SUMMARY: Mapping[str, str] = {
     "summary.change_floor_unknown":
         "The error on {use:data} goes from {before:error} to {after:error}; the noise floor is not known.",
     "next.label": "Next: correct the label of {run:run}, and fit again.",
-    "next.input": "Next: add the channel of the missing input, or keep only rows without it, and fit again.",
+    "next.input": "Next: add the channel of the missing input, or keep only the rows in which it rests, and fit again.",
     "next.label_value":
         "Next: correct the label of {run:run}, and fit again. Its {what} is stated as {stated:quantity}; the data say "
         "{found:quantity}.",
@@ -80,19 +80,19 @@ VERDICT: Mapping[str, str] = {
     "verdict.nothing": "Nothing is missing: the error of {before:error} is measurement noise.",
     "verdict.nothing_probable":
         "Nothing is missing (probability {probability:probability}): the error of {before:error} is measurement noise.",
-    "verdict.none": "No effect of the library lowers the error of {before:error} by more than chance.",
+    "verdict.none": "No listed effect lowers the error of {before:error} by more than chance.",
     "verdict.missing_input":
-        "An input is not recorded: {evidence}. No effect was looked for, since it would stand for this input. Add its "
-        "channel, or keep only rows without it.",
+        "An input is not recorded: {evidence}. No effect was looked for: it would only imitate this input. Add the "
+        "channel of the input, or keep only the rows in which it rests.",
     "verdict.missing_input_validation":
         "An input is not recorded in validation data: {evidence}. The errors there contain it.",
     "verdict.oscillation": "The machine oscillates: {evidence}. {cause}.",
     "verdict.bounded":
         "The strength of {effect} ended at the bound of its search. It may be larger, or stand for another effect: "
         "search within wider bounds.",
-    "verdict.group": "These data cannot distinguish {group:listed}: their refits differ by less than chance.",
+    "verdict.group": "These data cannot distinguish {group:all}: with each the error is the same but for chance.",
     "verdict.group_unexplained":
-        "These data cannot distinguish {group:listed}: their refits differ by less than chance, or than the "
+        "These data cannot distinguish {group:all}: with each the error is the same but for chance, or for the "
         "unexplained residual.",
     "verdict.two":
         "These data cannot tell which two of these are present: {group:listed}. Their refits differ by less than "
@@ -109,17 +109,17 @@ VERDICT: Mapping[str, str] = {
         "Part of the error remains unexplained (probability {probability:probability}).",
     "verdict.not_repeated":
         "No command was repeated: part of it may be noise in the band of the command, which a repeated run would show.",
-    "group": "These data cannot distinguish {group:listed}.",
+    "group": "These data cannot distinguish {group:all}.",
     "group.two": "These data cannot tell which two of these are present: {group:listed}.",
     "contradicted.rises":
-        "With {named} the error on validation data rises from {before:error} to {after:error}: it may stand for "
-        "another effect.",
+        "With {named} the error on validation data rises from {before:error} to {after:error}: what was added "
+        "may stand for another effect.",
     "contradicted.rises_by":
         "With {named} the error on validation data rises from {before:error} to {after:error}, {deviations:.1f} "
-        "standard errors: it may stand for another effect.",
+        "standard errors: what was added may stand for another effect.",
     "contradicted.unstable":
-        "With {named} the model is {runs:unstable}; the error on validation data was {before:error}. It may stand for "
-        "another effect.",
+        "With {named} the model is {runs:unstable}; without, the error on validation data is {before:error}. What was "
+        "added may stand for another effect.",
     "alone.rises":
         "With {equation} but without those after it the error on validation data rises from {before:error} to "
         "{after:error}.",

@@ -188,7 +188,7 @@ def test_answers_that_fit_no_file_are_refused():
         assert refused.value.code == code
     other = raw(table("time [s],setpoint [V],way [mm]"), "b.csv")
     answers = Answers(channels={"command": Answer("command [V]")})
-    with pytest.raises(Unusable, match=r"type --channel 'command@b\.csv=setpoint \[V\]'"):
+    with pytest.raises(Unusable, match=r"add --channel 'command@b\.csv=setpoint \[V\]'"):
         _ = Draft([file, other], answers).missing
     with pytest.raises(Unusable, match="no channel 'motion'"):
         Answers(channels={"motion": Answer("x")})
