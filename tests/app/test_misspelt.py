@@ -57,6 +57,7 @@ MISSPELT: dict[tuple[str, str], list[tuple[tuple[str, ...], str]]] = {
     ("diagnose", "--set"): [(("MATRIX", "--model", "qian2014", "--set", "KA=1e-13"), "Ka")],
     ("diagnose", "--load"): [(("MATRIX", "--model", "qian2014", "--load", "nnoe"), "none")],
     ("diagnose", "--option"): [(("MATRIX", "--model", "qian2014", "--option", "generation=3"), "generations")],
+    ("signals", "--run"): [(("MATRIX", "--run", "RUN", "--out", "OUT"), "RUN")],
     ("track", "--run"): [(("MATRIX", "--run", "RUN"), "RUN")],
     ("plan", "--program"): [(("--program", "qain", "--out", "OUT"), "qian")],
     ("plan", "--format"): [(("--program", "qian", "--format", "csw", "--out", "OUT"), "csv")],

@@ -114,7 +114,7 @@ def test_structures_are_compared_over_one_time():
     (first, *others) = compared_structures(matrix)
     assert first.machine in ("open_valve", "motor")
     lag = next(one for one in others if one.machine == "first_order")
-    over = re.findall(r"held-out data over ([\d.]+) s", " ".join(one.why for one in (first, *others)))
+    over = re.findall(r"held-out error [\d.]+ % over ([\d.]+) s", " ".join(one.why for one in (first, *others)))
     assert len(over) == 3
     assert len(set(over)) == 1
     assert lag.error["held_out"] > 1.02 * first.error["held_out"]
