@@ -16,6 +16,13 @@ from ident.diagnosis.selection import Selection
 from ident.diagnosis.selection_loop import add_and_exchange, select
 
 
+class Refit(SimpleNamespace):
+    """A refit, which is itself alone, as a fitted model is."""
+
+    __eq__ = object.__eq__
+    __hash__ = object.__hash__
+
+
 @dataclass(frozen=True)
 class Judgement:
     """A candidate: its refit, where it came that far, and whether it helps."""
@@ -59,10 +66,10 @@ class Judged:
         held_out = SimpleNamespace(score=score, effects=set(effects))
         values = dict.fromkeys(effects, 1.0)
         here = self.met.setdefault(frozenset(effects), SimpleNamespace(error=score))
-        found = SimpleNamespace(
+        found = Refit(
             effects=tuple(effects), values=values, finite=True, held_out=held_out, local=here, error=score,
         )  # fmt: skip
-        found.reordered = lambda order: SimpleNamespace(**{**vars(found), "effects": order})
+        found.reordered = lambda order: Refit(**{**vars(found), "effects": order})
         return found
 
     def pair_trial(self, first, second, _aim):

@@ -220,6 +220,6 @@ def test_the_check_says_what_repeats_and_by_how_much_it_is_shifted():
     said = [each.text for each in check(Matrix(Actuator("R"), runs)) if each.code == "repeat"]
     assert len(said) == 1
     assert said[0].startswith("runs a, b and c repeat the same command under the same conditions")
-    assert "b starts 3 samples later than a" in said[0]
+    assert "Compared with a, b starts 3 samples later" in said[0]
     bare = [replace(one, gain=None) for one in runs[2:4]]
     assert not [each for each in check(Matrix(Actuator("R"), tuple(bare))) if each.code == "repeat"]
