@@ -61,3 +61,12 @@ def test_modes_of_runs_are_those_of_the_fastest_of_them_by_its_own_sample_rate()
         alone.append(np.broadcast_to(np.abs(np.linalg.eigvals(np.array(jacobian))).max() / rate, tau.shape))
     assert np.abs(fastest(chain, runs, actuator, values)) == pytest.approx(np.max(alone, axis=0), rel=1e-6)
     assert np.abs(fastest(chain, runs[:2], actuator, values)) == pytest.approx(np.max(alone[:2], axis=0), rel=1e-6)
+
+
+def test_the_speed_of_a_record_is_that_within_the_band_that_is_asked_for():
+    """A sine of 2 Hz: ω a/√2 within 5 Hz, nothing within 1 Hz, whichever was asked first."""
+    x = 1e-3 * np.sin(2 * np.pi * 2.0 * np.arange(1000) / 500.0)
+    run = Run("a", "", 500.0, {"command": x, "displacement": x})
+    for _ in range(2):
+        assert run.speed_within(2 * np.pi * 5.0) == pytest.approx(2 * np.pi * 2.0 * 1e-3 / np.sqrt(2), rel=1e-6)
+        assert run.speed_within(2 * np.pi * 1.0) < 1e-9
