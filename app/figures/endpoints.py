@@ -14,28 +14,20 @@ from app.figures import fits, matrices
 router = APIRouter(responses=COMMON)
 _MEDIA = ("application/json", "image/svg+xml", "image/png", "application/pdf")
 _IMAGES: dict[str, dict[str, str]] = {kind: {} for kind in _MEDIA}
+_DRAWN: dict[str, Any] = {
+    "dependencies": [READERS], "response_class": Response, "responses": {200: {"content": _IMAGES}},
+}  # fmt: skip
+"""What every call that draws a figure declares."""
 
 
-@router.get(
-    "/fits/{fit}/figures/{name}.{kind}",
-    tags=["fits"],
-    dependencies=[READERS],
-    response_class=Response,
-    responses={200: {"content": _IMAGES}},
-)
+@router.get("/fits/{fit}/figures/{name}.{kind}", tags=["fits"], **_DRAWN)
 def draw_fit(here: Here, request: Request, fit: str, name: str, kind: str) -> Response:
     """A figure as json (Vega-Lite), svg, png or pdf; query parameters choose what it shows."""
     content, media = fits.drawn(here, fit, name, kind, _options(request))
     return Response(content, media_type=media)
 
 
-@router.get(
-    "/matrices/{matrix}/figures/{name}.{kind}",
-    tags=["matrices"],
-    dependencies=[READERS],
-    response_class=Response,
-    responses={200: {"content": _IMAGES}},
-)
+@router.get("/matrices/{matrix}/figures/{name}.{kind}", tags=["matrices"], **_DRAWN)
 def draw_matrix(here: Here, request: Request, matrix: str, name: str, kind: str) -> Response:
     """The figures `signals` and `spectra` of runs as measured, as json (Vega-Lite), svg, png or pdf.
 
