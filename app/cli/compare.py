@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from pathlib import Path
+from types import MappingProxyType
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from app.cli.figure_files import write_figure
+from app.cli.figure_files import given_options, with_options, write_figure
 from app.cli.given import read_fit
 from app.cli.output import STANDARD_OUTPUT, check_target, write_json
 from ident.errors import Unusable
@@ -26,6 +28,13 @@ def compare(
     out: Annotated[Path | None, typer.Option(metavar="DIR", help="Write the figures: svg, png, pdf, json.")] = None,
     candidate: Annotated[
         Path | None, typer.Option(metavar="FIT.json", help="A second fit, drawn over the residual curves.")
+    ] = None,
+    figure: Annotated[
+        list[str] | None, typer.Option(metavar="NAME", help="Write only this figure; may be repeated.")
+    ] = None,
+    option: Annotated[
+        list[str] | None,
+        typer.Option(metavar="NAME=VALUE", help="Option of the figures that take it: run=r1, theme=dark; repeatable."),
     ] = None,
 ) -> None:
     """Compare a fitted model with every run of a data set.
@@ -54,20 +63,24 @@ def compare(
     if json != STANDARD_OUTPUT:
         show((*comparison.listings(), *found.listings()))
     if out is not None:
-        draw(read, result, out, other)
+        chosen: dict[str, Any] = {**given_options(option or ()), **({} if other is None else {"candidate": other})}
+        draw(read, result, out, figure or (), chosen)
 
 
-def draw(matrix: Matrix, fit: FitResult, out: Path, candidate: FitResult | None = None) -> None:
-    """Write every figure in every format to the folder `out`; curves also as `candidate` predicts them."""
-    from ident.figures import figures_of
+def draw(
+    matrix: Matrix, fit: FitResult, out: Path, names: Sequence[str] = (),
+    options: Mapping[str, Any] = MappingProxyType({}),
+) -> None:  # fmt: skip
+    """Write figures in every format to the folder `out`, all or those of these names, each with the options it takes.
+
+    Raises Unusable for a figure that the fit does not have, and for an option that none of the figures takes.
+    """
     from ident.workflows import study
 
-    out.mkdir(parents=True, exist_ok=True)
     drawn, studied = [], study(matrix, fit)
-    for name in figures_of(fit):
-        options: dict[str, Any] = {"candidate": candidate} if name == "residual-curve" and candidate is not None else {}
+    for name, taken in with_options(studied, names, options).items():
         try:
-            write_figure(studied, name, out, **options)
+            write_figure(studied, name, out, **taken)
         except Unusable as error:
             if error.code != "unstable-model":
                 raise

@@ -2,12 +2,64 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
 from app.cli.output import write_bytes
+from ident.errors import Unusable
+from ident.words.nearest import did_you_mean
 
 FORMATS = ("svg", "png", "pdf", "json")
+OF_ALL = ("theme", "share")
+"""Options that every figure takes."""
+
+
+def given_options(texts: Sequence[str]) -> dict[str, Any]:
+    """Options of figures as they were typed, NAME=VALUE; one that is given several times has a list of values.
+
+    Raises Unusable for what has no name or no value.
+    """
+    given: dict[str, list[str]] = {}
+    for text in texts:
+        name, is_given, value = text.partition("=")
+        if not (name and is_given and value):
+            raise Unusable("bad-option", f"{text!r} is not NAME=VALUE", "--option", "write for example theme=dark")
+        given.setdefault(name.strip(), []).append(value.strip())
+    found: dict[str, Any] = {name: values[0] if len(values) == 1 else values for name, values in given.items()}
+    if "share" in found:
+        found["share"] = _share(found["share"])
+    return found
+
+
+def _share(value: object) -> float:
+    """The width of a figure over its usual width. Raises Unusable where it is no number from 0.2 to 4."""
+    try:
+        share = float(str(value))
+    except ValueError:
+        share = 0.0
+    if not 0.2 <= share <= 4:
+        raise Unusable("out-of-range", f"share is {value}", "--option share", "give one number from 0.2 to 4")
+    return share
+
+
+def with_options(subject: object, names: Sequence[str], options: Mapping[str, Any]) -> dict[str, dict[str, Any]]:
+    """The figures of these names, or all that there are of a subject, each with those of the options that it takes.
+
+    Raises Unusable for a figure that is not there, and for an option that none of the figures takes.
+    """
+    from ident.figures import drawings
+
+    there = drawings(subject)
+    for name in names:
+        if name not in there:
+            raise Unusable("unknown-figure", f"no figure {name!r}", "--figure", did_you_mean(name, there))
+    takes = {name: {*OF_ALL, *(option.name for option in there[name].options)} for name in names or there}
+    taken = sorted(set().union(*takes.values()))
+    for name in options:
+        if name not in taken:
+            raise Unusable("unknown-option", f"no figure has an option {name!r}", "--option", did_you_mean(name, taken))
+    return {figure: {name: options[name] for name in options if name in known} for figure, known in takes.items()}
 
 
 def write_figures(subject: object, out: Path) -> None:

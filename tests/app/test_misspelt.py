@@ -49,6 +49,8 @@ MISSPELT: dict[tuple[str, str], list[tuple[tuple[str, ...], str]]] = {
     ("fit", "--option"): [(("MATRIX", "--model", "qian2014", "--option", "populaton=20"), "population")],
     ("fit", "--profile"): [(("MATRIX", "--model", "qian2014", "HELD", "--profile", "tua"), "tau")],
     ("profile", "--parameter"): [(("MATRIX", "--fit", "FIT", "--parameter", "tua"), "tau")],
+    ("compare", "--figure"): [(("MATRIX", "--fit", "FIT", "--out", "OUT", "--figure", "bdoe"), "bode")],
+    ("compare", "--option"): [(("MATRIX", "--fit", "FIT", "--out", "OUT", "--option", "axes=linear"), "axis")],
     ("diagnose", "--model"): [(("MATRIX", "--model", "first_ordr"), "first_order")],
     ("diagnose", "--effect"): [(("MATRIX", "--model", "qian2014", "--effect", "Sensor Lag"), "sensor_lag")],
     ("diagnose", "--custom"): [(("MATRIX", "--model", "qian2014", "--custom", "over_lap1"), "overlap")],

@@ -150,6 +150,23 @@ def test_compare_writes_every_figure_in_every_format(servoident, few, fit_file, 
     assert "m087-k36-kp6-a05" in done.stdout
 
 
+def test_one_figure_with_options_as_a_page_draws_it(servoident, few, fit_file, tmp_path):
+    """Of all figures one, its axis linear; what no figure takes, or the fit has not, is refused by the nearest name."""
+    asked = ("compare", few, "--fit", fit_file, "--out", tmp_path / "out", "--figure", "bode")
+    done = servoident(*asked, "--option", "axis=linear", "--option", "theme=dark")
+    assert done.returncode == 0, done.stderr
+    files = {path.name for path in (tmp_path / "out").iterdir()}
+    assert files == {"bode.svg", "bode.png", "bode.pdf", "bode.json"}
+    drawn = json.loads((tmp_path / "out" / "bode.json").read_text())
+    assert '"type": "log"' not in json.dumps(drawn["concat"][0]["layer"][0]["encoding"]["x"])
+    assert drawn["config"]["background"] != "white"
+    for wrong, said in (("axes=linear", "axis"), ("axis", "NAME=VALUE"), ("share=9", "0.2 to 4")):
+        refused = servoident(*asked, "--option", wrong)
+        assert refused.returncode == 2
+        assert said in refused.stderr
+    assert "bode" in servoident(*asked[:-1], "bod").stderr
+
+
 def test_several_fits_are_one_table_and_one_plot(servoident, few, fit_file, tmp_path):
     """A column each, also where they were fitted to other runs."""
     out = ("--out", tmp_path / "out", "--json", tmp_path / "c.json")
