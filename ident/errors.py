@@ -15,6 +15,11 @@ class Unusable(ValueError):
         super().__init__(f"{where}: {what}; {remedy}")
         self.code, self.what, self.where, self.remedy = code, what, where, remedy
 
+    def within(self, file: str) -> Unusable:
+        """The same, whose place begins with the name of the file that it is in."""
+        where = self.where if self.where.startswith(file) else f"{file}, {self.where}"
+        return Unusable(self.code, self.what, where, self.remedy)
+
     def __reduce__(self) -> tuple[Any, ...]:
         """As it passes from one process to another."""
         return type(self), (self.code, self.what, self.where, self.remedy)

@@ -35,8 +35,14 @@ class Description:
 
 
 def describe(text: bytes, limits: Limits) -> Description:
-    """Read matrix.yaml. Raises Unusable with the field's name; see docs/matrix-format.md for every code."""
-    data = read_yaml(text, DESCRIPTION)
+    """Read matrix.yaml. Raises Unusable with the file's and the field's name; docs/matrix-format.md has every code."""
+    try:
+        return _described(read_yaml(text, DESCRIPTION), limits)
+    except Unusable as error:
+        raise error.within(DESCRIPTION) from None
+
+
+def _described(data: Any, limits: Limits) -> Description:
     if data is None:
         raise Unusable("empty-file", "the description is empty", DESCRIPTION, "describe the actuator and its runs")
     top = Fields(data, DESCRIPTION, TOP)

@@ -75,6 +75,7 @@ def test_each_mistake_has_its_own_code_and_names_the_field(matrix, old, new, cod
         describe(matrix.change(old, new).text.encode(), LIMITS)
     assert refused.value.code == code
     assert words in str(refused.value)
+    assert refused.value.where.startswith("matrix.yaml")
     assert "\n" not in str(refused.value)
 
 
