@@ -32,6 +32,17 @@ class Starts(Enum):
     """A pressure over a way, Pa/m: a share of the dry friction's over a tenth of a metre."""
 
 
+class AtReversals(Enum):
+    """What a parameter measures of a force where the motion reverses."""
+
+    WAY = "way"
+    """A way, m, over which the force builds up."""
+    SPEED = "speed"
+    """A speed, m/s, over which it falls."""
+    FORCE = "force"
+    """The force itself, N, which jumps there."""
+
+
 @dataclass(frozen=True)
 class Parameter:
     """A model parameter in SI.
@@ -65,9 +76,8 @@ class Parameter:
     """From where its search begins."""
     of_motion: bool = False
     """Whether it is a way, the inverse of one, or a speed of the motion, which measures it in place of the command."""
-    sets_steps: bool = False
-    """Whether steps of a simulation follow it about a reversal: a way over which a force builds up, a speed over which
-    it falls, or the force of dry friction, which jumps there."""
+    at_reversals: AtReversals | None = None
+    """What happens over it where the motion reverses, so that a simulation takes steps as short as that asks for."""
 
     def __post_init__(self) -> None:
         if not self.lower < self.upper:

@@ -1,7 +1,7 @@
 """Friction that first yields like a spring, after Dahl."""
 
 from ident.effects.effect import Effect
-from ident.parameter import Parameter
+from ident.parameter import AtReversals, Parameter
 
 PRESLIDING_FRICTION = Effect(
     name="presliding_friction",
@@ -25,7 +25,7 @@ PRESLIDING_FRICTION = Effect(
             "way over which the force builds up",
             relative=0.2,
             of_motion=True,
-            sets_steps=True,
+            at_reversals=AtReversals.WAY,
         ),
     ),
     looks="rounded hysteresis at every amplitude; at small motion a spring rather than a stop",

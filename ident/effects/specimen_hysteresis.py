@@ -1,7 +1,7 @@
 """The specimen yields and dissipates, after Bouc and Wen."""
 
 from ident.effects.effect import Effect
-from ident.parameter import Parameter
+from ident.parameter import AtReversals, Parameter
 
 SPECIMEN_HYSTERESIS = Effect(
     name="specimen_hysteresis",
@@ -25,7 +25,7 @@ SPECIMEN_HYSTERESIS = Effect(
             "displacement at yield",
             relative=0.2,
             of_motion=True,
-            sets_steps=True,
+            at_reversals=AtReversals.WAY,
         ),
         Parameter("exponent", "n", "1", 1.0, 5.0, 1.0, "sharpness of the yield"),
     ),

@@ -1,13 +1,15 @@
 """More friction at standstill than in motion."""
 
 from ident.effects.effect import Effect
-from ident.parameter import Parameter
+from ident.parameter import AtReversals, Parameter
 
 STRIBECK_FRICTION = Effect(
     name="stribeck_friction",
     place="load",
     meaning="more friction at standstill than in motion",
-    strength=Parameter("force", "dF", "N", 0.0, 200.0, 0.0, "excess of the breakaway force", sets_steps=True),
+    strength=Parameter(
+        "force", "dF", "N", 0.0, 200.0, 0.0, "excess of the breakaway force", at_reversals=AtReversals.FORCE
+    ),
     texts=("Ff = Ff + dF * exp(-(v / vs)**2)",),
     units={"Ff": "N"},
     shape=(
@@ -20,7 +22,7 @@ STRIBECK_FRICTION = Effect(
             5e-3,
             "speed at which the excess falls to 1/e",
             of_motion=True,
-            sets_steps=True,
+            at_reversals=AtReversals.SPEED,
         ),
     ),
     looks="sticking and jumps at small amplitudes and low frequency",

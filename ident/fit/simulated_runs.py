@@ -27,6 +27,7 @@ from ident.fit.reduction import excited_band
 from ident.fit.settling import ROUNDS, Least, Settling, better
 from ident.matrix import Matrix
 from ident.parallel import cores, each
+from ident.parameter import AtReversals
 from ident.presets import Preset
 from ident.run import MOTIONS, Run
 from ident.simulation.equilibrium import equilibrium
@@ -328,23 +329,27 @@ class SimulatedRuns:
         least = self.preset.steps if kinks and not self.roughly else 1
         needed = [steps_needed(of or self.chain, found, hold, on, band, least) for hold, band in kinds]
         if not self.roughly:
-            needed += [self._at_reversals(p.unit, values[p.in_equations], values)
-                       for effect in on for p in effect.added if p.sets_steps]  # fmt: skip
+            needed += [
+                self._at_reversals(p.at_reversals, values[p.in_equations], values)
+                for effect in on
+                for p in effect.added
+                if p.at_reversals is not None
+            ]
         return np.asarray(np.max(needed, axis=0))
 
-    def _at_reversals(self, unit: str, size: Array, values: Mapping[str, Array]) -> NDArray[np.int64]:
+    def _at_reversals(self, of: AtReversals, size: Array, values: Mapping[str, Array]) -> NDArray[np.int64]:
         """Steps a sample that a way, a speed or a force (v,) asks for where the motion reverses."""
         rate = min(run.sample_rate for run in self.matrix.runs)
-        if unit == "m":
-            return steps_at_reversals(self._turned, size)
-        if unit == "m/s":
-            return steps_at_passages(self._turned * rate, size)
+        if of is AtReversals.WAY:
+            return steps_at_reversals(self._way_in_a_sample, size)
+        if of is AtReversals.SPEED:
+            return steps_at_passages(self._way_in_a_sample * rate, size)
         moves = self._motion.get("x", 0.0) > 0 and "m0" in values
         jumps = 2.0 * np.abs(size) / np.maximum(values["m0"] * rate**2 * self._motion["x"], 1e-300) if moves else 0.0
         return steps_at_jumps(jumps + np.zeros(len(size)))
 
     @cached_property
-    def _turned(self) -> float:
+    def _way_in_a_sample(self) -> float:
         """The way, m, that the largest acceleration of any run covers in a sample: that of a sine up to the band."""
         speeds = [
             (run.speed if "velocity" in run.channels else self.band * run.motion) / run.sample_rate**2
