@@ -80,7 +80,7 @@ def verdict_text(
     errors: Mapping[str, float | None], before: float, repeats: bool = True, floor: float | None = None,
     against: Sequence[Contradiction] = (), complete: bool = True, described: Callable[[str], str] = title,
     bounded: Sequence[str] = (), fewer: tuple[float, Sequence[str]] | None = None, unstable: Sequence[str] = (),
-    probabilities: Mapping[str, float] = MappingProxyType({}),
+    probabilities: Mapping[str, float] = MappingProxyType({}), group_probabilities: Sequence[float] = (),
 ) -> str:  # fmt: skip
     """The verdict in a few sentences, what speaks against it first.
 
@@ -88,14 +88,15 @@ def verdict_text(
     `described` tells what an effect is the first time that it is named; `bounded` are those whose strength ended at the
     bound of its search. `fewer` is the error on verify runs without the last of what was added, where it is
     smaller there; `unstable` are the verify runs on which the model is unstable with it. `probabilities` are those
-    of effects, of "nothing" and of something "unlisted".
+    of effects, of "nothing" and of something "unlisted", `group_probabilities` those of the groups.
     """
     named = _described_once(described)
     found = [one.message(named(one.effect)) for one in against]
     if not complete:
         found.append(message("verdict.stopped"))
     if added:
-        effects = [_probable("effect", name, probabilities, names=[named(name)]) for name in added]
+        of_groups = dict(zip(map(tuple, groups), group_probabilities, strict=False))
+        effects = [_lacking(name, added, of_groups, probabilities, named) for name in added]
         key = "verdict.partly" if against or unexplained else "verdict.lacks"
         found.append(message(key, effects=effects, change=_change(before, errors, fewer, unstable)))
     elif not complete:
@@ -128,6 +129,18 @@ def _probable(key: str, name: str, probabilities: Mapping[str, float], **values:
     if name not in probabilities:
         return message(key, **values)
     return message(_PROBABLE[key], probability=probabilities[name], **values)
+
+
+def _lacking(
+    name: str, added: Sequence[str], of_groups: Mapping[tuple[str, ...], float], probabilities: Mapping[str, float],
+    named: Callable[[str], str],
+) -> Message:  # fmt: skip
+    """An effect and its probability; of a group all that may be meant, and that of the group."""
+    group = next((group for group in of_groups if name in group and not _has_two(group, added)), ())
+    if not group:
+        return _probable("effect", name, probabilities, names=[named(name)])
+    names = [name, *(other for other in group if other != name)]
+    return message("effect.probable", names=list(map(named, names)), probability=of_groups[group])
 
 
 def _group(group: Sequence[str], added: Sequence[str], named: Callable[[str], str], unexplained: bool) -> Message:

@@ -1,12 +1,19 @@
 """The verdict of a diagnosis: a pure function of its findings. The whole rule stands on this page.
 
-What is *named* is what the selection added, but for what the model does as well without beside confirmed terms. The
-residual is *unexplained* unless it is noise. How the verdict stands: *nothing* is named; *contradicted* by runs to
-verify; *found*, the residual is noise; else a *stand_in*, for something remains. So it may where a strength ended at
-the bound of its search and no noise floor is known. A *group* are effects that the data cannot tell apart.
+What is *named* is what the selection added, but for what is dispensable: with terms that were confirmed the model does
+as well without it. The residual is *unexplained* unless it is noise. A *group* are effects that the data cannot tell
+apart. The verdict stands in one of four ways:
 
-Whether the residual is noise is a test of its size, and of its memory where no floor is known. How probable it is that
-something unlisted acts is another question, which the gains of the refitted models answer: the two may differ.
+* *nothing*: no effect is named;
+* *contradicted*: with an effect that is named, the error on runs to verify rises;
+* *stand_in*: something remains or may remain. The residual is unexplained; or a dispensable effect was contradicted; or
+  no noise floor is known and a named strength ended at the bound of its search;
+* *found*: none of these.
+
+Whether the residual is noise is a test of its size, and of its memory where no floor is known. It decides what the
+verdict says. How probable it is that something unlisted acts follows from the gains of the refitted models and is told
+with it: the two may differ. Runs to verify are not part of a probability: an effect that they contradict may have a
+large one.
 """
 
 from __future__ import annotations
@@ -43,7 +50,7 @@ class Findings:
     """What the stages of a diagnosis found, in numbers and names.
 
     `added` are the effects of the selection, in their order; `alternatives` for each the effects that are
-    indistinguishable from it, itself included; `lag_pairs` two added lags with those that stand for both as well.
+    indistinguishable from it, itself included; `lag_pairs` are two added lags, and the lags two of which do as well.
     `residual` is None where there was no time to ask whether it is noise; `set_gains` are the gains of all sets of
     effects that were refitted. `verify` has the change by each added effect;
     `at_bound` are those whose strength ended at the bound of its search, `dispensable` those that the model does as
@@ -64,7 +71,10 @@ class Findings:
 
 
 def is_noise(residual: Residual, criteria: Criteria = CRITERIA) -> bool:
-    """Whether the error is noise alone: no further above its floor than chance; without a floor, without a memory."""
+    """Whether the error is noise alone.
+
+    It is where it exceeds its floor by less than a share and chance; without a floor, where the residual has no memory.
+    """
     if residual.floor is None:
         return not residual.correlation > criteria.noise.noise_correlation
     excess = criteria.noise.floor_excess if residual.excess is None else residual.excess
@@ -100,7 +110,7 @@ def conclude(found: Findings, criteria: Criteria = CRITERIA) -> Verdict:
         stood_in=found.dispensable,
         probability=None if of_sets is None else _probability(found, of_sets, named, groups, criteria),
         probabilities={} if of_sets is None else of_sets.named,
-        group_probabilities=() if of_sets is None else tuple(of_sets.of([group]) for group in groups),
+        group_probabilities=() if of_sets is None else tuple(_of_group(group, of_sets, named) for group in groups),
     )
 
 
@@ -111,6 +121,11 @@ def _probability(
     if named:
         return of_sets.of(next((group for group in groups if name in group), (name,)) for name in named)
     return of_sets.with_unlisted[NOTHING] if _unexplained(found, criteria) else of_sets.nothing
+
+
+def _of_group(group: Names, of_sets: Probabilities, named: Names) -> float:
+    """How probable it is that as many effects of a group act as are named: one, or two of a lag pair."""
+    return of_sets.of([group] * max(len({*group} & {*named}), 1))
 
 
 def _unexplained(found: Findings, criteria: Criteria) -> bool:
@@ -127,7 +142,7 @@ def _standing(
         return "nothing"
     if against:
         return "contradicted"
-    if was_contradicted or _unexplained(found, criteria) or (found.at_bound and not floor_known):
+    if was_contradicted or _unexplained(found, criteria) or ({*found.at_bound} & {*named} and not floor_known):
         return "stand_in"
     return "found"
 

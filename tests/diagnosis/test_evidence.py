@@ -391,6 +391,7 @@ def test_probabilities_are_those_of_the_models_and_sum_to_one() -> None:
     held = (of[names] for of in (found.alone, found.with_unlisted) for names in (frozenset("a"), frozenset("ab")))
     assert found.effects["a"] == pytest.approx(sum(held))
     assert found.of(["a", "b"]) < found.of(["a"]) < found.of(["ab"]) <= 1.0
+    assert found.of(["ab", "ab"]) == pytest.approx(found.of(["a", "b"]))
     assert found.effects["a"] > 0.9
     assert probabilities(gaining(1.0, a=0.5)).nothing > 0.9
     assert probabilities(gaining(100.0, a=30.0)).unlisted > 0.95

@@ -46,6 +46,13 @@ def test_a_part_that_nobody_described_is_named_by_what_it_does():
     assert loaded.described("cubic_stiffness") == "cubic stiffness"
 
 
+def test_an_effect_of_a_group_is_said_with_the_others_and_the_probability_of_the_group():
+    groups, single = [("backlash", "spool_stiction")], {"spool_stiction": 0.6, "backlash": 0.36, "dead_zone": 0.97}
+    text = verdict_text(("spool_stiction", "dead_zone"), groups, (), False, {"fit": 0.01}, 0.2, probabilities=single,
+                        group_probabilities=[0.96])  # fmt: skip
+    assert "lacks spool stiction or backlash (probability 96 %) and dead zone (probability 97 %)" in text
+
+
 @pytest.mark.parametrize("against", [True, False])
 def test_a_verdict_says_what_an_effect_does_once(against):
     models = family(matrix(Actuator("ANY")))

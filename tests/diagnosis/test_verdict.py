@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 
 import pytest
 
 from ident.diagnosis.criteria import Criteria, Noise
+from ident.diagnosis.evidence.probability import NOTHING, SetGains
 from ident.diagnosis.verdict import Findings, Residual, conclude, is_noise
 from ident.diagnosis.verification import VerifyChange
 
@@ -26,11 +28,13 @@ LEAD = Findings(added=("lead",), residual=NOISE, verify=(FALLS,))
         (replace(LEAD, verify=(VerifyChange("lead", 0.1, None),)), "contradicted", False),  # unstable with it
         (replace(LEAD, at_bound=("lead",)), "found", False),
         (replace(LEAD, at_bound=("lead",), residual=Residual(0.01, None, correlation=0.1)), "stand_in", False),
+        (replace(LEAD, added=("lead", "lag"), dispensable=("lag",), at_bound=("lag",),
+                 residual=Residual(0.01, None, correlation=0.1)), "found", False),
         (Findings(residual=NOISE), "nothing", False),
         (Findings(residual=FAR), "nothing", True),
         (replace(LEAD, dispensable=("lead",)), "nothing", False),
     ],
-)
+)  # fmt: skip
 def test_how_a_verdict_stands(found, standing, unexplained):
     verdict = conclude(found)
     assert (verdict.standing, verdict.unexplained) == (standing, unexplained)
@@ -72,3 +76,15 @@ def test_a_group_is_told_once_and_never_with_what_is_dispensable():
     )  # fmt: skip
     assert conclude(found).indistinguishable == (("play", "dead_zone"), ("lag", "delay", "lead"))
     assert conclude(replace(found, dispensable=("play",))).indistinguishable == (("lag", "delay", "lead"),)
+
+
+def test_two_lags_that_are_named_are_as_probable_as_both_together():
+    """By hand: ln w = 0.41 G − 4.5 k, and with something unlisted 0.41 · 0.9 (60 − G) − 5.15 more."""
+    gains = SetGains({NOTHING: 0.0, frozenset({"lag"}): 40.0, frozenset({"lag", "delay"}): 58.0}, most=60.0)
+    found = Findings(added=("lag", "delay"), lag_pairs=(("lag", "delay", "lead"),), residual=NOISE, set_gains=gains)
+    alone = [math.exp(0.41 * gain - 4.5 * count) for count, gain in enumerate((0.0, 40.0, 58.0))]
+    unlisted = [w * math.exp(0.369 * (60.0 - gain) - 5.15) for w, gain in zip(alone, (0.0, 40.0, 58.0), strict=True)]
+    both = (alone[2] + unlisted[2]) / (sum(alone) + sum(unlisted))
+    verdict = conclude(found)
+    assert verdict.probability == pytest.approx(both)
+    assert verdict.group_probabilities == (pytest.approx(both),)

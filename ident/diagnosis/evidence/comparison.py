@@ -233,7 +233,8 @@ def worth_adding(
 ) -> bool:  # fmt: skip
     """The rule by which an effect is added: the second model improves on the first, and generalises.
 
-    Without a `bar` it has to gain half of all that can be gained.
+    The selection asks it through :mod:`ident.diagnosis.model_comparison`, whose `improves` is this rule. Without a
+    `bar` the second model has to gain half of all that can be gained.
     """
     return improves(evidence, bar, criteria) and generalises(evidence, criteria)
 

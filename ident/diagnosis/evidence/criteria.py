@@ -81,8 +81,8 @@ class EvidenceCriteria:
     however certain.
     Test: test_evidence.py::test_a_gain_of_less_than_a_hundredth_of_the_explainable_power_does_not_improve"""
     least_gain: float = 3.4
-    """[nats] Gain that an effect has to make whatever the bar. Why: the odds for it rise thirtyfold, which is more than
-    there are effects in the library; a smaller gain is worth no parameter.
+    """[nats] Gain that an effect has to make whatever the bar. Why: a likelihood thirty times as large is what Jeffreys
+    (1961) calls very strong; how probable the effect then is, another number says (learning_rate).
     Test: test_evidence.py::test_a_gain_below_the_least_adds_nothing_however_low_the_bar"""
     level: float = 3e-4
     """[of the standard deviation] Root mean square of the means of the runs that matters. Why: less is nobody's

@@ -12,6 +12,7 @@ p is right.
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
@@ -62,13 +63,13 @@ class Probabilities:
         return {**self.effects, "nothing": self.nothing, "unlisted": self.unlisted}
 
     def of(self, groups: Iterable[Iterable[str]]) -> float:
-        """That of each of some groups an effect acts: of all sets that hold one of each."""
-        asked = [frozenset(group) for group in groups]
+        """That an effect of each group acts: of all sets that hold one of each, two of a group that stands twice."""
+        asked = Counter(frozenset(group) for group in groups)
         return sum(
             p
             for of in (self.alone, self.with_unlisted)
             for held, p in of.items()
-            if all(held & group for group in asked)
+            if all(len(held & group) >= times for group, times in asked.items())
         )
 
 
