@@ -77,6 +77,7 @@ FEATURES = (
 )
 """Folders whose endpoints.py has a `router` of the API."""
 _PATIENCE = 5  # s in which what is being answered ends, before the service does
+_KEPT = 75  # s that a connection waits for its next request: clients let go after 5, proxies after 60, and first
 _TURN = 1e-3  # s after which a figure that is drawn lets an answer take its turn: the interpreter's own are 5
 READERS = 2  # uploads that are read at once
 WORK = "app.kinds"  # what processes apart have imported when they begin
@@ -189,6 +190,7 @@ def run(settings: Settings) -> None:
     gc.freeze()  # 300,000 objects that stay: every look through them held all answers up for 0.15 s
     uvicorn.run(
         app, host=settings.host, port=settings.port, log_level="warning", timeout_graceful_shutdown=_PATIENCE,
+        timeout_keep_alive=_KEPT,
         log_config=None if settings.log == "json" else uvicorn.config.LOGGING_CONFIG,
         ws_max_size=LARGEST_MESSAGE, ws_per_message_deflate=False, proxy_headers=False,
     )  # fmt: skip

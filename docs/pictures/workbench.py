@@ -16,7 +16,7 @@ from docs.pictures.remake import packed
 from ident.synthesis.matrix import simulate_matrix
 from tests.browser import story
 from tests.browser.conftest import CHROMIUM
-from tests.browser.looks import DRAWING
+from tests.browser.looks import drawn
 from tests.running import Service, command, free_port, process
 
 HERE = Path(__file__).parent
@@ -75,13 +75,6 @@ def photograph(page: Page, service: Service, archive: Path) -> None:
     page.locator("#figure-ladder canvas").wait_for()
     drawn(page, "light")
     keep("ladder", page.locator("section[aria-labelledby=ladder-title]").screenshot())
-
-
-def drawn(page: Page, theme: str) -> None:
-    """Waits until no figure in sight is old or half done."""
-    old = f".figure:not([data-drawn*='theme={theme}']) .plot[aria-busy]:visible"
-    for waiting in (old, DRAWING):
-        expect(page.locator(waiting)).to_have_count(0, timeout=story.LONG)
 
 
 def first_cards(page: Page) -> bytes:

@@ -9,10 +9,22 @@ from typing import Any
 from axe_playwright_python.sync_playwright import Axe
 from playwright.sync_api import Page, ViewportSize, expect
 
+from tests.browser.story import LONG
+
 WIDTHS = (1280, 820)
 PHONE: ViewportSize = {"width": 390, "height": 844}
 COLOURS = ("color-contrast", "link-in-text-block")  # axe's rules of colour: a theme changes nothing else
 DRAWING = ".plot[aria-busy=true]:visible"
+
+
+def drawn(page: Page, theme: str) -> None:
+    """Wait until no figure in sight is half done, or of another theme: its canvas is another one after the change.
+
+    The browser tells a page of a change with its next frame: until then a figure stands as it was, and is not busy.
+    """
+    old = f".figure:not([data-drawn*='theme={theme}']) .plot[aria-busy]:visible"
+    for waiting in (old, DRAWING):
+        expect(page.locator(waiting)).to_have_count(0, timeout=LONG)
 
 
 def everywhere(page: Page, folder: Path | None, name: str) -> None:
@@ -25,7 +37,7 @@ def everywhere(page: Page, folder: Path | None, name: str) -> None:
         for width in WIDTHS if folder else (width_of_it,):
             page.set_viewport_size({"width": width, "height": 900})
             assert page.evaluate("document.documentElement.scrollWidth") <= width
-            expect(page.locator(DRAWING)).to_have_count(0, timeout=120_000)
+            drawn(page, theme)
             if folder:
                 page.screenshot(path=folder / f"{name}-{width}-{theme}.png", full_page=True)
         found = barriers(page, rules)
@@ -38,7 +50,7 @@ def on_a_phone(page: Page, folder: Path | None, name: str) -> None:
     for closed in page.locator("details:not([open]) > summary").all():
         if closed.is_visible():
             closed.click()
-    expect(page.locator(DRAWING)).to_have_count(0, timeout=120_000)
+    expect(page.locator(DRAWING)).to_have_count(0, timeout=LONG)
     assert page.evaluate("document.documentElement.scrollWidth") <= PHONE["width"]
     assert barriers(page, ("target-size",)) == []
     if folder:

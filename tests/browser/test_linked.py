@@ -7,8 +7,9 @@ import re
 import pytest
 from playwright.sync_api import expect
 
+from tests.browser.story import LONG
+
 pytestmark = pytest.mark.usefixtures("watch")
-LONG = 120_000  # ms, for a machine that is busy with other things
 MAP, BODE = "#figure-residual-map", "#figure-bode"
 
 

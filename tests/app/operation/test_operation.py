@@ -15,14 +15,17 @@ from typing import Any
 
 import httpx
 import pytest
+import uvicorn
 from prometheus_client.parser import text_string_to_metric_families
 from sqlalchemy import event
 
-from app import reserve
+from app import main, reserve
+from app.settings import Settings
 from tests.app.conftest import zipped
 from tests.running import Forked, Service, forked, free_port
 
 API = "/api/v1"
+OF_A_PROXY = 60.0  # s that nginx and the usual load balancers keep an idle connection to a service
 WARM = {"options": {"generations": 5}}
 
 
@@ -52,6 +55,18 @@ def test_prometheus_reads_the_numbers(service, fitted):
     assert found["servoident_workers", "alive"] == 1
     assert found["servoident_free_bytes",] > 0
     assert fitted not in answer.text
+
+
+def test_clients_and_proxies_let_go_of_an_idle_connection_before_the_service_does(monkeypatch, tmp_path):
+    """Else a request goes out on a connection that the service is about to close, and is lost."""
+    given = {}
+    monkeypatch.setattr(main, "create_app", lambda *_, **__: None)
+    monkeypatch.setattr(main, "gc", SimpleNamespace(freeze=lambda: None))
+    monkeypatch.setattr(main, "sys", SimpleNamespace(setswitchinterval=lambda _: None))
+    monkeypatch.setattr(main.uvicorn, "run", lambda _, **named: given.update(named))
+    main.run(Settings(data=tmp_path))
+    kept = uvicorn.Config(None, **given).timeout_keep_alive
+    assert kept > max(httpx.Limits().keepalive_expiry, OF_A_PROXY)
 
 
 def test_no_table_is_counted_for_them(service):
