@@ -63,15 +63,18 @@ def case(row: dict[str, Any]) -> Case | None:
         return None
     if row.get("counts") in ("dropped", False) and row.get("hidden"):
         return None
-    hidden = row["hidden"]
-    names = set(hidden) if isinstance(hidden, dict) else {hidden} - {"", "nothing", None}
-    names = set() if row.get("counts") == "nothing" else names
-    outside = row.get("kind") == "outside"
     gains = {frozenset(effects): nats for effects, nats in row["effect_sets"]}
-    kind = "periodic" if "periods" in row else row.get("kind", "machine")
-    return Case(
-        kind, SetGains({NOTHING: 0.0} | gains, row["most_nats"]), frozenset() if outside else frozenset(names), outside
-    )
+    kind = row.get("trial") or ("periodic" if "periods" in row else row.get("kind", "machine"))
+    off_the_list = kind in ("outside", "unlisted", "left out") or bool(row.get("outside"))
+    return Case(kind, SetGains({NOTHING: 0.0} | gains, row["most_nats"]), _hidden(kind, row), off_the_list)
+
+
+def _hidden(kind: str, row: dict[str, Any]) -> frozenset[str]:
+    """The effects of the list that act in a trial: none where a label is wrong, or what acts is on no list."""
+    hidden = row["hidden"]
+    if kind in ("outside", "unlisted", "left out", "label") or row.get("counts") == "nothing":
+        return frozenset()
+    return frozenset(hidden) if isinstance(hidden, dict) else frozenset({hidden} - {"", "nothing", None})
 
 
 def cases(files: Iterable[Path]) -> Iterator[Case]:

@@ -28,6 +28,7 @@ from ident.workflows import diagnose, identify
 from tests.blind import characteristic
 from tests.blind.campaign import add, rows
 from tests.blind.machines import runs_away
+from tests.blind.sure import sure
 from tests.blind.unlisted_effects import KIND, MODEL, secret, written
 from tests.reference import qian_reference as linear
 from tests.reference.unlisted_reference import KINDS, NAMES
@@ -90,7 +91,7 @@ def outcome(machine: Hiding, catalogue: bool, true: tuple[Mapping[str, Any], Map
         "named": list(found.verdict.effects), "listed": (listed.error["verify"] or 0.0) / machine.noise,
         "found": [one.equation for one in proposed], "shapes": shapes, **errors, "accepted": accepted,
         "off": off[0], "off_new": off[1], "right": off[0] <= RIGHT and off[1] <= RIGHT_NEW,
-        "notes": list(found.notes), "seconds": seconds,
+        "notes": list(found.notes), "seconds": seconds, **sure(found),
     } | ({"law_off": characteristic.off(matrix, MODEL, true, found)} if true else {})  # fmt: skip
 
 
