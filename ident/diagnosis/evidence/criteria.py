@@ -77,8 +77,8 @@ class EvidenceCriteria:
     them take 40 MB.
     Test: test_evidence.py::test_the_bar_is_passed_by_chance_as_often_as_it_says"""
     share: float = 0.01
-    """[1] Least share of the explainable power that an effect has to take. Why: less is not worth a parameter,
-    however certain.
+    """[1] Share of the explainable power that matters: an effect takes more, no part of the data loses as much, a
+    dominated model leaves as much more. Why: less is not worth a parameter, however certain.
     Test: test_evidence.py::test_a_gain_of_less_than_a_hundredth_of_the_explainable_power_does_not_improve"""
     least_gain: float = 3.4
     """[nats] Gain that an effect has to make whatever the bar. Why: a likelihood thirty times as large is what Jeffreys
