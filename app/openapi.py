@@ -22,6 +22,7 @@ _BINARY = {"application/pdf", "application/zip"}
 _BYTES = "application/octet-stream"
 RESULTS: Mapping[str, str] = {
     "Actuator": "SizesView",
+    "AmplitudeMargin": "AmplitudeMarginView",
     "Axes": "AxesView",
     "Budget": "ErrorBudget",
     "BulkModulus": "OilView",
@@ -39,8 +40,10 @@ RESULTS: Mapping[str, str] = {
     "PeakSearch": "PeakSearchView",
     "PeakTarget": "PeakTargetView",
     "Pole": "PoleView",
+    "PositionLoop": "PositionLoopView",
     "Profile": "ProfileView",
     "RefusedRun": "RefusedRunView",
+    "Regulator": "RegulatorView",
     "Remedy": "RemedyView",
     "Response": "ResponseView",
     "RigLimits": "RigStated",

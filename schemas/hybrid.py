@@ -132,3 +132,19 @@ class WhatIfRequest(_Asked):
     axes: list[AxesRequest] = Field(default_factory=list, max_length=10)
     up_to: Value | None = None
     seed: int = Field(default=0, ge=0, lt=2**31)
+
+
+class PositionLoopRequest(_Asked):
+    """A position regulator P or PI around a servo-actuator of a bench, in rated currents, and the amplitudes.
+
+    `kp` in 1/m, `ki` in 1/(m·s); `sample_time` and computation `delay` in s, 0 where the regulator is analogue; `limit`
+    of its output. `amplitudes` of the current at the play are of the rated current; without them 1.5, 3 and 10 times
+    the dead space.
+    """
+
+    kp: Value
+    ki: Value = 0.0
+    sample_time: Value = 0.0
+    delay: Value = 0.0
+    limit: Value | None = None
+    amplitudes: list[Value] = Field(default_factory=list, max_length=10)

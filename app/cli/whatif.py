@@ -13,6 +13,7 @@ from app.cli.figure_files import write_figures
 from app.cli.given import read_fit
 from app.cli.output import STANDARD_OUTPUT, check_target, write_json
 from app.cli.progress import shown
+from app.cli.regulator import Amplitudes, OfRegulator, show_margins
 from app.cli.rig_option import RigFile, rig_in
 from ident.words.nearest import did_you_mean
 
@@ -91,12 +92,14 @@ def whatif(
     fit: FitPath, set_: Changed = None, fitted: Fitted = None, specimen: OfSpecimen = None, gain: Gains = None,
     choose: Choose = None, before: Earlier = None, before_gain: EarlierGain = None,
     peak: AtPeak = None, tolerance: Near = None, axes: InAxes = None, up_to: UpTo = None, seed: Seed = 0,
-    rig: RigFile = None, json: Json = None, out: Out = None,
+    rig: RigFile = None, regulator: OfRegulator = None, amplitude: Amplitudes = None, json: Json = None,
+    out: Out = None,
 ) -> None:  # fmt: skip
     """Predict the response after a change of the machine.
 
     Area, stroke, volume, specimen or parameters can change. It gives response, peaks, root locus and stability. Exit
-    status 1 if the loop is unstable: cause and remedies are listed.
+    status 1 if the loop is unstable: cause and remedies are listed. With --regulator it gives the margins of a
+    position loop around a servo-actuator of a bench, at stated amplitudes.
     """
     from app.cli.tables import show
     from ident.hybrid.what_if import what_if
@@ -104,6 +107,9 @@ def whatif(
 
     check_target(json)
     result = read_fit(fit)
+    if regulator is not None or amplitude:
+        show_margins(result, regulator, amplitude or [], json, out)
+        return
     change = _change(result, set_ or [], fitted or [], specimen)
     gains = None if gain is None else _range(gain, "--gain", "LO:HI")
     target = _target(peak, tolerance, axes or [], up_to)

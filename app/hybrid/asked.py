@@ -4,8 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import Any, TypeVar
 
+from pydantic import BaseModel, ValidationError
+
+from app.errors import Failure
 from ident.errors import Unusable
 from ident.fit.result import FitResult
 from ident.hybrid.case import BUILT_IN, NAMES, Case, case_of
@@ -18,6 +21,7 @@ from ident.units.quantity import parameter_value, shown
 from ident.words.nearest import did_you_mean
 from schemas.hybrid import GroundRequest, HybridRequest, SpecimenRequest, WhatIfRequest
 
+Request = TypeVar("Request", bound=BaseModel)
 LONGEST = 2_000_000
 """Characters of a record of ground motion."""
 MOTIONS = ("blwn", "sine")
@@ -127,6 +131,16 @@ def _specimen(given: SpecimenRequest) -> Specimen:
         if found[name] < 0:
             raise Unusable("bad-number", f"{shown(value)} is below 0", f"specimen {name}", "give 0 or more")
     return Specimen(**found)
+
+
+def request_in(text: str, kind: type[Request]) -> Request:
+    """The request of a figure: the body of the POST as text. Raises Failure 422."""
+    try:
+        return kind.model_validate_json(text or "{}")
+    except ValidationError as error:
+        first = error.errors()[0]
+        where = ".".join(map(str, ("asked", *first["loc"])))
+        raise Failure(422, "invalid-request", str(first["msg"]), where, "write the body of the POST") from None
 
 
 def gains_of(request: WhatIfRequest) -> tuple[float, float] | None:

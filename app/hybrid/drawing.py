@@ -8,7 +8,7 @@ import numpy as np
 
 from app.context import Context
 from app.errors import Failure
-from app.hybrid import controllers, service, tracking
+from app.hybrid import controllers, position_loop, service, tracking
 from app.hybrid import what_if as asked_machines
 from app.hybrid.records import unpacked
 from app.hybrid.work import WITHOUT
@@ -17,7 +17,7 @@ from ident.figures import MEDIA, drawings, figure, render
 from ident.figures.subjects import Designed, Simulated, Tracked
 from ident.hybrid.followed import Followed
 from ident.hybrid.share_map import ShareMap
-from schemas.hybrid import WhatIfRequest
+from schemas.hybrid import PositionLoopRequest, WhatIfRequest
 
 _MOST = 64  # figures in memory, about 100 kB each
 _figures: LRU[bytes] = LRU(_MOST)
@@ -53,6 +53,14 @@ def of_what_if(
     """A figure of a changed machine."""
     asked = ("what-if", fit, request.model_dump_json())
     return _drawn(context, asked, lambda: asked_machines.what_if(context, fit, request), name, kind, style)
+
+
+def of_position_loop(
+    context: Context, fit: str, request: PositionLoopRequest, name: str, kind: str, style: Style
+) -> tuple[bytes, str]:
+    """A figure of a position loop."""
+    asked = ("position-loop", fit, request.model_dump_json())
+    return _drawn(context, asked, lambda: position_loop.position_loop(context, fit, request), name, kind, style)
 
 
 def of_track(

@@ -9,12 +9,14 @@ from fastapi import APIRouter, Query, Response
 from app.access.roles import LAB, READERS
 from app.context import Here
 from app.errors import COMMON
-from app.hybrid import controllers, drawing, service, tracking, what_if
+from app.hybrid import controllers, drawing, position_loop, service, tracking, what_if
+from app.hybrid.asked import request_in
 from app.idempotency import Answer, Key, fingerprint, once
 from app.jobs.queueing import queued_once
+from ident.bench.position_loop import PositionLoop
 from ident.hybrid.what_if import WhatIf
 from schemas.fit import JobView
-from schemas.hybrid import ControllerRequest, HybridRequest, WhatIfRequest
+from schemas.hybrid import ControllerRequest, HybridRequest, PositionLoopRequest, WhatIfRequest
 from schemas.hybrid_result import ControllerPage, ControllerView, HybridPage, HybridView
 from schemas.track_result import TrackView
 
@@ -31,6 +33,8 @@ Noise = Annotated[
     Query(max_length=60, description="Standard deviation of the sensor (0.12 mm); without it that of the record"),
 ]
 Asked = Annotated[str, Query(max_length=8000, description="The body of POST /fits/ID/what-if, as JSON text")]
+
+AskedLoop = Annotated[str, Query(max_length=4000, description="The body of POST /fits/ID/position-loop, as JSON text")]
 
 
 @router.post("/controllers", dependencies=[LAB], status_code=201, response_model=ControllerView)
@@ -134,7 +138,28 @@ def draw_what_if(
     here: Here, fit: str, name: str, kind: str, asked: Asked = "{}", theme: Theme = "light", share: Share = 1.0
 ) -> Response:
     """The figures `response` and `root-locus` of a change as json (Vega-Lite), svg, png or pdf."""
-    content, media = drawing.of_what_if(here, fit, what_if.asked(asked), name, kind, (theme, share))
+    content, media = drawing.of_what_if(here, fit, request_in(asked, WhatIfRequest), name, kind, (theme, share))
+    return Response(content, media_type=media)
+
+
+@router.post("/fits/{fit}/position-loop", dependencies=[READERS])
+def ask_position_loop(here: Here, fit: str, request: PositionLoopRequest) -> PositionLoop:
+    """The margins of a position loop around the servo-actuator of a fit, at each amplitude. Nothing is stored."""
+    return position_loop.position_loop(here, fit, request)
+
+
+@router.get(
+    "/fits/{fit}/position-loop/figures/{name}.{kind}",
+    dependencies=[READERS],
+    response_class=Response,
+    responses=_IMAGES,
+)
+def draw_position_loop(
+    here: Here, fit: str, name: str, kind: str, asked: AskedLoop = "{}", theme: Theme = "light", share: Share = 1.0
+) -> Response:
+    """The figure `margins` of a position loop as json (Vega-Lite), svg, png or pdf."""
+    request = request_in(asked, PositionLoopRequest)
+    content, media = drawing.of_position_loop(here, fit, request, name, kind, (theme, share))
     return Response(content, media_type=media)
 
 

@@ -2,10 +2,7 @@
 
 from __future__ import annotations
 
-from pydantic import ValidationError
-
 from app.context import Context
-from app.errors import Failure
 from app.fits import service as fits
 from app.hybrid.asked import change_of, gains_of, peak_of
 from app.lru import LRU
@@ -45,13 +42,3 @@ def _before(context: Context, asked: BeforeRequest | None) -> Before | None:
 def _wanted(asked: ChooseRequest | None) -> GainTarget | None:
     """What a gain is to be chosen for. Raises Unusable."""
     return None if asked is None else GainTarget(asked.quantity, asked.value)
-
-
-def asked(text: str) -> WhatIfRequest:
-    """The request of a figure: the body of the POST as text. Raises Failure 422."""
-    try:
-        return WhatIfRequest.model_validate_json(text or "{}")
-    except ValidationError as error:
-        first = error.errors()[0]
-        where = ".".join(map(str, ("asked", *first["loc"])))
-        raise Failure(422, "invalid-request", str(first["msg"]), where, "write the body of the POST") from None

@@ -8,12 +8,14 @@ from typing import Any
 from app.context import Context
 from app.errors import Failure, missing
 from app.fits import service as fits
-from app.hybrid import controllers, service, tracking, what_if
+from app.hybrid import controllers, position_loop, service, tracking, what_if
 from app.jobs import service as jobs
 from app.matrices import service as matrices
 from app.pages.control_view import ControlView, control_view
 from app.pages.hybrid_view import HybridSection, hybrid_view
 from app.pages.job_view import JobPageView, job_page
+from app.pages.position_loop_view import PositionLoopView, position_loop_form, position_loop_view
+from app.pages.position_loop_view import asked as position_loop_asked
 from app.pages.tracking_view import TrackingView, tracking_view
 from app.pages.use_view import UseView, use_view
 from app.pages.what_if_asked import asked
@@ -32,15 +34,17 @@ _MOST = 50  # controllers or simulations in a list
 def use(context: Context, fit_id: str, query: Query) -> tuple[UseView, int]:
     """The page of a fit with what is asked, and its status: 422 where a section says why it has no answer.
 
-    `query` has `controller` and `simulation`, ids of what is shown instead of the newest, and `ask`, `what-if` or
-    `tracking`, with the fields of its form. Raises Failure 404.
+    `query` has `controller` and `simulation`, ids of what is shown instead of the newest, and `ask`, `what-if`,
+    `position-loop` or `tracking`, with the fields of its form. Raises Failure 404.
     """
     stored = fits.stored(context, fit_id)
     control = _control(context, fit_id, query.get("controller", ""))
     hybrid = _hybrid(context, stored, query.get("simulation", ""), control)
     changed = _what_if(context, stored, query if query.get("ask") == "what-if" else {})
     tracked = _tracking(context, stored, query if query.get("ask") == "tracking" else {})
-    return use_view(stored, control, hybrid, changed, tracked), 422 if changed.problem or tracked.problem else 200
+    loop = _position_loop(context, stored, query if query.get("ask") == "position-loop" else {})
+    refused = changed.problem or tracked.problem or loop.problem
+    return use_view(stored, control, hybrid, changed, tracked, loop), 422 if refused else 200
 
 
 def _control(context: Context, fit: str, wanted: str) -> ControlView:
@@ -84,6 +88,16 @@ def _what_if(context: Context, stored: fits.Stored, given: Query) -> WhatIfView:
         return what_if_view(stored, form, request, what_if.what_if(context, stored.id, request))
     except (Unusable, Failure) as error:
         return WhatIfView(stored.id, form, problem=_sentence(error))
+
+
+def _position_loop(context: Context, stored: fits.Stored, given: Query) -> PositionLoopView:
+    if not given:
+        return position_loop_form(stored, given)
+    try:
+        request = position_loop_asked(given)
+        return position_loop_view(stored, given, request, position_loop.position_loop(context, stored.id, request))
+    except (Unusable, Failure) as error:
+        return position_loop_form(stored, given, _sentence(error))
 
 
 def _tracking(context: Context, stored: fits.Stored, given: Query) -> TrackingView:

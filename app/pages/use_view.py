@@ -8,6 +8,7 @@ from app.fits.rows import error_rows
 from app.fits.service import Stored
 from app.pages.control_view import ControlView
 from app.pages.hybrid_view import HybridSection
+from app.pages.position_loop_view import PositionLoopView
 from app.pages.tracking_view import TrackingView
 from app.pages.what_if_view import WhatIfView
 from ident.custom.definition import preset_with
@@ -46,14 +47,16 @@ class UseView:
     hybrid: HybridSection
     what_if: WhatIfView
     tracking: TrackingView
+    position_loop: PositionLoopView
     cases: tuple[tuple[str, str], ...] = CASES
     example: str = OWN_CASE
     exports: tuple[Format, ...] = tuple(FORMATS.values())
 
 
 def use_view(
-    stored: Stored, control: ControlView, hybrid: HybridSection, what_if: WhatIfView, tracking: TrackingView
-) -> UseView:
+    stored: Stored, control: ControlView, hybrid: HybridSection, what_if: WhatIfView, tracking: TrackingView,
+    position_loop: PositionLoopView,
+) -> UseView:  # fmt: skip
     """The page of a fit with its sections."""
     fit = stored.found
     model = preset_with(fit.model, fit.effects, fit.settings.get("custom", ()))
@@ -69,4 +72,5 @@ def use_view(
         hybrid=hybrid,
         what_if=what_if,
         tracking=tracking,
+        position_loop=position_loop,
     )

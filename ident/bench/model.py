@@ -96,6 +96,13 @@ class Model:
         """The four blocks, with a delay at most: no second lag, no stiction, no load, no other effect."""
         return self.chain is None and not np.any(self.constants[len(CONSTANTS) + 1 : len(CONSTANTS) + 4])
 
+    def speed(self, behind_play: Array) -> Array:
+        """Blocks c and d without a load: the speed (m/s) at currents behind the play (rated currents), (n,)."""
+        current = behind_play - self.I0
+        available = np.minimum(self.kp * np.abs(current), self.Ps)
+        share = np.sqrt(np.maximum(1.0 - self.dPfr / np.maximum(available, 1.0), 0.0))
+        return np.asarray(self.table.speed(current) * share)
+
     def with_values(self, values: Mapping[str, float]) -> Model:
         """The model with other values of constants, of effects, or of the table (``V_p5``: at +5 %)."""
         own: dict[str, Any] = {name: value for name, value in values.items() if name in CONSTANTS}

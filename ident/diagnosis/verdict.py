@@ -11,8 +11,8 @@ apart. The verdict stands in one of four ways:
 * *found*: none of these.
 
 Whether the residual is noise is a test of its size, and of its memory where no floor is known. It decides what the
-verdict says. How probable it is that something unlisted acts follows from the gains of the refitted models and is told
-with it: the two may differ. Runs to verify are not part of a probability: an effect that they contradict may have a
+verdict says. How probable it is that something unlisted acts follows from the gains of the refitted models: the two
+may differ. Runs to verify are not part of a probability: an effect that they contradict may have a
 large one.
 """
 

@@ -53,6 +53,7 @@ _FILES = (
     "feedforward",
     "what_if_response",
     "root_locus",
+    "loop_margins",
     "tracking",
     "control_chart",
     "signals",

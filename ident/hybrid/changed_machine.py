@@ -137,7 +137,8 @@ def changed_machine(fit: FitResult, change: Change) -> ChangedMachine:
     effects = tuple(dict.fromkeys((*fit.effects, *_added(change.values))))
     whole = preset_with(fit.model, effects, custom)
     if whole.kind != "chain":
-        raise Unusable("no-what-if", f"{fit.model} is fitted to records of a bench", "fit", "give a fit of test runs")
+        raise Unusable("no-what-if", f"{fit.model} is fitted to records of a bench", "fit",
+                       "give a regulator, for the margins of its position loop, or a fit of test runs")  # fmt: skip
     kept = tuple(name for name in effects if _is_linear(preset_with(fit.model, (name,), custom)))
     before = _known(fit, change.known)
     after = _resized(before, change.sizes)

@@ -77,6 +77,7 @@ KINDS: Mapping[str, Callable[[Any], str]] = {
     "units": lambda pairs: ", or ".join(" and ".join(pair) for pair in pairs),
     "data": data,
     "title": title,
+    "degrees": lambda angle: "none" if angle is None else f"{angle:.3g}°",
     "titles": lambda names: all_of(list(map(title, names))),
     "all": lambda values: all_of(_strings(values)),
     "or": lambda values: " or ".join(_strings(values)),

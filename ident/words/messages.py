@@ -39,6 +39,17 @@ FIGURES: Mapping[str, str] = {
     "rig.ran_away": "unstable: ran away after {after:quantity}",
     "peak": "a peak at {frequency} ± {tolerance} Hz",
     "peak.inside": "a peak at {frequency} ± {tolerance} Hz inside the axes",
+    "loop.stands":
+        "At {amplitude:percent} of the rated current the actuator stands: the amplitude is within its dead space.",
+    "loop.no_gain":
+        "At {amplitude:percent} of the rated current no gain makes the loop oscillate: gain margin none, phase margin "
+        "{phase:degrees}.",
+    "loop.margins":
+        "At {amplitude:percent} of the rated current the gain margin is {margin:.3g} dB, the phase margin "
+        "{phase:degrees}: with kp = {gain:.4g} 1/m the loop oscillates at {frequency:.4g} Hz.",
+    "loop.unstable":
+        "At {amplitude:percent} of the rated current the loop oscillates: its gain is {excess:.3g} dB too high. It "
+        "stops below kp = {gain:.4g} 1/m; with that it oscillates at {frequency:.4g} Hz.",
     "white.pass": "pass (white on {white} of {runs:runs})",
     "white.fail": "fail (white on {white} of {runs:runs})",
     "track.holds": "holds: {reason}",

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import json
 import re
 import zipfile
 from pathlib import Path
@@ -83,6 +84,40 @@ def test_the_page_offers_what_a_bench_has(service, fit):
     assert ">50 %<" in page
     assert '"spring_load"' in page
     assert re.findall(r'class="signal[^>]*>([^<]*)<', page) == ["e", "q", "w", "V0", "X"]
+
+
+def test_the_margins_of_a_position_loop_are_told_at_each_amplitude(service, fit, servoident, tmp_path):
+    """Over HTTP, as a figure, on the page and from the command line: the same numbers, in every unit."""
+    asked = {"kp": "8 %/mm", "sample_time": "2 ms", "delay": 0.001, "limit": "100 %", "amplitudes": ["2 %", 0.1]}
+    found = service.post(f"{API}/fits/{fit}/position-loop", json=asked).json()
+    assert [one["amplitude"] for one in found["amplitudes"]] == pytest.approx([0.02, 0.1])
+    assert found["gain_margin"] == min(one["gain_margin"] for one in found["amplitudes"])
+    assert found["state"] == "stable"
+    drawn = service.get(f"{API}/fits/{fit}/position-loop/figures/margins.svg", params={"asked": json.dumps(asked)})
+    assert "10.0 % of rated current" in drawn.text
+    form = {**asked, "ask": "position-loop", "amplitudes": "2 %; 10 %"}
+    page = service.get(f"/fits/{fit}/use", params=form)
+    assert page.status_code == 200
+    assert found["amplitudes"][0]["text"] in page.text
+    refused = service.get(f"/fits/{fit}/use", params={"ask": "position-loop", "kp": ""})
+    assert refused.status_code == 422
+    assert "regulator kp" in refused.text
+    (tmp_path / "fit.json").write_text(json.dumps(service.get(f"{API}/fits/{fit}").json()["result"]))
+    given = (
+        "--regulator",
+        "kp=8 %/mm, sample_time=2 ms, delay=1 ms, limit=1",
+        "--amplitude",
+        "2 %",
+        "--amplitude",
+        "0.1",
+    )
+    done = servoident("whatif", tmp_path / "fit.json", *given, "--json", tmp_path / "loop.json")
+    assert done.returncode == 0, done.stderr
+    assert json.loads((tmp_path / "loop.json").read_text()) == found
+    assert servoident("whatif", tmp_path / "fit.json", "--regulator", "kp=9000").returncode == 1  # unstable
+    for wrong, said in (("sample_tme=2 ms", "sample_time"), ("ki=3", "no kp")):
+        assert said in servoident("whatif", tmp_path / "fit.json", "--regulator", wrong).stderr
+    assert "regulator" in servoident("whatif", tmp_path / "fit.json").stderr
 
 
 def test_an_effect_of_the_bench_is_added_to_its_fit(service, fit, full):

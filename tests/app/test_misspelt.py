@@ -73,6 +73,7 @@ MISSPELT: dict[tuple[str, str], list[tuple[tuple[str, ...], str]]] = {
     ("whatif", "--set"): [(("FIT", "--set", "tua=3 ms"), "tau")],
     ("whatif", "--fitted"): [(("FIT", "--fitted", "strok=100 mm"), "stroke")],
     ("whatif", "--choose"): [(("FIT", "--choose", "phase_marign=50"), "phase_margin")],
+    ("whatif", "--regulator"): [(("FIT", "--regulator", "kp=1, dely=1 ms"), "delay")],
     ("whatif", "--specimen"): [(("FIT", "--specimen", "mas=1 kg"), "mass")],
     ("export", "--format"): [(("FIT", "--format", "fmuu", "--out", "OUT"), "fmu")],
     ("export", "--specimen"): [(("FIT", "--format", "c", "--specimen", "stifness=1 N/m", "--out", "OUT"), "stiffness")],
@@ -101,7 +102,7 @@ MISSPELT: dict[tuple[str, str], list[tuple[tuple[str, ...], str]]] = {
 ADDRESSES = {"--server", "--token", "--data", "--database", "--blobs", "--host", "--allow-host", "--proxy",
              "--webhook-host", "url"}  # fmt: skip
 MADE_UP = {"--executor", "--why", "--name", "--expires", "--approved-after", "--confirm"}
-QUANTITIES = {"--rate", "--area", "--gain", "--noise", "--peak", "--tolerance", "--axes", "--up-to", "--sample-rate",
+QUANTITIES = {"--rate", "--area", "--gain", "--noise", "--peak", "--amplitude", "--tolerance", "--axes", "--up-to", "--sample-rate",
               "--before-gain"}  # fmt: skip
 DRAWN = {"fit", "matrix", "webhook", "token", "--by", "--object"}
 """Ids that the service drew: none is near another."""
