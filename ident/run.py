@@ -85,6 +85,7 @@ class Run(Shown):
     record: str = ""
     share: float = 1.0
     closed_loop: bool | None = None  # whether a controller made the command of the output; None: nobody said
+    zeroed: Mapping[str, bool] = field(default_factory=dict)  # by channel, whether its zero was set for this run alone
     assumed_beginning: Beginning | None = None  # how it is taken to begin, whatever its samples show; None: as they do
 
     @property

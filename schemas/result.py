@@ -106,6 +106,14 @@ class UndeterminedView(BaseModel):
     reason: str
 
 
+class TransducerOffsetView(BaseModel):
+    """What the transducer of a channel reads above the model, one number for all of its runs, in `unit`."""
+
+    value: float
+    unit: str
+    std_error: float
+
+
 class RunErrorView(BaseModel):
     """Eq. (17) of one run, and its offset; RMS(x − x_m) over std(x_m), and in `unit`. Unknown is absent."""
 
@@ -217,8 +225,9 @@ class StepView(BaseModel):
 class FitResultView(BaseModel):
     """The contract's fit JSON; `evolution` belongs to the parameters `searched`, in that order.
 
-    `error_with_mean` is RMS(x − x_m)/std(x_m), `rmse` RMS(x − x_m) in `rmse_unit`, averaged as the error is.
-    `fit_percent` is 100 (1 − RMS(x − x_m)/std(x_m)) of the free simulation; `aic` compares fits to the same samples.
+    `error_with_mean` is RMS(x − x_m)/std(x_m), `rmse` RMS(x − x_m) in `rmse_unit`, averaged as the error is; x is the
+    model with its `transducer_offset`, by channel. `fit_percent` is 100 (1 − RMS(x − x_m)/std(x_m)) of the free
+    simulation; `aic` compares fits to the same samples.
 
     What an earlier version did not know is absent.
     """
@@ -247,6 +256,7 @@ class FitResultView(BaseModel):
     error_with_mean: Errors = Field(default_factory=dict)
     rmse: Errors = Field(default_factory=dict)
     rmse_unit: str = ""
+    transducer_offset: dict[str, TransducerOffsetView] = Field(default_factory=dict)
     fit_percent: Errors = Field(default_factory=dict)
     aic: float | None = None
     window: WindowView | None = None

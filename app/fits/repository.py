@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from typing import Any
 
@@ -83,6 +84,8 @@ def _errors(fit: FitResult) -> dict[str, Any]:
     for use in USES:
         said = fit.error_of(use)
         found[f"error_{use}"], found[f"error_with_mean_{use}"] = said.error, said.with_mean
+        if said.offset:  # a set is of the machine: its error counts the zero of the transducer, and hides no offset
+            found[f"error_with_mean_{use}"] = math.hypot(fit.error[use] or 0.0, fit.offset[use] or 0.0)
         found[f"unstable_{use}"] = list(said.unstable)
     return found
 

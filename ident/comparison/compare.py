@@ -19,6 +19,7 @@ from ident.errors import Unusable
 from ident.fit.normal_matrices import output
 from ident.fit.result import FitResult
 from ident.fit.simulated_runs import every_run, is_simulated
+from ident.fit.transducer import offset_at
 from ident.linear import LinearModel
 from ident.matrix import Actuator, Matrix
 from ident.parallel import each
@@ -44,12 +45,14 @@ _WINDOW = 1.0  # s: the length of a window of the spectral estimate, and with it
 class RunComparison(Shown):
     """One run: eq. (17), the offset, the model's output and the frequency responses.
 
-    `modelled` (n,) is in the run's own unit, beside ``run.measured``; `linear` is None for a model with effects.
+    `modelled` (n,) is in the run's own unit, beside ``run.measured``, with the offset `of_transducer`; `linear` is None
+    for a model with effects.
     """
 
     run: Run
     linear: LinearModel | None
     modelled: Array
+    of_transducer: float = 0.0
 
     def listings(self) -> Iterable[Listing | str]:
         """Its errors, a row."""
@@ -69,14 +72,15 @@ class RunComparison(Shown):
 
     @cached_property
     def offset(self) -> float:
-        """Difference of the means over the standard deviation."""
-        offset = float(np.mean(self._residual) / np.std(self.run.measured))
+        """Difference of the means over the standard deviation, of the model without the offset of its transducer."""
+        offset = float((np.mean(self._residual) + self.of_transducer) / np.std(self.run.measured))
         return math.copysign(bounded(abs(offset)), offset) if self.unstable else offset
 
     @property
     def error_with_mean(self) -> float:
         """RMS(x − x_m) / std(x_m): it sees the means that eq. (17) does not."""
-        return UNSTABLE if self.unstable else math.hypot(self.error, self.offset)
+        remaining = self.offset - self.of_transducer / float(np.std(self.run.measured))
+        return UNSTABLE if self.unstable else math.hypot(self.error, remaining)
 
     @property
     def fit_percent(self) -> float | None:
@@ -200,7 +204,7 @@ class Comparison(Shown):
         unstable = tuple(one.run.id for one in self._meant(use) if one.unstable)
         size = self.rmse[use]
         said = "" if size is None else quantity(size, self.runs[0].unit)
-        return ErrorOf(self.error[use], self.error_with_mean[use], unstable, said)
+        return ErrorOf(self.error[use], self.error_with_mean[use], unstable, said, self.fit.error_of(use).offset)
 
     @property
     def headline(self) -> str:
@@ -254,11 +258,12 @@ def compare(matrix: Matrix, fit: FitResult, simulator: Simulator = modelled) -> 
     outputs = simulator(preset, values, matrix) if is_simulated(preset, matrix) else None
 
     def one(run: Run) -> RunComparison:
+        own = offset_at(run, fit.transducer_offset)
         model = linear_model(preset.core, values, run, matrix.actuator) if preset.is_linear else None
         if outputs is not None:
-            return RunComparison(run, model, outputs[run.id])
+            return RunComparison(run, model, outputs[run.id] + own, own)
         assert model is not None
-        return RunComparison(run, model, output(run, model))
+        return RunComparison(run, model, output(run, model) + own, own)
 
     return Comparison(matrix, fit, tuple(each(one, matrix.runs)))
 

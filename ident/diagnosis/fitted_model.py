@@ -20,6 +20,7 @@ from ident.fit.result import Combination
 from ident.fit.simulated_fitness import SimulatedFitness
 from ident.fit.slow_answer import slow_lag
 from ident.fit.space import Space
+from ident.fit.transducer import Offset, offset_at, offsets_that_count
 from ident.fit.uncertainty import DETERMINED, Covariance, covariance
 from ident.run import Run, over_runs
 from ident.time_budget import in_time
@@ -66,8 +67,10 @@ class FittedModel:
         return [run.measured - outputs[run.id] for run in runs]
 
     def _seen(self, number: int, residual: Array) -> Array:
-        """A residual of a run as eq. (17) sees it: less its mean, or over windows."""
+        """A residual of a run as the loss sees it: less its mean or the offset of its transducer, or over windows."""
         run = self.fitness.runs[number]
+        if self.local.runs[number].counted:
+            return residual - offset_at(run, self._offsets)
         with np.errstate(over="ignore", invalid="ignore"):
             return self.fitness.left(run, run.measured - residual)
 
@@ -78,8 +81,8 @@ class FittedModel:
             sizes = np.array([float(np.std(run.measured)) for run in runs])
             means = np.array([float(r.mean()) for r in whole]) / sizes
             seen = tuple(self._seen(number, r) for number, r in enumerate(whole))
-        if self.fitness.horizon is not None:
-            means = np.zeros(len(runs))
+        if self.fitness.horizon is not None or any(run.counted for run in self.local.runs):
+            means = np.zeros(len(runs))  # windows have none, and where the mean counts the residuals hold it
         return OutOfFold(seen, sizes, means - means.mean(), np.array([run.share for run in runs]))
 
     def reordered(self, effects: tuple[str, ...]) -> FittedModel:
@@ -141,7 +144,7 @@ class FittedModel:
     def _verified(self) -> _Simulated | None:
         """What a simulation of the runs to verify leaves; None where there are none."""
         runs = self.fitness.matrix.of_use("verify")
-        return _Simulated.of(self.fitness.fresh(runs), self.point) if runs else None
+        return _Simulated.of(self.fitness.fresh(runs), self.point, self._offsets) if runs else None
 
     @property
     def unstable(self) -> dict[str, tuple[str, ...]]:
@@ -157,10 +160,19 @@ class FittedModel:
         """RMS(x − x_m)/std(x_m) by what it is measured on; nothing over windows, whose errors count the mean."""
         if self.fitness.horizon is not None or not self.stable:
             return {}
-        fitted = [float(np.hypot(run.error, run.offset)) for run in self.local.runs]
+        pairs = zip(self.fitness.runs, self.local.runs, strict=True)
+        fitted = [
+            float(np.hypot(of.error, of.offset - offset_at(run, self._offsets) / float(np.std(run.measured))))
+            for run, of in pairs
+        ]
         found: dict[str, float | None] = {"fit": float(over_runs(fitted, self.local.runs))}
         known = in_time(lambda: self._verified)
         return found | ({} if known is None or known.unstable else {"verify": known.with_mean})
+
+    @cached_property
+    def _offsets(self) -> Mapping[str, Offset]:
+        """The offsets of transducers that are part of the model."""
+        return {} if self.fitness.horizon is not None else offsets_that_count(self.local)
 
     @property
     def errors(self) -> dict[str, float | None]:
@@ -228,12 +240,12 @@ class _Simulated:
     unstable: tuple[str, ...]
 
     @classmethod
-    def of(cls, fitness: SimulatedFitness, point: Array) -> _Simulated:
-        """Simulate the model at a point."""
+    def of(cls, fitness: SimulatedFitness, point: Array, offsets: Mapping[str, Offset] | None = None) -> _Simulated:
+        """Simulate the model at a point, with the `offsets` of transducers."""
         outputs, runs = fitness.outputs(point), fitness.runs
         left = [fitness.left(run, outputs[run.id]) for run in runs]
         errors = [_rms(r) / np.std(run.measured) for r, run in zip(left, runs, strict=True)]
-        whole = [run.measured - outputs[run.id] for run in runs]
+        whole = [run.measured - outputs[run.id] - offset_at(run, offsets or {}) for run in runs]
         with_mean = over_runs([_rms(r) / np.std(run.measured) for r, run in zip(whole, runs, strict=True)], runs)
         unstable = tuple(run.id for run, error in zip(runs, errors, strict=True) if not error < UNSTABLE)
         return cls(float(over_runs(errors, runs)), float(with_mean), unstable)

@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ident.cached import cached_property
+from ident.fit import transducer
 from ident.fit.levenberg_marquardt import Way
 from ident.fit.normal_matrices import NormalMatrices
 from ident.fit.space import Space
@@ -108,15 +109,17 @@ Worth = Callable[[Local], bool]
 def local(runs: Sequence[NormalMatrices], with_means: bool = False) -> Local:
     """Mean over runs of |r| / |x_m|: gradient −Jᵀr/(|r| |x_m|), curvature JᵀJ/(|r| |x_m|), averaged.
 
-    `with_means`: the runs' means count too, see :func:`means_of`.
+    This is the one loss of fit, diagnosis and report. r is less its mean, or where the mean counts less the offset of
+    its transducer, see :mod:`ident.fit.transducer`. `with_means`: elsewhere the runs' means count as in
+    :func:`means_of`.
     """
-    p = len(runs[0].gram) - 1
-    errors, still = np.array([run.error for run in runs]), (np.zeros(p), np.zeros((p, p)))
+    p, runs = len(runs[0].gram) - 1, transducer.with_means(runs)
+    errors, still = np.array([run.loss for run in runs]), (np.zeros(p), np.zeros((p, p)))
     if not np.all(np.isfinite(errors)):
-        return Local(np.inf, *still, tuple(runs))
+        return Local(np.inf, *still, runs)
     error = float(over_runs(errors, runs))
-    means = means_of(runs, error) if with_means else None
-    here = Local(error, *still, tuple(runs), means)
+    means = means_of(runs, error) if with_means and not any(run.counted for run in runs) else None
+    here = Local(error, *still, runs, means)
     weighted = (here.weights[:, None, None] * np.array([term.gram for term in here.terms])).sum(axis=0)
     here = replace(here, gradient=-weighted[:p, p], curvature=weighted[:p, :p].copy())
     if means is None:

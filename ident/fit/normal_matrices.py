@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ident.cached import cached_property
-from ident.fit.products import add_products, completed, removal, without
+from ident.fit.products import add_products, completed, removal, shares_of, without
 from ident.linear import LinearModel
 from ident.run import Run
 from ident.simulation.between import at_nodes
@@ -35,6 +35,9 @@ class NormalMatrices:
     each nuisance but the mean the record holds; `means` the means of [J, r], `length` the number of samples; `blocks`
     the sums of products of [J, N, 1, r] of each block, before anything is projected out, (b, q, q), and `remove` what
     does so, (q, p+1), see :func:`ident.fit.products.removal`; `share` is what the run counts in a mean over runs.
+    `transducer` is the channel whose offset the run shares with others, "" where its zero is its own; where the mean is
+    `counted`, it counts in what is fitted, and `mean_power` is its part of the residual's power: see
+    :mod:`ident.fit.transducer`.
     """
 
     gram: Array
@@ -47,24 +50,36 @@ class NormalMatrices:
     blocks: Array = field(default_factory=lambda: np.empty((0, 0, 0)), repr=False)
     remove: Array = field(default_factory=lambda: np.empty((0, 0)), repr=False)
     share: float = 1.0
+    transducer: str = ""
+    counted: bool = False
+    mean_power: float = 0.0
 
     @cached_property
     def error(self) -> float:
         """Eq. (17) of the run."""
-        value = float(np.sqrt(max(self.gram[-1, -1], 0.0) / self.total))
-        return value if np.isfinite(value) else np.inf
+        return _root(self.centred, self.total)
+
+    @cached_property
+    def loss(self) -> float:
+        """What is fitted: eq. (17), or with the mean where it counts."""
+        return _root(float(self.gram[-1, -1]), self.total)
+
+    @property
+    def centred(self) -> float:
+        """Σ r² about the mean."""
+        return float(self.gram[-1, -1] - self.mean_power)
 
     @property
     def settled(self) -> bool:
         """Whether better first states, if any are free, would explain next to nothing more of the residual."""
         if not len(self.release):
             return True
-        return bool(self.gram[-1, -1] > (1.0 - _SETTLED) * self.power)
+        return bool(self.centred > (1.0 - _SETTLED) * self.power)
 
     @property
     def promises(self) -> bool:
         """Whether better first states would explain much of the residual, were the model straight up to them."""
-        return bool(len(self.release)) and bool(self.gram[-1, -1] < (1.0 - _MUCH) * self.power)
+        return bool(len(self.release)) and bool(self.centred < (1.0 - _MUCH) * self.power)
 
     @property
     def power(self) -> float:
@@ -95,6 +110,35 @@ class NormalMatrices:
         gram = self.gram.copy()
         gram[-1, -1] = self.power
         return replace(self, gram=gram)
+
+    @cached_property
+    def _level(self) -> Array:
+        """The constant with the other nuisances taken off, in [J, N, 1, r], (q,)."""
+        total, p = self.blocks.sum(axis=0), self.remove.shape[1] - 1
+        free = slice(p, len(total) - 2)
+        level = np.zeros(len(total))
+        level[-2] = 1.0
+        level[free] = -shares_of(total[None, free, free], total[None, free, -2, None], np.array([self.total]))[0, :, 0]
+        return level
+
+    @cached_property
+    def informing(self) -> float:
+        """How many samples tell the mean: all of them where no first state does the same."""
+        return float(self._level @ self.blocks.sum(axis=0) @ self._level)
+
+    def about(self, means: Array) -> NormalMatrices:
+        """The same with the mean counted: [J, r] have these means, (p+1,)."""
+        p, remove = len(means) - 1, self.remove + np.outer(self._level, means)
+        scores = (self.blocks @ remove[:, -1]) @ remove[:, :p]
+        gram = self.gram + self.informing * np.outer(means, means)
+        return replace(self, gram=gram, remove=remove, scores=scores, mean_power=self.informing * float(means[-1]) ** 2)
+
+    def sums_about(self, offset: float) -> Array:
+        """Σ of the residual less an offset over each block, the other nuisances taken off, (b,)."""
+        own = 0.0 if self.mean_power else 1.0  # what is left about the mean, or about the offset already
+        return np.asarray(
+            (self.blocks @ (self.remove[:, -1] + own * self._level * (self.means[-1] - offset))) @ self._level
+        )
 
     def errors_beside(self, steps: Array) -> Array:
         """Eq. (17) at steps (v, p) from the point where the model is as straight as here, |r − J s|/|x_m|, (v,)."""
@@ -139,6 +183,7 @@ def normal_matrices_of(runs: Sequence[Run], blocks: Array, p: int) -> list[Norma
         else NormalMatrices(
             projected[i], scores[i], float(totals[i]), float(release[i, -1, -1] / np.sqrt(totals[i] / run.length)),
             release[i, :-1, -1], release[i, -1], run.length, blocks[i], remove[i], run.share,
+            "" if run.zeroed.get(run.output) else run.output, run.zeroed.get(run.output) is False,
         )
         for i, run in enumerate(runs)
     ]  # fmt: skip
@@ -147,6 +192,12 @@ def normal_matrices_of(runs: Sequence[Run], blocks: Array, p: int) -> list[Norma
 def escaped(p: int, blocks: int = 0) -> NormalMatrices:
     """Of a model that ran away, or that nothing can follow."""
     return NormalMatrices(np.full((p + 1, p + 1), np.inf), np.zeros((blocks, p)), 1.0, np.inf)
+
+
+def _root(power: float, total: float) -> float:
+    """√(power/total), infinite where it is no number."""
+    value = float(np.sqrt(max(power, 0.0) / total))
+    return value if np.isfinite(value) else np.inf
 
 
 def first_state(run: Run, model: LinearModel) -> Array:

@@ -53,11 +53,26 @@ class Undetermined:
 
 
 @dataclass(frozen=True)
+class TransducerOffset:
+    """What the transducer of a channel reads above the model, one number for all of its runs, in `unit`."""
+
+    value: float
+    unit: str
+    std_error: float
+
+    @property
+    def words(self) -> str:
+        """Its size: "3.2 V"."""
+        return quantity(self.value, self.unit)
+
+
+@dataclass(frozen=True)
 class RunError:
     """Eq. (17) of one run, and its offset (difference of means over the standard deviation).
 
-    `error_with_mean` is RMS(x − x_m)/std(x_m), `rmse` RMS(x − x_m) in `unit`, that of the output. Earlier versions did
-    not write these; of a run on which the model is unstable `rmse` is not known.
+    `error_with_mean` is RMS(x − x_m)/std(x_m), `rmse` RMS(x − x_m) in `unit`, that of the output, x being the model
+    with the offset of its transducer, where it has one; `offset` is that without it. Earlier versions did not write
+    these; of a run on which the model is unstable `rmse` is not known.
     """
 
     id: str
@@ -76,7 +91,7 @@ class RunError:
     @property
     def words(self) -> ErrorOf:
         """Its error as a reader reads it."""
-        with_mean = math.hypot(self.error, self.offset) if self.error_with_mean is None else self.error_with_mean
+        with_mean = self.error_with_mean if self.error_with_mean is not None else math.hypot(self.error, self.offset)
         return ErrorOf(self.error, with_mean, (self.id,) if self.unstable else ())
 
 
@@ -151,6 +166,8 @@ class Starts:
 class FitResult(Shown):
     """A finished fit. Errors are eq. (17) averaged over the runs of a use, from the time domain; fractions, not %.
 
+    `transducer_offset` has, by the channel, what its transducer reads above the model, where the runs say that its mean
+    counts, or it is more than chance. x is the model with it, but for `offset`, which is that of the model alone.
     `error_with_mean` is RMS(x − x_m)/std(x_m), which sees the means that eq. (17) does not, `rmse` RMS(x − x_m) in
     `rmse_unit`, None where the outputs have several units; both are averaged as the error is. Earlier versions wrote
     the first as `anchored_error` alone, which is the same. `fit_percent` is 100 less the first in per cent: 100 (1 −
@@ -185,6 +202,7 @@ class FitResult(Shown):
     error_with_mean: Mapping[str, float | None] = field(default_factory=dict, metadata=WHERE_KNOWN)
     rmse: Mapping[str, float | None] = field(default_factory=dict, metadata=WHERE_KNOWN)
     rmse_unit: str = field(default="", metadata=WHERE_KNOWN)
+    transducer_offset: Mapping[str, TransducerOffset] = field(default_factory=dict, metadata=WHERE_KNOWN)
     fit_percent: Mapping[str, float | None] = field(default_factory=dict, metadata=WHERE_KNOWN)
     aic: float | None = field(default=None, metadata=WHERE_KNOWN)
     window: Window | None = field(default=None, metadata=WHERE_KNOWN)
@@ -212,7 +230,15 @@ class FitResult(Shown):
         with_mean, size = (self.error_with_mean or self.anchored_error).get(use), self.rmse.get(use)
         meant = (run for run in self.runs if run.use == use and run.id not in self.left_out)
         unstable = tuple(run.id for run in meant if run.unstable)
-        return ErrorOf(self.error.get(use), with_mean, unstable, quantity(size, self.rmse_unit) if size else "")
+        size_said = quantity(size, self.rmse_unit) if size else ""
+        return ErrorOf(self.error.get(use), with_mean, unstable, size_said, self._offset_of(use))
+
+    def _offset_of(self, use: str) -> str:
+        """The offsets that the error of a use is told after: where they are the larger part of what a model leaves."""
+        error, offset = self.error.get(use), self.offset.get(use)
+        if error is None or offset is None or not ErrorOf(error, math.hypot(error, offset)).mean_counts:
+            return ""
+        return " and ".join(one.words for one in self.transducer_offset.values())
 
     @property
     def values(self) -> dict[str, float]:

@@ -32,15 +32,18 @@ class Measured(Protocol):
         ...
 
 
-def run_error(run: Measured, error: float, offset: float, deviation: float, unit: str) -> RunError:
+def run_error(
+    run: Measured, error: float, offset: float, deviation: float, unit: str, of_transducer: float = 0.0
+) -> RunError:
     """Eq. (17), the offset, the error with the mean counted and the RMSE of a run whose output has this deviation.
 
-    RMS(x − x_m)² = std(x − x_m)² + mean(x − x_m)², so that RMS(x − x_m)/std(x_m) = √(error² + offset²). Of a run on
-    which the model is unstable each is bounded by :data:`ident.unstable.UNSTABLE`, and there is no RMSE.
+    RMS(x − x_m)² = std(x − x_m)² + mean(x − x_m)², so that RMS(x − x_m)/std(x_m) = √(error² + o²), o being the offset
+    less that `of_transducer`, which is in `unit`. Of a run on which the model is unstable each is bounded by
+    :data:`ident.unstable.UNSTABLE`, and there is no RMSE.
     """
     error = bounded(error)
     if error < UNSTABLE:
-        with_mean = float(np.hypot(error, offset))
+        with_mean = float(np.hypot(error, offset - of_transducer / deviation))
         return RunError(run.id, run.use, error, float(offset), with_mean, with_mean * deviation, unit)
     offset = float(np.clip(np.nan_to_num(offset, nan=UNSTABLE), -UNSTABLE, UNSTABLE))
     return RunError(run.id, run.use, error, offset, UNSTABLE, None, unit)

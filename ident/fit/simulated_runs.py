@@ -129,8 +129,12 @@ class SimulatedRuns:
     ) -> list[NormalMatrices]:
         """The moments of runs of one length, from one simulation of all of them."""
         found = normal_matrices_of(runs, self._products(runs, values, strides, steps), len(strides))
+        if runs[0].output in self.absolute:
+            found = [replace(run, transducer="", counted=False) for run in found]
+        if self.horizon is None:
+            return found
         # Where each window begins anew no mean is left that would tell an offset.
-        return found if self.horizon is None else [replace(run, offset=0.0, means=run.means[:0]) for run in found]
+        return [replace(run, offset=0.0, means=run.means[:0], transducer="", counted=False) for run in found]
 
     def _products(self, runs: tuple[Run, ...], values: Mapping[str, Array], strides: Array, steps: int) -> Array:
         """Σ of products of [J, N, 1, r] of runs of one length and of each block of them, (runs, blocks, q, q).

@@ -20,14 +20,16 @@ from ident.fit.information import aic
 from ident.fit.multistart import Optimum
 from ident.fit.normal_matrices import NormalMatrices
 from ident.fit.reduction import excited_band
-from ident.fit.result import Combination, Estimate, FitResult, RunError, Starts, Undetermined, Window
+from ident.fit.result import Combination, Estimate, FitResult, RunError, Starts, TransducerOffset, Undetermined, Window
 from ident.fit.run_errors import fit_percent, rmse_of, run_error
 from ident.fit.search import evolution
 from ident.fit.settings import Settings
 from ident.fit.simulated_fitness import SimulatedFitness
 from ident.fit.slow_answer import slow_lag
 from ident.fit.space import Space
+from ident.fit.transducer import Offset, offset_at, offsets_that_count
 from ident.fit.uncertainty import COMBINED, DETERMINED, Covariance, covariance
+from ident.matrix import Matrix
 from ident.noise.floor import Floors
 from ident.presets.preset import Combined
 from ident.presets.record_units import SAMPLE
@@ -68,7 +70,8 @@ def summarise(
         if preset.is_linear and not window and not optimum.left_out
         else objective.fresh(fit_runs).exact(point, sensitivities=False).runs
     )
-    fit_errors, verify_errors = _run_errors(fit_runs, own), _run_errors(verify_runs, verify)
+    offsets = {} if window else offsets_that_count(here)
+    fit_errors, verify_errors = _run_errors(fit_runs, own, offsets), _run_errors(verify_runs, verify, offsets)
     meant = [i for i, run in enumerate(fit_runs) if run.id not in optimum.left_out]
     mean_runs, mean_errors = [fit_runs[i] for i in meant], [fit_errors[i] for i in meant]
     with_mean = {
@@ -132,6 +135,9 @@ def summarise(
             (*mean_errors, *verify_errors),
             {"fit": [run.share for run in mean_runs], "verify": [run.share for run in verify_runs]},
         ),
+        transducer_offset={
+            name: TransducerOffset(one.value, _unit_of(name, matrix), one.std_error) for name, one in offsets.items()
+        },
         fit_percent=fit_percent((*mean_errors, *verify_errors), with_mean),
         aic=None
         if window
@@ -149,6 +155,7 @@ def summarise(
         data_hash=matrix.data_hash,
         notes=(
             *_notes(settings, objective, floors, fit_errors),
+            *_read_offsets(offsets, matrix),
             *_beyond(optimum, values, label),
             *told,
             *_alone(optimum.starts),
@@ -163,11 +170,14 @@ def summarise(
     )
 
 
-def _run_errors(runs: Sequence[Run], found: Sequence[NormalMatrices]) -> tuple[RunError, ...]:
+def _run_errors(
+    runs: Sequence[Run], found: Sequence[NormalMatrices], offsets: Mapping[str, Offset]
+) -> tuple[RunError, ...]:
     return tuple(
-        run_error(run, m.error, m.offset, float(np.sqrt(run.power / run.length)), run.units.get(run.output, "1"))
+        run_error(run, m.error, m.offset, float(np.sqrt(run.power / run.length)), run.units.get(run.output, "1"),
+                  offset_at(run, offsets))
         for run, m in zip(runs, found, strict=True)
-    )
+    )  # fmt: skip
 
 
 def _mean(runs: Sequence[Run], found: Sequence[RunError], what: str) -> float | None:
@@ -327,6 +337,19 @@ def noticed(fit: FitResult, notice: str) -> FitResult:
     """A fit with one more notice of its matrix, the first of them."""
     at = sum(note.startswith(_SAID_FIRST) for note in fit.notes)
     return replace(fit, notes=(*fit.notes[:at], notice, *fit.notes[at:]))
+
+
+def _unit_of(channel: str, matrix: Matrix) -> str:
+    """The SI unit of a channel, "1" where it has none."""
+    return next((run.units[channel] for run in matrix.runs if channel in run.units), "1")
+
+
+def _read_offsets(offsets: Mapping[str, Offset], matrix: Matrix) -> Iterator[str]:
+    """What each transducer reads above the model, or below it."""
+    for name, one in offsets.items():
+        size, error = (quantity(value, _unit_of(name, matrix)) for value in (abs(one.value), one.std_error))
+        side = "above" if one.value >= 0 else "below"
+        yield str(message("transducer_offset", channel=name, offset=size, error=error, side=side))
 
 
 def _unrecorded(runs: Sequence[Run]) -> Iterator[str]:

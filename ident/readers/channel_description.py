@@ -26,10 +26,14 @@ _LISTED = 4  # kinds of unit that a message names
 
 @dataclass(frozen=True)
 class ChannelDescription:
-    """SI value = ``scale.factor`` × raw + ``scale.offset``; `column` is a name or a 0-based number."""
+    """SI value = ``scale.factor`` × raw + ``scale.offset``; `column` is a name or a 0-based number.
+
+    `zeroed`: whether the transducer's zero was set by hand for the run, None where nobody said.
+    """
 
     column: str | int
     scale: Scale
+    zeroed: bool | None = None
 
 
 def describe_channels(data: Any, where: str) -> dict[str, ChannelDescription]:
@@ -52,7 +56,7 @@ def describe_channel(data: Any, name: str, where: str) -> ChannelDescription:
 
     `scale` is a number (column units a raw unit), `offset` a number in the channel's unit or a quantity.
     """
-    fields = Fields(data, where, ("column", "unit", "scale", "offset", "invert"))
+    fields = Fields(data, where, ("column", "unit", "scale", "offset", "invert", "zeroed"))
     column = fields.need("column", "name its column, or give the 0-based number")
     if isinstance(column, list | dict) or (isinstance(column, int) and column < 0):
         raise Unusable("missing-column", f"{shown(column)!r} is not a column", fields.place("column"), "write a name")
@@ -67,7 +71,8 @@ def describe_channel(data: Any, name: str, where: str) -> ChannelDescription:
     offset = channel_offset(fields, scale)
     sign = -1.0 if fields.truth("invert") else 1.0
     total = sign * scale.factor * (1.0 if factor is None else factor)
-    return ChannelDescription(column, Scale(total, sign * (scale.offset + offset), scale.unit))
+    zeroed = fields.truth("zeroed") if "zeroed" in fields else None
+    return ChannelDescription(column, Scale(total, sign * (scale.offset + offset), scale.unit), zeroed)
 
 
 def channel_scale(unit: str, name: str, where: str) -> Scale:

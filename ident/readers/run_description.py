@@ -86,6 +86,7 @@ def describe_run(data: Any, where: str) -> RunDescription:
         frequency=fields.positive("frequency", "frequency" if time_unit == "s" else "per sample"),
         rated_current=fields.positive("rated_current", units.get("current", "A")),
         closed_loop=fields.truth("closed_loop") if "closed_loop" in fields else None,
+        zeroed={name: channel.zeroed for name, channel in channels.items() if channel.zeroed is not None},
     )
     rows, hold_stated = describe_rows(fields), "hold" in fields
     trend = describe_trend(fields, kind)

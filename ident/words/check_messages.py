@@ -222,6 +222,9 @@ CAUSES: Mapping[str, str] = {
         "The model explains almost nothing: the error is {error:error} of the output. Likely causes: {causes:terms}.",
     "missing_input.fit":
         "An input is not recorded: {evidence}. Add its channel, or keep only the rows in which it rests.",
+    "transducer_offset":
+        "The transducer of {channel} reads {offset} {side} the model, with a standard error of {error}. This offset is "
+        "part of the model in RMSE and in the error with the mean.",
     "unstable": "The model is unstable. Likely cause: {causes:terms}.",
 }  # fmt: skip
 """What a fit says that is hardly better than none."""

@@ -28,13 +28,15 @@ class ErrorOf:
     """An error of eq. (17), 1, over some runs; None where there are none.
 
     `with_mean` is RMS(x − x_m)/std(x_m) over the same runs, None where it is not known. `unstable` are the ids of the
-    runs on which the model is unstable, `rmse` is the root mean square of the residual with its unit, in words.
+    runs on which the model is unstable, `rmse` is the root mean square of the residual with its unit, in words; so is
+    `offset`, what the transducer reads above the model, which both count out, where a reader must know of it.
     """
 
     error: float | None
     with_mean: float | None = None
     unstable: Sequence[str] = ()
     rmse: str = ""
+    offset: str = ""
 
     @property
     def is_unstable(self) -> bool:
@@ -77,9 +79,9 @@ class ErrorOf:
     def _said(self, number: Callable[[float | None], str], size: str) -> str:
         if self.is_unstable:
             return unstable_on(self.unstable)
-        if not self.mean_counts:
-            return number(self.error)
-        return f"{number(self.error)} (with the mean {number(self.with_mean)}{size})"
+        told = [f"after an offset of {self.offset}"] if self.offset else []
+        told += [f"with the mean {number(self.with_mean)}{size}"] if self.mean_counts else []
+        return number(self.error) + (f" ({', '.join(told)})" if told else "")
 
 
 def first_line(name: str, errors: Mapping[str, ErrorOf], number: Callable[[float | None], str] = percent) -> str:

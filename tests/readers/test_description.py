@@ -197,6 +197,8 @@ runs:
 
 def test_a_bare_number_is_no_angle_and_an_angle_no_length():
     assert describe_channel({"column": 0, "unit": "1"}, "displacement", "x").scale.unit == "1"
+    assert describe_channel({"column": 0, "unit": "1"}, "displacement", "x").zeroed is None
+    assert describe_channel({"column": 0, "unit": "1", "zeroed": False}, "displacement", "x").zeroed is False
     assert describe_channel({"column": 0, "unit": "deg"}, "displacement", "x").scale.factor == pytest.approx(0.0174533)
     with pytest.raises(Unusable, match="does not measure velocity or angular velocity"):
         describe_channel({"column": 0, "unit": "deg"}, "velocity", "x")

@@ -1,0 +1,163 @@
+"""The offset of a transducer: what it reads where the model says zero, one number for all of its runs.
+
+A record is y(θ) + b and what is left. Of run j, with its first states taken off, let r̄ be the mean of x_m − y, J̄ that
+of ∂y/∂θ, n the number of samples that tell the mean, and P the sum of squares that is left about the mean. Then
+
+    error_j(b)² = (P + n (r̄ − b)²) / Σ (x_m − mean)²,      F(θ, b) = mean over runs of error_j(b),
+
+and b is at the minimum of F. With one run b is r̄, and F is eq. (17). Where the mean counts (``zeroed: false``), F is
+what is fitted: its gradient at the best b is that in θ alone, and its Gauss-Newton matrix has b eliminated, so that
+J̄ counts less its mean over the runs, weighted as they are. Elsewhere eq. (17) is fitted, and b is found afterwards.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ident.fit.normal_matrices import NormalMatrices
+from ident.run import Run
+
+Array = NDArray[np.float64]
+_ROUNDS = 200  # of reweighting
+_SETTLED = 1e-13  # of the largest mean: a step that changes nothing
+_TOLD = 1e-6  # of the samples: fewer tell no mean, as where a first position does the same as an offset
+RECOGNISED = 3.0
+"""Standard errors beyond which an offset that nobody stated is one: chance passes that once in 370 records.
+
+Test: test_transducer.py::test_without_an_offset_nothing_is_found_and_the_fit_is_that_of_equation_17"""
+
+
+@dataclass(frozen=True)
+class Offset:
+    """What a transducer reads above the model, in the unit of its channel, and its standard error.
+
+    It is `stated` where the runs say ``zeroed: false``.
+    """
+
+    value: float
+    std_error: float
+    stated: bool = False
+
+    @property
+    def counts(self) -> bool:
+        """Whether it is part of the model: it was stated that there may be one, or it is more than chance."""
+        return self.stated or abs(self.value) > RECOGNISED * self.std_error
+
+
+class Read(Protocol):
+    """An offset, or what a result keeps of one."""
+
+    @property
+    def value(self) -> float:
+        """In the unit of its channel."""
+        ...
+
+
+class Optimal(Protocol):
+    """A fitness at its optimum: see :class:`ident.fit.fitness.Local`."""
+
+    @property
+    def runs(self) -> tuple[NormalMatrices, ...]:
+        """What each run says."""
+        ...
+
+    @property
+    def curvature(self) -> Array:
+        """The Gauss-Newton matrix, (p, p)."""
+        ...
+
+    @property
+    def weights(self) -> Array:
+        """What each run counts in it."""
+        ...
+
+
+def with_means(runs: Sequence[NormalMatrices]) -> tuple[NormalMatrices, ...]:
+    """The runs, those whose mean counts with it, each about the offset of its transducer."""
+    found = list(runs)
+    for numbers in _by_transducer(runs, [run.counted for run in runs]).values():
+        own = [runs[i] for i in numbers]
+        b = offset_of(own)
+        centre = np.average([run.means for run in own], axis=0, weights=[_weight(run, b) for run in own])
+        centre[-1] = b
+        for i in numbers:
+            found[i] = runs[i].about(runs[i].means - centre)
+    return tuple(found)
+
+
+def offset_of(runs: Sequence[NormalMatrices]) -> float:
+    """The offset b of the transducer of these runs, at the minimum of F: the mean of r̄, reweighted until it holds."""
+    means = np.array([run.means[-1] for run in runs])
+    b = float(np.median(means))
+    for _ in range(_ROUNDS if len(runs) > 1 else 0):
+        last, b = b, float(np.average(means, weights=[_weight(run, b) for run in runs]))
+        if abs(b - last) <= _SETTLED * float(np.abs(means).max()):
+            break
+    return b
+
+
+def offsets(here: Optimal) -> dict[str, Offset]:
+    """The offset of each transducer at an optimum, by its channel, with its standard error.
+
+    To first order b = Σ w n (r̄ − J̄ δθ) / Σ w n, where δθ is the error of the parameters. Both are sums over blocks of
+    the records, whose scatter gives the standard error, as that of the parameters (:mod:`ident.fit.uncertainty`).
+    """
+    if not np.all(np.isfinite(here.curvature)) or not np.all([np.isfinite(run.error) for run in here.runs]):
+        return {}
+    names = _by_transducer(here.runs, [True] * len(here.runs))
+    return {name: _offset(here, frozenset(numbers)) for name, numbers in names.items()}
+
+
+def offsets_that_count(here: Optimal) -> dict[str, Offset]:
+    """Those that are part of the model."""
+    return {name: found for name, found in offsets(here).items() if found.counts}
+
+
+def offset_at(run: Run, offsets: Mapping[str, Read]) -> float:
+    """What is part of the model of a run's output, of the offsets of transducers; 0 where its zero is its own."""
+    known = offsets.get(run.output)
+    return 0.0 if known is None or run.zeroed.get(run.output) else known.value
+
+
+def _offset(here: Optimal, own: frozenset[int]) -> Offset:
+    b = offset_of([here.runs[i] for i in sorted(own)])
+    counts = np.array([_weight(run, b) if i in own else 0.0 for i, run in enumerate(here.runs)])
+    counts /= counts.sum()
+    p = len(here.curvature)
+    slope = sum((c * run.means[:p] for c, run in zip(counts, here.runs, strict=True) if c), np.zeros(p))
+    through = _solved(here.curvature, slope)
+    influence = np.concatenate([
+        count / max(run.informing, 1.0) * run.sums_about(b) - weight * run.scores @ through
+        for run, weight, count in zip(here.runs, here.weights[: len(here.runs)], counts, strict=True)
+    ])  # fmt: skip
+    freedom = len(influence) - p - 1
+    scatter = float(influence @ influence) * (len(influence) / freedom if freedom > 0 else 1.0)
+    return Offset(b, float(np.sqrt(scatter)), any(here.runs[i].counted for i in own))
+
+
+def _solved(curvature: Array, slope: Array) -> Array:
+    """H⁻¹ s along the directions that the data see."""
+    scale = np.sqrt(np.maximum(np.diag(curvature), 1e-300))
+    return np.asarray(
+        np.linalg.pinv(curvature / scale / scale[:, None], 1e-9, hermitian=True) @ (slope / scale) / scale
+    )
+
+
+def _weight(run: NormalMatrices, b: float) -> float:
+    """w n: what the mean of a run counts, at an offset."""
+    power = max(run.centred + run.informing * (run.means[-1] - b) ** 2, 1e-24 * run.total)
+    return run.share * run.informing / float(np.sqrt(power * run.total))
+
+
+def _by_transducer(runs: Sequence[NormalMatrices], asked: Sequence[bool]) -> Mapping[str, list[int]]:
+    """The numbers of the runs that are asked for, by their transducer: those that tell a mean of a shared offset."""
+    found: dict[str, list[int]] = {}
+    for i, (run, is_asked) in enumerate(zip(runs, asked, strict=True)):
+        if is_asked and run.transducer and run.informing > _TOLD * run.length:
+            found.setdefault(run.transducer, []).append(i)
+    return found
