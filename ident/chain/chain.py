@@ -87,6 +87,10 @@ class Chain:
         return frozenset(equation.target for stage in self.stages for equation in stage.equations)
 
     @cached_property
+    def _core_states(self) -> frozenset[str]:
+        return frozenset(e.target for stage in self.stages for e in stage.equations if e.is_rate)
+
+    @cached_property
     def units(self) -> Mapping[str, str]:
         """The unit of each state and signal, as its stage states it."""
         return {quantity.name: quantity.unit for stage in self.stages for quantity in stage.publishes}
@@ -119,7 +123,7 @@ class Chain:
                 names |= {name: version(name, so_far[name] - 1) for name in redefined & equation.names}
                 equation = read_whole(written, self._core | names.keys())
             if target in self._core:
-                if so_far[target] and (equation.is_rate or equation.is_memory):
+                if so_far[target] and (equation.is_rate or equation.is_memory or target in self._core_states):
                     raise unfit(effect) if effect else AssertionError(target)
                 own = version(target, so_far[target])
                 so_far[target] += 1

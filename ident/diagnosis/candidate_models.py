@@ -81,7 +81,10 @@ class CandidateModels:
         known = {
             effect.name: about(effect, preset.middle)
             for effect in listed
-            if preset.takes(effect) and not unmeasured(preset.with_effects((effect,)).chain.symbols, matrix.runs)
+            if preset.takes(effect)
+            and not unmeasured(preset.with_effects((effect,)).chain.symbols, matrix.runs)
+            and effect.suits(matrix)
+            and effect.unless not in preset.core.symbols
         }
         return cls(preset, matrix, given, excited_band(matrix.of_use("fit")), known, horizon=horizon, memory=memory)
 

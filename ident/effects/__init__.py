@@ -63,7 +63,17 @@ OF_BENCH = _of_files(
     "stiction",
 )
 """Those of an actuator on a bench, whose signals are rated currents and pressures."""
-CATALOGUE = (*EFFECTS, *OF_BENCH)
+OF_RECORDS = _of_files(
+    "speed_asymmetry",
+    "root_outflow",
+    "overflow",
+    "normal_force_friction",
+    "pressure_friction",
+    "arm_gravity",
+    "sensor_curve",
+)
+"""Those that only some records can show: what they read is measured, or what they need is there."""
+CATALOGUE = (*EFFECTS, *OF_RECORDS, *OF_BENCH)
 """All of them: which a model takes its chain says."""
 
 

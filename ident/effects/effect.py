@@ -6,8 +6,10 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 
 from ident.cached import cached_property
+from ident.effects.needs import Need
 from ident.equations.equation import Equation
 from ident.errors import Unusable
+from ident.matrix import Matrix
 from ident.parameter import Parameter
 from ident.stages import PLACES
 
@@ -50,6 +52,10 @@ class Effect:
     """What it does in a few words, where its name is of a part that a machine need not have."""
     of_specimen: bool = False
     """Whether it is a specimen's: no diagnosis names it where nothing is known of a specimen."""
+    needs: Need | None = None
+    """What a matrix must have for a diagnosis to look for it (:mod:`ident.effects.needs`); None is nothing."""
+    unless: str = ""
+    """A symbol of a machine that has the effect in its core already."""
     own: bool = False
     """Whether its bounds were stated for this machine by who wrote it; then they hold for a machine of any size."""
 
@@ -81,6 +87,10 @@ class Effect:
     def has_searched_shapes(self) -> bool:
         """Whether shapes are searched with the strength: it is then tried at many of them, for itself."""
         return any(parameter.searched for parameter in self.shape)
+
+    def suits(self, matrix: Matrix) -> bool:
+        """Whether a matrix has what it needs."""
+        return self.needs is None or self.needs(matrix)
 
     def symbol(self, name: str) -> str:
         """The name of one of its own quantities in the equations of a whole chain."""

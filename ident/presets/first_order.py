@@ -10,10 +10,12 @@ TRACKING_LAG = stage(
     "load",
     (
         Quantity("x", "m", "position"),
+        Quantity("xo", "m", "what draws the output back"),
         Quantity("v", "m/s", "speed"),
         Quantity("X", "m", "position of what the transducer is fixed to"),
     ),
-    ("v = (gain * w - x) / tau", "the closed loop follows its command like a single lag"),
+    ("xo = x", "the output draws itself back"),
+    ("v = (gain * w - xo) / tau", "the closed loop follows its command like a single lag"),
     ("x' = v", "position is the integral of speed"),
     ("X = x", "the transducer's frame is rigid"),
     parameters=(

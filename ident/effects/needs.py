@@ -1,0 +1,36 @@
+"""What a record must have for an effect to be looked for: where it has not, no data could show the effect."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ident.matrix import Matrix
+
+Need = Callable[[Matrix], bool]
+ONE_SIDED = 0.05
+"""Of the largest value: what may lie below zero by noise or an offset of a record that stays on one side.
+
+Test: tests/effects/test_needs.py::test_a_record_is_one_sided_up_to_a_twentieth"""
+
+
+def angle_measured(matrix: Matrix) -> bool:
+    """Whether the position of every run is an angle: only then is it known where a weight hangs."""
+    return all(run.units.get("displacement") == "rad" and "displacement" in run.channels for run in matrix.runs)
+
+
+def one_sided_output(matrix: Matrix) -> bool:
+    """Whether the output stays on one side of zero: a curve of even order bends nothing about zero."""
+    return all(_one_sided(run.measured) for run in matrix.runs)
+
+
+def one_sided_command(matrix: Matrix) -> bool:
+    """Whether the command stays on one side of zero: what drives then pushes and lets go, and never pulls."""
+    return all("command" in run.channels and _one_sided(run.command) for run in matrix.runs)
+
+
+def _one_sided(samples: NDArray[np.float64]) -> bool:
+    lowest, highest = float(samples.min()), float(samples.max())
+    return min(highest, -lowest) <= ONE_SIDED * max(highest, -lowest)

@@ -1,0 +1,24 @@
+"""What is stored runs over an edge."""
+
+from ident.effects.effect import Effect
+from ident.effects.needs import one_sided_output
+from ident.parameter import Parameter, Starts
+
+OVERFLOW = Effect(
+    name="overflow",
+    place="load",
+    meaning="a level does not rise far above an edge, at 1/g, over which the rest runs off",
+    strength=Parameter(
+        "inverse_level", "g", "1/m", 0.0, 1e3, 0.0, "inverse of the level of the edge", start=Starts.STROKE_END,
+        of_motion=True,
+    ),
+    texts=("xo = xo + ro * max(x - 1 / max(g, 1e-9), 0)",),
+    units={"xo": "m"},
+    shape=(
+        Parameter("ratio", "ro", "1", 1.0, 1e3, 30.0, "outflow over the edge against the outflow below, for a level"),
+    ),
+    looks="flat tops at one level, however large the command is",
+    source="weir, made linear in the small height above its edge",
+    steps=2,
+    needs=one_sided_output,
+)  # fmt: skip

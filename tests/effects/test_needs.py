@@ -1,0 +1,168 @@
+"""Effects that only some records can show: simulated as SciPy does it from the physics, and offered where they can be.
+
+Each machine below is written out here, from the physics; nothing but its numbers comes from the library.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+import pytest
+import scipy
+
+from ident.chain.conditions import conditions
+from ident.diagnosis.candidate_models import CandidateModels
+from ident.effects import CATALOGUE, EFFECTS, OF_BENCH, OF_RECORDS, effect
+from ident.effects.needs import ONE_SIDED
+from ident.fit.settings import Settings
+from ident.matrix import Actuator, Matrix
+from ident.presets import preset
+from ident.run import Run
+from ident.simulation.simulate import responses
+
+RATE, SECONDS = 100.0, 8.0
+GAIN, TAU = 0.8, 0.4
+MASS, DAMPING, STIFFNESS = 2.0, 3.0, 40.0
+T = np.arange(round(RATE * SECONDS)) / RATE
+LEVEL = 1.0 + 0.8 * np.sin(1.3 * T) + 0.15 * np.sin(5.0 * T)
+FORCE = 40.0 * np.sin(2.0 * T) + 15.0 * np.sin(5.3 * T)
+SQUEEZE = 10.0 + 4.0 * np.sin(0.9 * T)
+
+
+def at(samples: np.ndarray, t: float) -> float:
+    return float(np.interp(t, T, samples))
+
+
+def solved(rates: Callable[[float, np.ndarray], list[float]], states: int) -> np.ndarray:
+    """The states at the samples, (states, n), from rest."""
+    found = scipy.integrate.solve_ivp(rates, (0.0, T[-1]), np.zeros(states), t_eval=T, rtol=1e-8, atol=1e-10,
+                                      max_step=0.5 / RATE)  # fmt: skip
+    return np.asarray(found.y)
+
+
+def lag(back: Callable[[float], float] = lambda x: x, turned: float = 0.0) -> np.ndarray:
+    """A level that is fed by the command and falls back by what `back` says of it."""
+
+    def rates(t: float, s: np.ndarray) -> list[float]:
+        rate = (GAIN * at(LEVEL, t) - back(s[0])) / TAU
+        return [rate * (1.0 + turned * np.sign(rate))]
+
+    return solved(rates, 1)[0]
+
+
+def mass(resists: Callable[[float, float, float], float]) -> np.ndarray:
+    """A mass on a spring and a damper that a force drives, against what else resists: a function of t, x and v."""
+
+    def rates(t: float, s: np.ndarray) -> list[float]:
+        x, v = s
+        return [v, (at(FORCE, t) - DAMPING * v - STIFFNESS * x - resists(t, x, v)) / MASS]
+
+    return solved(rates, 2)[0]
+
+
+def dry(v: float) -> float:
+    """The direction of sliding; so steep that what creeps is far below what is compared."""
+    return float(np.tanh(v / 1e-4))
+
+
+@dataclass(frozen=True)
+class Case:
+    """An effect on a machine: its values, and the machine with it as a function of a factor of its strength."""
+
+    model: str
+    values: dict[str, float]
+    machine: Callable[[float], np.ndarray]
+    channels: dict[str, np.ndarray]
+    close: float = 2e-3  # of the output's deviation
+
+
+def bent(curvature: float) -> np.ndarray:
+    y = lag()
+    return y * (1.0 + curvature * y)
+
+
+CASES = {
+    "speed_asymmetry": Case("first_order", {"speed_asymmetry.asymmetry": 0.5}, lambda k: lag(turned=0.5 * k), {}),
+    "root_outflow": Case(
+        "first_order", {"root_outflow.share": 0.7, "root_outflow.level": 0.6},
+        lambda k: lag(lambda x: x + 0.7 * k * (np.sign(x) * np.sqrt(0.6 * abs(x)) - x)), {}),
+    "overflow": Case(
+        "first_order", {"overflow.inverse_level": 1.0, "overflow.ratio": 30.0},
+        lambda k: lag(lambda x: x + 30.0 * max(x - 1.0 / k, 0.0) if k else x), {}),
+    "sensor_curve": Case("first_order", {"sensor_curve.curvature": 0.3}, lambda k: bent(0.3 * k), {}),
+    "normal_force_friction": Case(
+        "drive", {"normal_force_friction.coefficient": 0.6},
+        lambda k: mass(lambda t, _x, v: 0.6 * k * at(SQUEEZE, t) * dry(v)), {"vertical_load": SQUEEZE}, 1e-2),
+    "pressure_friction": Case(
+        "drive", {"pressure_friction.area": 5e-3},
+        lambda k: mass(lambda t, _x, v: 0.5 * k * at(SQUEEZE, t) * dry(v)), {"load_pressure": 1e2 * SQUEEZE}, 1e-2),
+    "arm_gravity": Case(
+        "drive", {"arm_gravity.torque": 30.0, "arm_gravity.hanging": 0.5},
+        lambda k: mass(lambda _t, x, _v: 30.0 * k * np.sin(x - 0.5)), {}),
+}  # fmt: skip
+
+
+def test_each_of_them_has_a_machine_here():
+    assert set(CASES) == {one.name for one in OF_RECORDS}
+
+
+def ours(case: Case, factor: float) -> np.ndarray:
+    (name,) = {value.partition(".")[0] for value in case.values}
+    model = preset(case.model, (name,))
+    drive = FORCE if case.model == "drive" else LEVEL
+    channels = {"command": drive, "displacement": np.zeros_like(drive), **case.channels}
+    units = {"vertical_load": "N", "load_pressure": "Pa"}
+    run = Run("r", "", RATE, channels, units, assumed_beginning="at rest")
+    model, matrix = model.for_matrix(Matrix(Actuator("A"), (run,)))
+    known = {p.in_equations: p.value for p in model.parameters} | conditions(run, matrix.actuator)
+    own = {"gain": GAIN, "tau": TAU, "m0": MASS, "c0": DAMPING, "k0": STIFFNESS}
+    known |= {name: value for name, value in own.items() if name in known}
+    known |= {model.parameter(name).in_equations: value for name, value in case.values.items()}
+    known[model.effects[0].added[0].in_equations] *= factor
+    batch = {name: np.array([[value]]) for name, value in known.items()}
+    return responses(model.chain, list(matrix.runs), batch, 16)[:, 0, 0]
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_the_kernel_agrees_with_the_physics_and_a_strength_that_is_off_by_a_tenth_is_seen(name):
+    case = CASES[name]
+    wanted, without = case.machine(1.0), case.machine(0.0)
+    size = np.std(wanted)
+    assert np.std(without - wanted) > 0.05 * size
+    assert np.std(ours(case, 1.0) - wanted) < case.close * size
+    assert np.std(ours(case, 1.1) - wanted) > case.close * size
+
+
+def candidates(model: str, units: dict[str, str], **channels: np.ndarray) -> set[str]:
+    run = Run("r", "", RATE, channels, units, output="displacement")
+    return set(CandidateModels.of(Matrix(Actuator("A"), (run,)), Settings(model=model)).effects)
+
+
+def test_an_effect_is_looked_for_only_where_the_record_could_show_it():
+    """What nobody recorded, or what stays about zero, adds no candidate: others become no less probable by it."""
+    of_records, about_zero = {one.name for one in OF_RECORDS}, np.sin(T)
+    metres = {"command": "m", "displacement": "m"}
+    assert not of_records & candidates("first_order", metres, command=about_zero, displacement=about_zero)
+    level = {"speed_asymmetry", "root_outflow", "overflow", "sensor_curve"}
+    assert of_records & candidates("first_order", metres, command=LEVEL, displacement=LEVEL) == level
+    driven = {"command": "N", "displacement": "m", "vertical_load": "N", "load_pressure": "Pa"}
+    recorded = {"command": FORCE, "displacement": about_zero}
+    assert not of_records & candidates("drive", driven, **recorded)
+    found = candidates("drive", driven, vertical_load=SQUEEZE, load_pressure=SQUEEZE, **recorded)
+    assert of_records & found == {"normal_force_friction", "pressure_friction"}
+    turning = {"command": "N*m", "displacement": "rad"}
+    assert of_records & candidates("drive", turning, **recorded) == {"arm_gravity"}
+
+
+@pytest.mark.parametrize(("below", "is_one_sided"), [(0.9 * ONE_SIDED, True), (1.1 * ONE_SIDED, False)])
+def test_a_record_is_one_sided_up_to_a_twentieth(below, is_one_sided):
+    run = Run("r", "", RATE, {"command": T, "displacement": np.linspace(-below, 1.0, len(T))})
+    for turned in (run, run.turned("displacement")):
+        assert effect("sensor_curve").suits(Matrix(Actuator("A"), (turned,))) is is_one_sided
+
+
+def test_the_lists_share_no_name():
+    names = [one.name for one in CATALOGUE]
+    assert len(names) == len(set(names)) == len(EFFECTS) + len(OF_RECORDS) + len(OF_BENCH)
