@@ -23,14 +23,15 @@ def angle_measured(matrix: Matrix) -> bool:
 
 def one_sided_output(matrix: Matrix) -> bool:
     """Whether the output stays on one side of zero: a curve of even order bends nothing about zero."""
-    return all(_one_sided(run.measured) for run in matrix.runs)
+    return all(one_sided(run.measured) for run in matrix.runs)
 
 
 def one_sided_command(matrix: Matrix) -> bool:
     """Whether the command stays on one side of zero: what drives then pushes and lets go, and never pulls."""
-    return all("command" in run.channels and _one_sided(run.command) for run in matrix.runs)
+    return all("command" in run.channels and one_sided(run.command) for run in matrix.runs)
 
 
-def _one_sided(samples: NDArray[np.float64]) -> bool:
+def one_sided(samples: NDArray[np.float64]) -> bool:
+    """Whether samples stay on one side of zero."""
     lowest, highest = float(samples.min()), float(samples.max())
     return min(highest, -lowest) <= ONE_SIDED * max(highest, -lowest)

@@ -9,7 +9,7 @@ SPEED_ASYMMETRY = Effect(
     place="load",
     meaning="the output rises with one time constant and falls with another",
     strength=Parameter("asymmetry", "a", "1", -0.9, 0.9, 0.0, "share by which it rises faster than the mean"),
-    texts=("v = v * (1 + a * sgn(gain * w - xo))",),
+    texts=("v = v * (1 + a * sgn(xi - xo))",),
     units={"v": "m/s"},
     looks="fast up and slow down, at every amplitude",
     source="a drive that pushes and lets go, such as a pump, a heater or a motor behind one transistor",

@@ -20,7 +20,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ident.fit.normal_matrices import NormalMatrices
-from ident.run import Run
+from ident.run import Run, over_runs
+from ident.words.error import MEAN_COUNTS
 
 Array = NDArray[np.float64]
 _ROUNDS = 200  # of reweighting
@@ -36,17 +37,21 @@ Test: test_transducer.py::test_without_an_offset_nothing_is_found_and_the_fit_is
 class Offset:
     """What a transducer reads above the model, in the unit of its channel, and its standard error.
 
-    It is `stated` where the runs say ``zeroed: false``.
+    It is `stated` where the runs say ``zeroed: false``, `large` where it is the larger part of what the model leaves.
     """
 
     value: float
     std_error: float
     stated: bool = False
+    large: bool = False
 
     @property
     def counts(self) -> bool:
-        """Whether it is part of the model: it was stated that there may be one, or it is more than chance."""
-        return self.stated or abs(self.value) > RECOGNISED * self.std_error
+        """Whether it is part of the model: it was stated that there may be one, it is more than chance, or large.
+
+        A large one may be chance where weak parameters move the mean, but no user wants the error that it makes.
+        """
+        return self.stated or self.large or abs(self.value) > RECOGNISED * self.std_error
 
 
 class Read(Protocol):
@@ -137,7 +142,10 @@ def _offset(here: Optimal, own: frozenset[int]) -> Offset:
     ])  # fmt: skip
     freedom = len(influence) - p - 1
     scatter = float(influence @ influence) * (len(influence) / freedom if freedom > 0 else 1.0)
-    return Offset(b, float(np.sqrt(scatter)), any(here.runs[i].counted for i in own))
+    runs = [here.runs[i] for i in sorted(own)]
+    error, with_mean = over_runs([[run.error, np.hypot(run.error, run.offset)] for run in runs], runs)
+    large = bool(with_mean > MEAN_COUNTS * error)
+    return Offset(b, float(np.sqrt(scatter)), any(run.counted for run in runs), large)
 
 
 def _solved(curvature: Array, slope: Array) -> Array:

@@ -10,12 +10,14 @@ TRACKING_LAG = stage(
     "load",
     (
         Quantity("x", "m", "position"),
+        Quantity("xi", "m", "what drives the output"),
         Quantity("xo", "m", "what draws the output back"),
         Quantity("v", "m/s", "speed"),
         Quantity("X", "m", "position of what the transducer is fixed to"),
     ),
+    ("xi = gain * w", "in proportion to the command"),
     ("xo = x", "the output draws itself back"),
-    ("v = (gain * w - xo) / tau", "the closed loop follows its command like a single lag"),
+    ("v = (xi - xo) / tau", "the closed loop follows its command like a single lag"),
     ("x' = v", "position is the integral of speed"),
     ("X = x", "the transducer's frame is rigid"),
     parameters=(

@@ -22,6 +22,8 @@ class RequiredData:
     """Whether a run that states no specimen moves none."""
     turns: bool = False
     """Whether the motion of such a machine is an angle as a rule."""
+    one_sided: bool = False
+    """Whether command and output of such a machine stay on one side of zero, as a pump and a level do."""
     needs: tuple[str, ...] = ()
     """What must be stated of the actuator, or measured."""
     conventions: tuple[Convention, ...] = ()

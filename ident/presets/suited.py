@@ -8,6 +8,7 @@ from typing import Protocol
 import numpy as np
 
 from ident.chain.disturbance import can_be_disturbed
+from ident.effects.needs import one_sided
 from ident.errors import Unusable
 from ident.presets import PRESETS, Preset, preset
 from ident.run import BENCH, DISTURBANCES, MOTIONS, Run
@@ -117,9 +118,16 @@ def _allows(model: Preset, run: Described) -> bool:
     disturbed = [DISTURBANCES[name] for name in run.channels if name in DISTURBANCES]
     if not all(can_be_disturbed(model.chain, place) for place in disturbed):
         return False
+    if model.data.one_sided and not _one_sided(run):
+        return False
     drives = {model.data.driven_by} | ({"displacement"} if model.data.driven_by == "velocity" else set())
     drives |= {"command"} if _by_force(model, run) or _by_motion(model, run) else set()
     return bool(drives & set(run.channels)) and run.output in model.chain.outputs and run.output not in drives
+
+
+def _one_sided(run: Described) -> bool:
+    """Whether a run that was read shows a command and an output that stay on one side of zero."""
+    return isinstance(run, Run) and "command" in run.channels and one_sided(run.command) and one_sided(run.measured)
 
 
 def _rank(model: Preset, runs: Sequence[Described]) -> int:

@@ -3,6 +3,7 @@
 from ident.stages.controller import OPENED_BY_COMMAND, PI, PID, PROPORTIONAL, SPEED_INSIDE
 from ident.stages.drive import CASCADE, DIRECT_FORCE, IDEAL_DRIVE
 from ident.stages.flow import FLOW_TO_SPEED, LINEAR_FLOW, SQUARE_ROOT_FLOW
+from ident.stages.level import LOWER_LEVEL, UPPER_LEVEL
 from ident.stages.load import BLOCKED, DRIVEN_MASS, FOLLOWING, MASS_SPRING_DAMPER, MEASURED_LOAD, PRESSED_SPECIMEN
 from ident.stages.long_stroke import DRIVEN_VALVE, OVERLAP, TABLE_ON_GUIDES, TIGHT_CYLINDER, TWO_SIDED_FLOW
 from ident.stages.motor import TORQUE
@@ -28,6 +29,7 @@ __all__ = [
     "IDEAL_SENSOR",
     "INSTANT_VALVE",
     "LINEAR_FLOW",
+    "LOWER_LEVEL",
     "MASS_SPRING_DAMPER",
     "MEASURED_LOAD",
     "MOVED_SPECIMEN",
@@ -46,6 +48,7 @@ __all__ = [
     "TIGHT_CYLINDER",
     "TORQUE",
     "TWO_SIDED_FLOW",
+    "UPPER_LEVEL",
     "Quantity",
     "Scale",
     "Stage",

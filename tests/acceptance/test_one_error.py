@@ -21,6 +21,7 @@ from tests.conftest import FEW
 from tests.fit import rig
 from tests.fit.test_windows import cylinder
 from tests.presets.test_composed import force_loop
+from tests.presets.test_levels import tanks
 from tests.presets.test_machines import motor, specimen
 
 RATE = 500.0
@@ -87,6 +88,7 @@ MACHINES: dict[str, tuple[str, Callable[[], Matrix], tuple[str, ...]]] = {
     "a loop, held": ("qian2014", lambda: loop(held=True), ()),
     "a loop with an effect": ("qian2014", loop, ("dead_zone",)),
     "a loop as a lag": ("first_order", loop, ()),
+    "two tanks": ("levels", lambda: Matrix(Actuator("TANKS"), (tanks(0, "fit"), tanks(1, "verify"))), ()),
     "a driven mass": ("drive", driven, ()),
     "a driven mass with an effect": ("drive", driven, ("coulomb_friction",)),
     "a motor": ("motor", lambda: motor(5), ()),

@@ -12,18 +12,19 @@ from ident.fit.settings import Settings
 from ident.presets import PRESETS, preset
 
 TAKEN = {
-    "qian2014": 41,
-    "first_order": 13,
-    "drive": 16,
-    "open_valve": 38,
-    "motor": 25,
-    "specimen": 10,
-    "force_loop": 41,
-    "kononykhin": 7,
-    "strano": 40,
+    "qian2014": 45,
+    "first_order": 17,
+    "levels": 17,
+    "drive": 20,
+    "open_valve": 42,
+    "motor": 29,
+    "specimen": 13,
+    "force_loop": 45,
+    "kononykhin": 8,
+    "strano": 42,
 }
 LOOPS = {
-    "qian2014": {"v", "y"}, "first_order": set(), "drive": set(), "open_valve": {"v"}, "motor": set(),
+    "qian2014": {"v", "y"}, "first_order": set(), "levels": set(), "drive": set(), "open_valve": {"v"}, "motor": set(),
     "specimen": set(), "force_loop": {"v", "y"}, "kononykhin": set(),
     "strano": {"P", "v", "y"},
 }  # fmt: skip

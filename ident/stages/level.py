@@ -1,0 +1,47 @@
+"""Two levels in series, such as tanks: each runs out with its root, the upper one into the lower.
+
+The outflow at a level h is r(h) = h/(1 + (h/hr)²)^¼: in proportion to the level where it is low and the flow laminar,
+to the square root of it, √(hr h), where it is high and the flow turbulent (Torricelli 1643).
+"""
+
+from ident.parameter import Parameter, Starts
+from ident.stages.scale import ORDER_OF_MAGNITUDE, Scale
+from ident.stages.stage import Quantity, stage
+
+UPPER_LEVEL = stage(
+    "flow",
+    (
+        Quantity("h", "m", "level of the upper tank, in the unit of the lower one"),
+        Quantity("xi", "m", "what runs into the lower tank"),
+    ),
+    ("h' = (gain * w - xi) / tau1", "the command fills the upper tank"),
+    ("xi = h / (1 + (h / hr)**2)**0.25", "laminar outflow at a low level, turbulent at a high one"),
+    parameters=(
+        Parameter("gain", "k", "1", 1e-2, 1e2, 1.0, "inflow for each unit of the command", ORDER_OF_MAGNITUDE),
+        Parameter(
+            "tau1", "τ₁", "s", 1e-4, 1e6, 1.0, "time constant of the upper tank at a low level", start=Starts.TIME
+        ),
+        Parameter("hr", "h_r", "m", 1e-6, 1e6, 1.0, "level from which on the outflow is turbulent", ORDER_OF_MAGNITUDE),
+    ),
+    scales=(Scale("gain", "X / U", 1e-2, 1e3), Scale("tau1", "1 / W", 1e-3, 1e3), Scale("hr", "X", 1e-2, 1e3)),
+)
+
+LOWER_LEVEL = stage(
+    "load",
+    (
+        Quantity("xo", "m", "what runs out of the lower tank"),
+        Quantity("v", "m/s", "rate of the lower level"),
+        Quantity("x", "m", "level of the lower tank"),
+        Quantity("X", "m", "position of what the transducer is fixed to"),
+    ),
+    ("xo = x / (1 + (x / hr)**2)**0.25", "laminar outflow at a low level, turbulent at a high one"),
+    ("v = (xi - xo) / tau2", "what runs in and not out stays"),
+    ("x' = v", "the level is the integral of its rate"),
+    ("X = x", "the gauge stands still"),
+    parameters=(
+        Parameter(
+            "tau2", "τ₂", "s", 1e-4, 1e6, 1.0, "time constant of the lower tank at a low level", start=Starts.TIME
+        ),
+    ),
+    scales=(Scale("tau2", "1 / W", 1e-3, 1e3),),
+)

@@ -1,0 +1,61 @@
+"""Two tanks in series, against Torricelli's law as SciPy integrates it; and where such a machine is thought of."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+import scipy
+
+from ident.fit.settings import Settings
+from ident.matrix import Actuator, Matrix
+from ident.presets.suited import suited
+from ident.run import Run
+from ident.workflows import identify
+
+PERIOD, COUNT = 4.0, 400
+OUT_1, OUT_2, PUMP = 0.05, 0.04, 0.09  # m^½/s, m^½/s, m/(V s)
+READS = 1.5  # above the level
+LIGHT = {"population": 24.0, "generations": 5.0, "elite": 4.0}
+
+
+def tanks(seed: int, use: str) -> Run:
+    """A pump under a held voltage of 1 to 3 V: h₁' = k u − a₁ √h₁, h₂' = a₁ √h₁ − a₂ √h₂."""
+    rng = np.random.default_rng([71, seed])
+    u = np.repeat(rng.uniform(1.0, 3.0, COUNT // 10), 10)
+    t = PERIOD * np.arange(COUNT)
+
+    def rates(now: float, h: np.ndarray) -> list[float]:
+        first, second = OUT_1 * np.sqrt(max(h[0], 0.0)), OUT_2 * np.sqrt(max(h[1], 0.0))
+        return [PUMP * u[min(int(now / PERIOD + 1e-9), COUNT - 1)] - first, first - second]
+
+    found = scipy.integrate.solve_ivp(rates, (0.0, t[-1]), [8.0, 20.0], t_eval=t, rtol=1e-8, max_step=PERIOD)
+    level = found.y[1] + READS + 0.005 * found.y[1].std() * rng.standard_normal(COUNT)
+    return Run(use, "", 1.0 / PERIOD, {"command": u, "displacement": level}, {"command": "V", "displacement": "m"},
+               hold="zoh", use=use)  # fmt: skip
+
+
+@pytest.fixture(scope="module")
+def matrix() -> Matrix:
+    return Matrix(Actuator("TANKS"), (tanks(0, "fit"), tanks(1, "verify")))
+
+
+def test_the_tanks_are_followed_and_what_torricelli_s_law_determines_is_found(matrix):
+    found = identify(matrix, Settings(model="levels", options=LIGHT, seed=1))
+    lag = identify(matrix, Settings(model="first_order", options=LIGHT, seed=1))
+    assert found.error_with_mean["verify"] < 0.03
+    assert found.error_with_mean["verify"] < 0.2 * lag.error_with_mean["verify"]
+    gain, upper, lower, level = (found.values[name] for name in ("gain", "tau1", "tau2", "hr"))
+    assert level / lower**2 == pytest.approx(OUT_2**2, rel=0.1)
+    assert level / upper**2 == pytest.approx((OUT_1**2 / OUT_2) ** 2, rel=0.1)  # its level in the unit of the lower one
+    assert gain / upper == pytest.approx(PUMP * (OUT_1 / OUT_2) ** 2, rel=0.1)
+    assert found.transducer_offset["displacement"].value == pytest.approx(READS, abs=0.4)
+
+
+def test_tanks_are_thought_of_where_command_and_output_stay_on_one_side_of_zero(matrix):
+    assert "levels" in {model.name for model in suited(matrix.runs)}
+    run = matrix.runs[0]
+    for name in ("command", "displacement"):
+        about_zero = {**run.channels, name: run.channels[name] - run.channels[name].mean()}
+        assert "levels" not in {model.name for model in suited([replace(run, channels=about_zero)])}
