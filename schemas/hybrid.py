@@ -29,11 +29,25 @@ class TargetRequest(_Asked):
     name: Short | None = None
 
 
+class BeforeRequest(_Asked):
+    """The loop when it was stable: the id of the `fit` of its machine, its `gain` Kp; without one that of the loop."""
+
+    fit: Annotated[str, Field(max_length=64)] | None = None
+    gain: Finite | None = None
+
+
+class EarlierRequest(BeforeRequest):
+    """The loop of a case when it was stable: fit and gain, and its `case`; without one that of the request."""
+
+    case: Case | None = None
+
+
 class ControllerRequest(_Asked):
     """A controller to be designed for a stored fit with the specimen, gain, sample rate and delay of a case.
 
     `structure` is `feedback` or `two-degree`; `target` stands for eq. (19) of Qian et al. 2014; `seed` is that of the
-    draws from the fitted covariance.
+    draws from the fitted covariance. `before` is the loop when it was stable, by which the cause is found where it no
+    longer is.
     """
 
     fit: str
@@ -41,6 +55,7 @@ class ControllerRequest(_Asked):
     target: TargetRequest | None = None
     structure: str = "feedback"
     seed: int = Field(default=0, ge=0, lt=2**31)
+    before: EarlierRequest | None = None
 
 
 class GroundRequest(_Asked):
@@ -69,7 +84,8 @@ class HybridRequest(_Asked):
 
     `controller` is `none`, `kalman` or another that has a name, the id of a stored one, or what its `.json` holds.
     `effects` are switched on at a fifth of their largest strength; `set` gives values by NAME or NAME.PARAM, with a
-    unit or in SI. With `map` there is also the map over the shares of mass and stiffness that are physical.
+    unit or in SI. With `map` there is also the map over the shares of mass and stiffness that are physical. `before` is
+    the loop when it was stable, by which the cause is found where it no longer is.
     """
 
     fit: str
@@ -79,6 +95,7 @@ class HybridRequest(_Asked):
     effects: list[Short] = Field(default_factory=list, max_length=50)
     set: dict[str, Value] = Field(default_factory=dict, max_length=50)
     map: bool = False
+    before: EarlierRequest | None = None
 
 
 class SpecimenRequest(_Asked):
@@ -95,13 +112,6 @@ class AxesRequest(_Asked):
     gain: Finite
     lower: Finite
     upper: Finite
-
-
-class BeforeRequest(_Asked):
-    """The loop when it was stable: the id of the `fit` of its machine, its `gain` Kp; without one that of the loop."""
-
-    fit: Annotated[str, Field(max_length=64)] | None = None
-    gain: Finite | None = None
 
 
 class ChooseRequest(_Asked):

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from app.cli.before_option import CaseBefore, EarlierFit, EarlierGain, earlier_case
 from app.cli.figure_files import FORMATS, write_figure
 from app.cli.given import read_fit
 from app.cli.output import write_bytes, write_json
@@ -31,12 +32,16 @@ def control(
         str, typer.Option(metavar="NAME", help="feedback or two-degree (two degrees of freedom).")
     ] = "feedback",
     seed: Annotated[int, typer.Option(min=0, max=2**31 - 1, help="Random seed of the draws from the covariance.")] = 0,
+    before: EarlierFit = None,
+    before_gain: EarlierGain = None,
+    before_case: CaseBefore = None,
     rig: RigFile = None,
 ) -> None:
     """Design a tracking controller by H-infinity loop shaping.
 
     The design uses the linear part of the fit and the specimen, gain, sample rate and delay of the case. It is tested
-    on 100 models drawn from the covariance of the fit. Exit status 1 if the case is unstable under it.
+    on 100 models drawn from the covariance of the fit. Exit status 1 if the case is unstable under it: cause and
+    remedies are listed.
     """
     from dataclasses import replace
 
@@ -46,12 +51,13 @@ def control(
     from ident.hybrid.target import QIAN2014_TARGET
 
     result, given = read_fit(fit), read_case(case)
+    earlier = earlier_case(result, given, before, before_gain, before_case)
     wanted = QIAN2014_TARGET if target is None else _target(target)
     made = design_controller(
         result, given.physical, sample_rate=given.sample_rate, gain=given.gain, piston_area=given.piston_area,
-        delay=given.delay, target=wanted, structure=structure, seed=seed,
+        delay=given.delay, target=wanted, structure=structure, seed=seed, before=earlier,
     )  # fmt: skip
-    made = on_case(made, result, given if rig is None else replace(given, rig=rig_in(rig)))
+    made = on_case(made, result, given if rig is None else replace(given, rig=rig_in(rig)), earlier)
     _write(made, out, given.name)
     show(made.listings())
     print(f"wrote {', '.join(FILES)} to {out}")

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from app.cli.arguments import effect_values
+from app.cli.before_option import CaseBefore, EarlierFit, EarlierGain, earlier_case
 from app.cli.figure_files import write_figures
 from app.cli.given import read_fit
 from app.cli.output import STANDARD_OUTPUT, check_target, write_json
@@ -36,6 +37,9 @@ def hybrid(
     shares: Annotated[
         bool, typer.Option("--map", help="Also map stability over the physical/numerical split.")
     ] = False,
+    before: EarlierFit = None,
+    before_gain: EarlierGain = None,
+    before_case: CaseBefore = None,
     rig: RigFile = None,
     json: Annotated[Path | None, typer.Option(metavar="FILE", help="Write the scores as JSON; - is stdout.")] = None,
     out: Annotated[Path | None, typer.Option(metavar="DIR", help="Write the figures: svg, png, pdf, json.")] = None,
@@ -43,7 +47,7 @@ def hybrid(
     """Simulate a real-time hybrid simulation.
 
     It couples a numerical substructure, a controller, the identified actuator and a specimen. Exit status 1 if it is
-    unstable.
+    unstable: cause and remedies are listed.
     """
     from dataclasses import replace
 
@@ -58,9 +62,10 @@ def hybrid(
     of = of if ground is None else of.with_ground(ground)
     of = of if rig is None else replace(of, rig=rig_in(rig))
     effects = effect_values(effect or [], result.model)
+    earlier = earlier_case(result, of, before, before_gain, before_case)
     acting = controller_called(controller, result, of)
     with shown() as report:
-        runs = {name_of(acting): simulate_hybrid(result, of, acting, effects, report)}
+        runs = {name_of(acting): simulate_hybrid(result, of, acting, effects, report, earlier)}
         if controller != "none" and out is not None:
             runs["no controller"] = simulate_hybrid(result, of, None, effects, report)
         found = _map(shares, acting, result, of, effects, report)

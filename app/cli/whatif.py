@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from app.cli.arguments import in_si, number, split
+from app.cli.before_option import EarlierFit, EarlierGain, gain_of
 from app.cli.figure_files import write_figures
 from app.cli.given import read_fit
 from app.cli.output import STANDARD_OUTPUT, check_target, write_json
@@ -72,17 +73,6 @@ Choose = Annotated[
         "overshoot=10 (%).",
     ),
 ]
-Earlier = Annotated[
-    Path | None,
-    typer.Option(
-        "--before",
-        metavar="FIT.json",
-        help="Fit of the machine when its loop was stable, to find the cause. Default: this fit.",
-    ),
-]
-EarlierGain = Annotated[
-    str | None, typer.Option("--before-gain", metavar="KP", help="Gain Kp with which the loop was stable.")
-]
 Seed = Annotated[int, typer.Option(min=0, max=2**31 - 1, help="Random seed of the search.")]
 Json = Annotated[Path | None, typer.Option(metavar="FILE", help="Write the result as JSON; - is stdout.")]
 Out = Annotated[Path | None, typer.Option(metavar="DIR", help="Write the figures: svg, png, pdf, json.")]
@@ -90,7 +80,7 @@ Out = Annotated[Path | None, typer.Option(metavar="DIR", help="Write the figures
 
 def whatif(
     fit: FitPath, set_: Changed = None, fitted: Fitted = None, specimen: OfSpecimen = None, gain: Gains = None,
-    choose: Choose = None, before: Earlier = None, before_gain: EarlierGain = None,
+    choose: Choose = None, before: EarlierFit = None, before_gain: EarlierGain = None,
     peak: AtPeak = None, tolerance: Near = None, axes: InAxes = None, up_to: UpTo = None, seed: Seed = 0,
     rig: RigFile = None, regulator: OfRegulator = None, amplitude: Amplitudes = None, json: Json = None,
     out: Out = None,
@@ -143,8 +133,7 @@ def _before(fit: Path | None, gain: str | None) -> Before | None:
 
     if fit is None and gain is None:
         return None
-    known = None if gain is None else number(gain, "--before-gain", "KP")
-    return Before(None if fit is None else read_fit(fit), known)
+    return Before(None if fit is None else read_fit(fit), gain_of(gain))
 
 
 def _change(fit: FitResult, set_: list[str], fitted: list[str], specimen: str | None) -> Change:

@@ -13,6 +13,7 @@ from app.errors import Failure, missing
 from app.fits import service as fits
 from app.hybrid import repository
 from app.hybrid.asked import AskedCase, asked_case
+from app.hybrid.before import earlier_case, stated
 from app.lru import LRU
 from app.paging import cursor, keys_of
 from app.tables import ControllerRow
@@ -34,6 +35,7 @@ def design(context: Context, request: ControllerRequest, controller: str) -> Con
     """Design a controller and keep it under this id. Raises Unusable, and Failure 404 where there is no such fit."""
     case = asked_case(request.case)
     asked = request.model_dump(exclude_none=True) | {"case": case.case, "case_name": case.read().name}
+    asked |= {"before": stated(request.before)} if request.before else {}
     made = _designed(context, asked)
     about(f"controllers/{controller}")
     with context.sessions() as session:
@@ -48,14 +50,20 @@ def design(context: Context, request: ControllerRequest, controller: str) -> Con
 
 def _designed(context: Context, asked: dict[str, Any]) -> ControllerDesign:
     """The design that is asked for."""
-    fit = FitResult.from_json(fits.find(context, asked["fit"]).result)
+    fit = _fit(context, asked["fit"])
     case = AskedCase(asked["case"], None).read()
+    before = earlier_case(asked.get("before"), fit, case, lambda one: _fit(context, one))
     target = target_of(asked["target"]) if "target" in asked else QIAN2014_TARGET
     made = design_controller(
         fit, case.physical, sample_rate=case.sample_rate, gain=case.gain, piston_area=case.piston_area,
         delay=case.delay, target=target, structure=asked["structure"], seed=asked["seed"],
+        before=before,
     )  # fmt: skip
-    return on_case(made, fit, case)
+    return on_case(made, fit, case, before)
+
+
+def _fit(context: Context, fit: str) -> FitResult:
+    return FitResult.from_json(fits.find(context, fit).result)
 
 
 def made_as(context: Context, controller: str) -> ControllerView | None:

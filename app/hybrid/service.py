@@ -13,6 +13,7 @@ from app.fits import service as fits
 from app.hybrid import repository
 from app.hybrid.acting import acting, named
 from app.hybrid.asked import AskedCase, asked_case, effects_of
+from app.hybrid.before import earlier_case, stated
 from app.jobs import service as jobs
 from app.paging import cursor, keys_of
 from app.tables import HybridRow
@@ -49,6 +50,7 @@ def submit(context: Context, request: HybridRequest, job: str) -> JobView:
             **asdict(asked), "text": _kept(context, asked.text), "effects": effects, "map": request.map,
             "controller": given if isinstance(given, str) else _kept(context, json.dumps(given)),
             "inline": not isinstance(given, str), "controller_id": stored,
+            "before": _before(context, stated(request.before), fit, case),
         },
     }  # fmt: skip
     return jobs.record(context, job, row.matrix, settings, request.fit, KIND)
@@ -65,6 +67,17 @@ def _controller(context: Context, given: str | dict[str, Any]) -> tuple[str | di
     if row is None:
         raise missing("controller", given)
     return {name: row.result[name] for name in _FILE_KEYS}, row.id
+
+
+def _before(context: Context, given: dict[str, Any] | None, fit: FitResult, case: Case) -> dict[str, Any] | None:
+    """The loop when it was stable, its fit under the name of a blob. Raises Unusable, and Failure 404."""
+
+    def find(other: str) -> FitResult:
+        return FitResult.from_json(fits.find(context, other).result)
+
+    if earlier_case(given, fit, case, find) is None or given is None or "fit" not in given:
+        return given
+    return {**given, "fit": _kept(context, json.dumps(find(given["fit"]).to_json()))}
 
 
 def _kept(context: Context, text: str) -> str:

@@ -11,10 +11,12 @@ from sqlalchemy.orm import Session
 from app.hybrid import repository
 from app.hybrid.acting import acting
 from app.hybrid.asked import AskedCase
+from app.hybrid.before import earlier_case
 from app.hybrid.records import packed
 from app.hybrid.service import KIND
 from app.jobs.work import InOnePiece, Kind, State, Task
 from app.tables import JobRow
+from ident.fit.result import FitResult
 from ident.hybrid.controller import SampledController
 from ident.hybrid.followed import followed_in
 from ident.hybrid.rig import simulate_hybrid
@@ -36,7 +38,8 @@ class HybridWork(InOnePiece):
         assert fit is not None
         given: Any = json.loads(self._blob(asked["controller"])) if asked["inline"] else asked["controller"]
         chosen, effects = acting(given, fit, case), asked["effects"]
-        main = simulate_hybrid(fit, case, chosen, effects, report)
+        before = earlier_case(asked.get("before"), fit, case, self._fit)
+        main = simulate_hybrid(fit, case, chosen, effects, report, before)
         alone = None if given == "none" else simulate_hybrid(fit, case, None, effects, report)
         mapped = None
         if asked["map"] and isinstance(chosen, SampledController):
@@ -50,6 +53,9 @@ class HybridWork(InOnePiece):
             "feedforward": worth.to_json() if worth else None,
             "records": base64.b85encode(packed(runs)).decode(),
         }
+
+    def _fit(self, name: str) -> FitResult:
+        return FitResult.from_json(json.loads(self._blob(name)))
 
     def _blob(self, name: str) -> str:
         return self.task.storage.path(name).read_text(encoding="utf-8") if name else ""

@@ -14,6 +14,7 @@ from itertools import product
 import numpy as np
 from numpy.typing import NDArray
 
+from ident.custom.definition import preset_with
 from ident.errors import Unusable
 from ident.fit.result import FitResult
 from ident.presets import Preset
@@ -51,6 +52,16 @@ class Spread:
             symbol, size = preset.parameter(name).in_equations, abs(estimate.value)
             usual = max(self.usual * size, _ERRORS * (estimate.std_error or 0.0))
             found[symbol] = min(stated[symbol] * size if symbol in stated else usual, _MOST * size)
+        return found
+
+    def drawn(self, fit: FitResult, count: int, rng: np.random.Generator) -> dict[str, Array]:
+        """`count` values of each parameter, evenly distributed over its width. Raises Unusable."""
+        preset = preset_with(fit.model, fit.effects, tuple(fit.settings.get("custom", ())))
+        widths = self.half_widths(fit, preset)
+        found = {}
+        for name, estimate in fit.parameters.items():
+            width = widths[preset.parameter(name).in_equations]
+            found[name] = estimate.value + width * rng.uniform(-1.0, 1.0, count)
         return found
 
 

@@ -12,7 +12,9 @@ from numpy.typing import NDArray
 from ident.errors import Unusable
 from ident.fit.result import FitResult
 from ident.hybrid.changed_machine import ChangedMachine
-from ident.hybrid.draws import DRAWS, drawn_parameters
+from ident.hybrid.drawn_loops import drawn_loops
+from ident.hybrid.draws import Spread
+from ident.hybrid.interval import Interval
 from ident.hybrid.loop_figures import QUANTITIES, loop_figure
 from ident.words.nearest import did_you_mean
 from ident.words.number import plain, trimmed
@@ -21,8 +23,6 @@ Array = NDArray[np.float64]
 _LOWEST, _HIGHEST = 1e-3, 1e4
 """Gains Kp between which one is sought."""
 _GAINS = 71  # between them, 26 % apart
-_EDGES = (5.0, 95.0)
-"""Per cent of the drawn machines below which the ends of a spread lie."""
 
 
 @dataclass(frozen=True)
@@ -44,19 +44,6 @@ class GainTarget:
 
 
 @dataclass(frozen=True)
-class Spread:
-    """A quantity at the chosen gain in its `unit`; `lower` to `upper` hold 90 % of the machines that the fit allows.
-
-    None: without limit, or without standard errors.
-    """
-
-    unit: str
-    value: float | None
-    lower: float | None
-    upper: float | None
-
-
-@dataclass(frozen=True)
 class ChosenGain:
     """The `gain` for a target, or the nearest where it is not `reached`; what follows, by quantity.
 
@@ -66,19 +53,23 @@ class ChosenGain:
     target: GainTarget
     gain: float
     reached: bool
-    quantities: Mapping[str, Spread]
+    quantities: Mapping[str, Interval]
     stable: float | None
     text: str
 
     def sentences(self) -> Iterator[str]:
         """The gain, and what follows."""
         yield self.text
-        said = (f"{name.replace('_', ' ')} {_said(one)}" for name, one in self.quantities.items())
+        said = (f"{name.replace('_', ' ')} {one}" for name, one in self.quantities.items())
         yield f"At Kp = {plain(self.gain, 4)}: {'; '.join(said)}."
 
 
-def choose_gain(fit: FitResult, machine: ChangedMachine, target: GainTarget, seed: int = 0) -> ChosenGain:
+def choose_gain(
+    fit: FitResult, machine: ChangedMachine, target: GainTarget, seed: int = 0, spread: Spread | None = None
+) -> ChosenGain:
     """The smallest gain at which a machine has what is wanted; else the one that comes nearest, of the stable ones.
+
+    What follows is said over a `spread` of its parameters, without one over the covariance of the fit.
 
     Raises Unusable for a machine without a gain, and for one that no gain makes stable.
     """
@@ -90,8 +81,9 @@ def choose_gain(fit: FitResult, machine: ChangedMachine, target: GainTarget, see
         raise Unusable("out-of-reach", f"at no gain is there a {target.quantity.replace('_', ' ')}", "choose",
                        "choose another quantity, or correct the machine")  # fmt: skip
     gain, reached = _sought(machine, target, gains, values)
-    quantities, stable = _spread(fit, machine, gain, seed)
-    return ChosenGain(target, gain, reached, quantities, stable, _text(target, gain, reached, quantities))
+    loops = drawn_loops(fit, machine, gain, spread, seed)
+    text = _text(target, gain, reached, loops.quantities)
+    return ChosenGain(target, gain, reached, loops.quantities, loops.stable, text)
 
 
 def _of(machine: ChangedMachine, quantity: str, gains: Array) -> Array:
@@ -119,32 +111,7 @@ def _sought(machine: ChangedMachine, target: GainTarget, gains: Array, values: A
     return gain, abs(off(float(np.log(gain)))) < 1e-3 * target.value
 
 
-def _spread(fit: FitResult, machine: ChangedMachine, gain: float, seed: int) -> tuple[dict[str, Spread], float | None]:
-    """Every quantity at a gain, over the machines that the fit allows; the share of them that is stable."""
-    drawn = {n: v / fit.parameters[n].value for n, v in drawn_parameters(fit, DRAWS, seed).items()
-             if _is_fitted(fit, machine, n)}  # fmt: skip
-    found, stable = {}, None
-    for name, unit in QUANTITIES.items():
-        central = _finite(loop_figure(machine, name, np.array([gain]))[0])
-        many = loop_figure(machine, name, np.full(DRAWS, gain), drawn) if drawn else np.zeros(0)
-        known = many[~np.isnan(many)]
-        stable = len(known) / len(many) if len(many) else None
-        lower, upper = np.percentile(known, _EDGES, method="nearest") if len(known) else (np.nan, np.nan)
-        found[name] = Spread(unit, central, _finite(lower), _finite(upper))
-    return found, stable
-
-
-def _is_fitted(fit: FitResult, machine: ChangedMachine, name: str) -> bool:
-    """Whether a parameter of the machine is as uncertain as in the fit."""
-    carried = machine.parameters.get(name)
-    return carried is not None and carried.why != "as set" and bool(fit.parameters[name].value)
-
-
-def _finite(value: float) -> float | None:
-    return float(value) if np.isfinite(value) else None
-
-
-def _text(target: GainTarget, gain: float, reached: bool, quantities: Mapping[str, Spread]) -> str:
+def _text(target: GainTarget, gain: float, reached: bool, quantities: Mapping[str, Interval]) -> str:
     unit, name = QUANTITIES[target.quantity], target.quantity.replace("_", " ")
     if reached:
         return f"Kp = {plain(gain, 4)} gives a {name} of {trimmed(target.value)} {unit}."
@@ -154,10 +121,3 @@ def _text(target: GainTarget, gain: float, reached: bool, quantities: Mapping[st
         f"No gain gives a {name} of {trimmed(target.value)} {unit}. The nearest is {closest} {unit}, at "
         f"Kp = {plain(gain, 4)}."
     )
-
-
-def _said(of: Spread) -> str:
-    if of.value is None:
-        return "without limit"
-    within = "" if of.lower is None or of.upper is None else f" ({plain(of.lower, 3)} to {plain(of.upper, 3)})"
-    return f"{plain(of.value, 3)} {of.unit}{within}"

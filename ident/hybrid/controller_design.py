@@ -8,11 +8,12 @@ from typing import Any
 
 import numpy as np
 
+from ident.errors import Unusable
 from ident.fit.result import FitResult
 from ident.hybrid.case import Case
 from ident.hybrid.draws import DRAWS, drawn_parameters
-from ident.hybrid.hybrid_loop import judge_hybrid
-from ident.hybrid.linear_plant import linear_plant
+from ident.hybrid.hybrid_loop import EarlierCase, judge_hybrid
+from ident.hybrid.linear_plant import LinearPlant, linear_plant
 from ident.hybrid.loop_shaping import Design, design
 from ident.hybrid.machine import machine
 from ident.hybrid.margins import Margins, margins
@@ -24,11 +25,13 @@ from ident.hybrid.robustness import (
     robustness,
     undetermined,
 )
+from ident.hybrid.servo_loop import plant_loop, values_before
 from ident.hybrid.target import QIAN2014_TARGET, Target
 from ident.plain import written
 from ident.run import Specimen
-from ident.stability.judgement import Judgement
+from ident.stability.judgement import Judgement, judge
 from ident.words.message import message
+from ident.words.number import trimmed
 from ident.words.shown import Listing, Shown
 
 LITTLE_MARGIN = 2.5
@@ -117,14 +120,16 @@ def _or_none(value: float | None, factor: float) -> str:
 def design_controller(
     fit: FitResult, specimen: Specimen, *, sample_rate: float, gain: float | None = None,
     piston_area: float | None = None, delay: float = 1.0, target: Target = QIAN2014_TARGET,
-    structure: str = "feedback", draws: int = DRAWS, seed: int = 0,
+    structure: str = "feedback", draws: int = DRAWS, seed: int = 0, before: EarlierCase | None = None,
 ) -> ControllerDesign:  # fmt: skip
     """A controller for the actuator of a fit with this specimen, gain Kp and piston area (m²).
 
     `sample_rate` in Hz, `delay` in samples; `draws` plants are drawn from the fitted covariance with `seed`. Raises
-    Unusable where the fit has no displacement that a command drives, or no stable loop is found.
+    Unusable where the fit has no displacement that a command drives, or no stable loop is found. That error names the
+    mode of an unstable servo loop and its remedies, and the cause where the loop is known as it was `before`.
     """
     plant = linear_plant(fit, specimen, gain, piston_area)
+    _refuse_unstable(plant, before)
     made = design(plant.model, sample_rate, delay, target, structure)
     drawn = drawn_parameters(fit, draws, seed)
     judged = None
@@ -136,14 +141,28 @@ def design_controller(
     return ControllerDesign(made, found, judged, _notes(found, plant.left_out, judged))
 
 
-def on_case(made: ControllerDesign, fit: FitResult, case: Case) -> ControllerDesign:
+def _refuse_unstable(plant: LinearPlant, before: EarlierCase | None) -> None:
+    """Raise Unusable where the servo loop that a controller is to be designed for is unstable."""
+    loop, known = plant_loop(plant), None
+    if before is not None:
+        case = before.case
+        earlier = linear_plant(before.fit, case.physical, case.gain, case.piston_area)
+        known = values_before(earlier.known, loop)
+    found = judge(loop, known, f"at Kp = {trimmed(plant.known['Kp'])}")
+    if not found.stable:
+        raise Unusable("unstable-plant", f"the identified servo loop is {found.what}", "case",
+                       found.remedy or "lower the gain, or correct the specimen")  # fmt: skip
+
+
+def on_case(made: ControllerDesign, fit: FitResult, case: Case, before: EarlierCase | None = None) -> ControllerDesign:
     """The design with whether its case is stable under it, and what leaves the limits of the rig.
 
-    The case is simulated where limits are stated. Raises Unusable as :func:`ident.hybrid.rig.simulate_hybrid`.
+    The cause of an unstable case is named where the case is known as it was `before`. The case is simulated where
+    limits are stated. Raises Unusable as :func:`ident.hybrid.rig.simulate_hybrid`.
     """
     of = machine(fit, case)
     if not of.nonlinear:
-        made = replace(made, stability=judge_hybrid(of, case, made.design.controller))
+        made = replace(made, stability=judge_hybrid(of, case, made.design.controller, before))
     if not limits_of(fit, case):
         return made
     run = simulate_hybrid(fit, case, made.design.controller)

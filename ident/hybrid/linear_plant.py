@@ -15,6 +15,7 @@ from ident.errors import Unusable
 from ident.fit.result import FitResult
 from ident.hybrid.lags_as_states import with_states
 from ident.linear import LinearModel
+from ident.parameter import Parameter
 from ident.presets import Preset
 from ident.run import Specimen
 
@@ -26,7 +27,7 @@ OUTPUT = "displacement"
 class LinearPlant:
     """A fitted chain under fixed conditions: its linear part, its values by the equations' names, who is left out.
 
-    `names` maps a parameter's name to its name in the equations.
+    `names` maps a parameter's name to its name in the equations; `parameters` are those of its model.
     """
 
     chain: Chain
@@ -34,6 +35,12 @@ class LinearPlant:
     conditions: Mapping[str, float]
     names: Mapping[str, str]
     left_out: tuple[str, ...]
+    parameters: tuple[Parameter, ...] = ()
+
+    @property
+    def known(self) -> dict[str, float]:
+        """Every symbol of the equations with its value, SI."""
+        return {**self.conditions, **self.values}
 
     @property
     def model(self) -> LinearModel:
@@ -46,7 +53,7 @@ class LinearPlant:
         return tuple(LinearModel(batch.system[..., i]) for i in range(batch.system.shape[-1]))
 
     def _linearised(self, changed: Mapping[str, Array]) -> LinearModel:
-        known: dict[str, Array | float] = {**self.conditions, **self.values, **changed}
+        known: dict[str, Array | float] = {**self.known, **changed}
         model = self.chain.linearise({name: known[name] for name in self.chain.symbols}, OUTPUT)
         off = {name for name, value in self.conditions.items() if value == 0}
         return model.of_states(self.chain.observed(OUTPUT, off))
@@ -83,7 +90,7 @@ def linear_plant(
     if missing := sorted(set(chain.symbols) - values.keys() - known.keys()):
         raise Unusable("bad-fit", f"no value of {', '.join(missing)}", "fit", f"give a fit of model {fit.model}")
     left_out = tuple(name for name, effect in written.items() if effect not in kept)
-    return LinearPlant(chain, values, known, names, left_out)
+    return LinearPlant(chain, values, known, names, left_out, preset.parameters)
 
 
 def _area(preset: Preset, fit: FitResult, stated: float | None) -> float:

@@ -95,7 +95,7 @@ def design(
         full = SampledController(*_two_degree(forward, model, feedback), sample_rate, name)
     whole = SampledLoop(plant, full, delay)
     if not whole.stable:
-        raise Unusable("no-controller", "the sampled loop is not stable with it", "target",
+        raise Unusable("no-controller", f"the sampled loop is not stable with it: {whole.mode}", "target",
                        "choose a slower target, or a shorter delay")  # fmt: skip
     gamma_target = robust_stabilisation(target.rational.realised(), FACTOR).gamma_min
     return Design(reduced(whole), full, plant, delay, target, structure, gamma_target, stabilised)

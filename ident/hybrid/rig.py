@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from ident.fit.result import FitResult
 from ident.hybrid.case import Case
 from ident.hybrid.controller import SampledController
-from ident.hybrid.hybrid_loop import judge_hybrid
+from ident.hybrid.hybrid_loop import EarlierCase, judge_hybrid
 from ident.hybrid.loop import LANES, Rig, advance_under, close, read
 from ident.hybrid.machine import DISPLACEMENT, FORCE, Machine, machine
 from ident.hybrid.rig_limits import leaving
@@ -147,19 +147,19 @@ class HybridResult(Shown):
 
 def simulate_hybrid(
     fit: FitResult, case: Case, controller: Controller | None = None, effects: Mapping[str, float] | None = None,
-    report: Report = silent,
+    report: Report = silent, before: EarlierCase | None = None,
 ) -> HybridResult:  # fmt: skip
     """Simulate a case on the identified machine of a fit, at rest in the beginning.
 
     Without a `controller` the command is what is wanted. `effects` are further effects of the machine: values by name,
-    SI. Its motion is held against the limits of the rig that the case or the fit states. Raises Unusable where fit and
-    case do not go together, or the controller has another sample rate than the case; what `report` raises to cancel
-    passes through.
+    SI. Its motion is held against the limits of the rig that the case or the fit states. `before` is the case when its
+    loop was stable, by which the cause of an unstable one is found. Raises Unusable where fit and case do not go
+    together, or the controller has another sample rate than the case; what `report` raises to cancel passes through.
     """
     of, acting = machine(fit, case, effects), controller or no_controller(case.sample_rate)
     found = simulate_machine(of, case, acting, effects, report)
     if isinstance(acting, SampledController) and not of.nonlinear and not found.stable:
-        found = replace(found, stability=judge_hybrid(of, case, acting))
+        found = replace(found, stability=judge_hybrid(of, case, acting, before))
     if found.ended is not None:  # it ran away, which says more
         return found
     return replace(found, beyond=leaving(fit, case, found.measured, found.command, found.force))

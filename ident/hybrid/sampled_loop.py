@@ -11,6 +11,7 @@ from ident.cached import cached_property
 from ident.hybrid.controller import SampledController
 from ident.hybrid.state_space import StateSpace, sampled_plant
 from ident.linear import LinearModel
+from ident.stability.mode import Mode
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
@@ -30,8 +31,8 @@ class SampledLoop:
         return sampled_plant(self.plant, self.controller.sample_rate, self.delay)
 
     @cached_property
-    def spectral_radius(self) -> float:
-        """The largest magnitude of a pole of the closed loop."""
+    def poles(self) -> Complex:
+        """The poles z of the closed loop, (n,)."""
         P, K = self.sampled, self.controller
         b, d = K.B[:, 1:], K.D[:, 1:]
         loop = 1.0 / (1.0 - d @ P.D)  # both pass something on at once only where there is no delay
@@ -39,7 +40,18 @@ class SampledLoop:
             [P.A + P.B @ loop @ d @ P.C, P.B @ loop @ K.C],
             [b @ (P.C + P.D @ loop @ d @ P.C), K.A + b @ P.D @ loop @ K.C],
         ])  # fmt: skip
-        return float(np.abs(np.linalg.eigvals(system)).max(initial=0.0))
+        return np.asarray(np.linalg.eigvals(system), complex)
+
+    @property
+    def spectral_radius(self) -> float:
+        """The largest magnitude of a pole of the closed loop."""
+        return float(np.abs(self.poles).max(initial=0.0))
+
+    @property
+    def mode(self) -> Mode:
+        """The mode that grows fastest, or dies out last: s = ln(z) times the sample rate."""
+        leading = self.poles[np.argmax(np.abs(self.poles))]
+        return Mode.of(complex(np.log(leading) * self.controller.sample_rate))
 
     @property
     def stable(self) -> bool:

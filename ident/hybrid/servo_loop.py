@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -12,7 +12,9 @@ from ident.cached import cached_property
 from ident.chain.chain import Chain
 from ident.chain.conditions import CONDITIONS
 from ident.hybrid.changed_machine import ChangedMachine
+from ident.hybrid.linear_plant import OUTPUT, LinearPlant
 from ident.linear import LinearModel
+from ident.parameter import Parameter
 from ident.stability.loop import SHORTEST, Complex, LoopPart, kind_of, parts_of
 
 Array = NDArray[np.float64]
@@ -56,9 +58,8 @@ class ServoLoop:
             return np.asarray(np.linalg.eigvals(self.linear(factors, gains).A), complex)
 
 
-def values_before(machine: ChangedMachine, gain: float, loop: ServoLoop) -> dict[str, float]:
-    """The values of the parts of a loop as they were in this machine at a gain Kp, by name; off what it has not."""
-    known = {**machine.values, "Kp": gain}
+def values_before(known: Mapping[str, float], loop: ServoLoop) -> dict[str, float]:
+    """The values of the parts of a loop, by name, in a machine with these `known` symbols; off what it has not."""
     off = {part.name: SHORTEST if part.unit == "s" else 0.0 for part in loop.parts}
     return {name: known.get(loop.symbols[name], value) for name, value in off.items()}
 
@@ -66,10 +67,21 @@ def values_before(machine: ChangedMachine, gain: float, loop: ServoLoop) -> dict
 def servo_loop(machine: ChangedMachine, gain: float) -> ServoLoop:
     """The loop of a machine at a gain Kp."""
     values = {**machine.values, **({"Kp": gain} if machine.has_gain else {})}
+    return _loop(machine.chain, values, machine.output, machine.preset.parameters)
+
+
+def plant_loop(plant: LinearPlant) -> ServoLoop:
+    """The loop of a plant that a controller is designed for."""
+    values = {name: plant.known[name] for name in plant.chain.symbols}
+    return _loop(plant.chain, values, OUTPUT, plant.parameters)
+
+
+def _loop(chain: Chain, values: Mapping[str, float], output: str, parameters: Iterable[Parameter]) -> ServoLoop:
+    own = [p for p in parameters if p.in_equations in values]
     given = {name: quantity for name, quantity in CONDITIONS.items() if name in values}
     parts = (
-        *parts_of(machine.preset.parameters, values),
+        *parts_of(own, values),
         *(LoopPart(n, kind_of(n, q.unit), q.meaning, values[n], q.unit, n in _GIVEN) for n, q in given.items()),
     )
-    symbols = {p.name: p.in_equations for p in machine.preset.parameters} | dict(zip(given, given, strict=True))
-    return ServoLoop(machine.chain, values, machine.output, parts, symbols)
+    symbols = {p.name: p.in_equations for p in own} | dict(zip(given, given, strict=True))
+    return ServoLoop(chain, values, output, parts, symbols)

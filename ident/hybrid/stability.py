@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import scipy.linalg
 from numpy.typing import NDArray
@@ -81,47 +83,59 @@ def spectral_radius(of: Machine, case: Case, controller: SampledController) -> f
     Machine at small signals with held command, delay, controller and substructure, as :mod:`ident.hybrid.loop` runs
     them.
     """
-    return float(np.abs(scipy.linalg.eigvals(closed_loop(of, case, controller))).max())
+    return float(np.abs(scipy.linalg.eigvals(closed_loop(of, case, controller)[0])).max())
 
 
-def closed_loop(of: Machine, case: Case, controller: SampledController, force: float = 1.0) -> Array:
-    """The transition matrix of the whole loop over a sample, (n, n): machine, substructure, controller, commands.
+_ONE = np.ones(1)
 
-    The numerical part is given `force` times what the load cell reads.
+
+def closed_loop(
+    of: Machine, case: Case, controller: SampledController, force: Array = _ONE, gain: Array = _ONE
+) -> Array:
+    """The transition matrix of the whole loop over a sample, (b, n, n): machine, substructure, controller, commands.
+
+    The numerical part is given `force` (b,) times what the load cell reads; the servo loop has `gain` (b,) times Kp.
     """
-    phi, drive, read, through = _held(of, case)
+    phi, drive, read, through = _held(of, case, gain)
     part, delay = numerical(case), case.delay
-    sizes = (len(phi), len(part.phi), controller.order, delay, 1)
+    sizes = (phi.shape[-1], len(part.phi), controller.order, delay, 1)
     at = np.cumsum((0, *sizes))
     s, z, x, held, before = (slice(at[i], at[i + 1]) for i in range(5))
-    row = np.zeros((3, at[-1]))  # y, f and d of what is known at a sample
-    row[:2, s], row[:2, held.start] = read, through
-    row[1] *= force
-    row[2, z.start + part.place] = 1.0
+    count = np.broadcast_shapes(force.shape, gain.shape)
+    row = np.zeros((3, *count, at[-1]))  # y, f and d of what is known at a sample
+    row[:2, :, s], row[:2, :, held.start] = read, through
+    row[1] *= force[:, None]
+    row[2, :, z.start + part.place] = 1.0
     u = controller.D[0, 0] * row[2] + controller.D[0, 1] * row[0]
-    u[x] += controller.C[0]
-    system = np.zeros((at[-1], at[-1]))
-    system[s, s], system[s, held.start] = phi, drive
-    system[z, z] = part.phi
-    system[z] += np.outer(part.force0 + 2 * part.force1, row[1])
-    system[z, before.start] -= part.force1
-    system[x, x] = controller.A
-    system[x] += np.outer(controller.B[:, 0], row[2]) + np.outer(controller.B[:, 1], row[0])
+    u[:, x] += controller.C[0]
+    system = np.zeros((*count, at[-1], at[-1]))
+    system[:, s, s], system[:, s, held.start] = phi, drive
+    system[:, z, z] = part.phi
+    system[:, z] += _outer(part.force0 + 2 * part.force1, row[1])
+    system[:, z, before.start] -= part.force1
+    system[:, x, x] = controller.A
+    system[:, x] += _outer(controller.B[:, 0], row[2]) + _outer(controller.B[:, 1], row[0])
     for i in range(delay - 1):
-        system[held.start + i, held.start + i + 1] = 1.0
-    system[held.stop - 1] = u
-    system[before.start] = row[1]
+        system[:, held.start + i, held.start + i + 1] = 1.0
+    system[:, held.stop - 1] = u
+    system[:, before.start] = row[1]
     return system
 
 
-def _held(of: Machine, case: Case) -> tuple[Array, Array, Array, Array]:
-    """The machine from sample to sample under a held command, and how y and f read it."""
+def _outer(column: Array, rows: Array) -> Array:
+    """column (n,) times each of the rows (b, m), (b, n, m)."""
+    return column[:, None] * rows[:, None, :]
+
+
+def _held(of: Machine, case: Case, gain: Array) -> tuple[Array, Array, Array, Array]:
+    """The machine from sample to sample under a held command, (b, n, n) and (b, n), and how y and f read it."""
     known = of.at(case)
-    values = {name: known[name] for name in of.chain.symbols}
+    values: dict[str, Any] = {name: known[name] for name in of.chain.symbols}
+    values["Kp"] = known.get("Kp", 1.0) * gain
     models = [of.chain.linearise(values, channel) for channel in (DISPLACEMENT, FORCE)]
-    A, B, n = models[0].A, models[0].B, len(models[0].A)
-    system = np.zeros((n + 1, n + 1))
-    system[:n, :n], system[:n, n] = A, B
+    A, B, n = models[0].A, models[0].B, models[0].A.shape[-1]
+    system = np.zeros((len(gain), n + 1, n + 1))
+    system[:, :n, :n], system[:, :n, n] = A, B
     found = scipy.linalg.expm(system / case.sample_rate)
-    read, through = np.array([model.C for model in models]), np.array([float(model.D) for model in models])
-    return found[:n, :n], found[:n, n], read, through
+    read, through = np.array([model.C for model in models]), np.array([model.D for model in models])
+    return found[:, :n, :n], found[:, :n, n], read, through

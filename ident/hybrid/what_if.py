@@ -178,7 +178,7 @@ def _judged(
     values = None
     if reference is not None:
         unchanged = changed_machine(reference.fit or fit, Change(specimen=change.specimen, known=change.known))
-        values = values_before(unchanged, reference.gain or known, loop)
+        values = values_before({**unchanged.values, "Kp": reference.gain or known}, loop)
     return judge(loop, values, "" if gain is None else f"at Kp = {trimmed(gain)}")
 
 

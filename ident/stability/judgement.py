@@ -6,6 +6,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any
 
+from ident.parallel import one_thread
 from ident.plain import written
 from ident.stability.cause import Cause, causes
 from ident.stability.gain_margin import LARGEST, WANTED, gain_margin
@@ -16,6 +17,7 @@ from ident.words.number import trimmed
 
 STABLE, UNSTABLE = "stable", "unstable"
 _NAMED = 3  # remedies that a sentence lists
+_REMEDY = "For a gain margin of"
 
 
 @dataclass(frozen=True)
@@ -39,6 +41,16 @@ class Judgement:
         """Whether no mode grows."""
         return self.state == STABLE
 
+    @property
+    def what(self) -> str:
+        """What is unstable and why, as a phrase of an error: the mode, and the cause where it is known."""
+        return "; ".join(_phrase(one) for one in self.text if not one.startswith(_REMEDY))
+
+    @property
+    def remedy(self) -> str:
+        """What would make it stable, as a phrase of an error; "" where nothing alone does."""
+        return next((_phrase(one) for one in self.text if one.startswith(_REMEDY)), "")
+
     def to_json(self) -> dict[str, Any]:
         """As plain JSON data."""
         data: dict[str, Any] = written(self)
@@ -50,6 +62,11 @@ def judge(loop: Loop, before: Mapping[str, float] | None = None, where: str = ""
 
     `where` names it in the sentences, as in "at Kp = 12".
     """
+    with one_thread():  # thousands of small matrices, which several threads make slower
+        return _judged(loop, before, where)
+
+
+def _judged(loop: Loop, before: Mapping[str, float] | None, where: str) -> Judgement:
     poles = loop.poles({}, {})[0]
     unstable, margin = bool(growth(poles) > 0), gain_margin(loop)
     if not unstable and (margin is None or margin >= WANTED):
@@ -74,6 +91,11 @@ def _sentences(
         yield f"The cause is one of these, which act alike: {'; '.join(f'{one.kind}: {one}' for one in found)}."
     if offered:
         listed = " or ".join(str(one) for one in offered[:_NAMED])
-        yield f"For a gain margin of {trimmed(WANTED)} dB, the smallest change first: {listed}."
+        yield f"{_REMEDY} {trimmed(WANTED)} dB, the smallest change first: {listed}."
     elif margin is not None and margin > -LARGEST:
         yield f"No single change gives a gain margin of {trimmed(WANTED)} dB."
+
+
+def _phrase(sentence: str) -> str:
+    """A sentence as a phrase of an error: without a capital and a full stop."""
+    return f"{sentence[:1].lower()}{sentence[1:].removesuffix('.')}"

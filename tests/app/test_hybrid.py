@@ -169,7 +169,8 @@ def test_other_motions_effects_and_controllers(service, fitted, controller):
     bodies = (
         {"controller": "kalman", "ground": {"kind": "blwn", "duration": "1 s", "seed": 3}},
         {"controller": file, "case": OWN | {"ground": {"kind": "sine", "frequency": "2 Hz", "duration": "1 s"}},
-         "effects": ["coulomb_friction"], "set": {"dead_zone.half_width": "1 um"}},
+         "effects": ["coulomb_friction"], "set": {"dead_zone.half_width": "1 um"},
+         "before": {"gain": 1, "fit": fitted, "case": OWN}},
     )  # fmt: skip
     found = []
     for body in bodies:
@@ -240,6 +241,16 @@ def test_an_unstable_loop_is_said_to_be_so_with_its_cause(service, fitted):
     refused_by_service(service.post(f"{API}/fits/{fitted}/what-if", json={"before": {"gain": 0}}), "bad-gain")
     strange = {"before": {"fit": "nothing"}}
     assert service.post(f"{API}/fits/{fitted}/what-if", json=strange).status_code == 404
+
+
+def test_a_loop_that_no_controller_is_designed_for_names_its_cause(service, fitted):
+    """A case at Kp = 200 against the same at 2: the error has mode, cause and remedy."""
+    answer = service.post(
+        f"{API}/controllers", json={"fit": fitted, "case": OWN | {"gain": 200}, "before": {"gain": 2}}
+    )
+    refused_by_service(answer, "unstable-plant")
+    assert "the cause is the gain: gain of the position loop" in answer.json()["detail"]
+    assert "gain Kp ×" in answer.json()["remedy"]
 
 
 def test_a_gain_is_chosen(service, fitted):

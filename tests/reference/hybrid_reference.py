@@ -83,6 +83,25 @@ def rods(a: Actuator, s: Specimen, Kp: float) -> tuple[Array, Array]:
     return A, np.array([[Kp / a.tau], [0.0], [0.0], [0.0]])
 
 
+def poles(
+    rate: float, Kp: float, delay: int, actuator: Actuator, structure: Structure, specimen: Specimen,
+) -> NDArray[np.complex128]:  # fmt: skip
+    """The poles s (1/s) of the loop under u = d: one sample of :func:`simulate` without ground, of each unit state."""
+    a, w, s = actuator, structure, specimen
+    A, B = rods(a, s, Kp)
+    held = scipy.linalg.expm(np.block([[A, B], [np.zeros((1, 5))]]) / rate)
+    numeric = np.array([[0.0, 1.0], [-(w.K - s.k) / (w.M - s.m), -w.C / (w.M - s.m)]])
+    phi, g0, g1 = ramps(numeric, np.array([[0.0], [-1 / (w.M - s.m)]]), 1 / rate)
+    after = []
+    for state in np.eye(7 + delay):
+        rod, z, last, u = state[:4], state[4:6], state[6], state[7:]
+        f = s.k * rod[3] + s.m * (A[2] @ rod)
+        on = phi @ z + g0[:, 0] * f + g1[:, 0] * (2 * f - last)
+        after.append([*(held[:4, :4] @ rod + held[:4, 4] * u[0]), *on, f, *u[1:], z[0]])
+    found = np.linalg.eigvals(np.array(after).T).astype(complex)
+    return np.asarray(np.log(found[np.abs(found) > 1e-12]) * rate)
+
+
 def simulate(
     ground: Array, rate: float, Kp: float, delay: int = 1, actuator: Actuator | None = None,
     structure: Structure | None = None, specimen: Specimen | None = None,

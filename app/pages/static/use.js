@@ -86,7 +86,7 @@ async function controller(form) {
     for (const name of ["numerator", "denominator"]) target[name] = target[name]?.map?.(Number) ?? target[name];
     asked.target = target;
   }
-  return asked;
+  return withBefore(asked, fields);
 }
 
 async function simulation(form) {
@@ -98,7 +98,17 @@ async function simulation(form) {
   asked.effects = effects.filter((name) => !fields.get(`strength.${name}`)?.trim());
   const stated = effects.filter((name) => !asked.effects.includes(name));
   asked.set = Object.fromEntries(stated.map((name) => [name, fields.get(`strength.${name}`).trim()]));
-  return asked;
+  return withBefore(asked, fields);
+}
+
+// What is said of the loop when it was stable.
+async function withBefore(asked, fields) {
+  const of = (name) => fields.get(`before.${name}`).trim();
+  const before = {};
+  if (of("gain")) before.gain = Number(of("gain"));
+  if (of("fit")) before.fit = of("fit");
+  if (of("case")) before.case = await read(of("case"), "before case");
+  return Object.keys(before).length ? { ...asked, before } : asked;
 }
 
 async function caseOf(fields) {

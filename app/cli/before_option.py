@@ -1,0 +1,52 @@
+"""Options for a loop as it was when it was stable, by which the cause of an instability is found."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from app.cli.arguments import number
+from app.cli.given import read_fit
+
+if TYPE_CHECKING:
+    from ident.fit.result import FitResult
+    from ident.hybrid.case import Case
+    from ident.hybrid.hybrid_loop import EarlierCase
+
+EarlierFit = Annotated[
+    Path | None,
+    typer.Option(
+        "--before",
+        metavar="FIT.json",
+        help="Fit of the machine when its loop was stable, to find the cause. Default: this fit.",
+    ),
+]
+EarlierGain = Annotated[
+    str | None, typer.Option("--before-gain", metavar="KP", help="Gain Kp with which the loop was stable.")
+]
+CaseBefore = Annotated[
+    str | None,
+    typer.Option("--before-case", metavar="CASE", help="Case when its loop was stable. Default: this case."),
+]
+
+
+def gain_of(text: str | None) -> float | None:
+    """The gain that is stated; None where none is. Raises Unusable."""
+    return None if text is None else number(text, "--before-gain", "KP")
+
+
+def earlier_case(
+    fit: FitResult, case: Case, before: Path | None, gain: str | None, before_case: str | None
+) -> EarlierCase | None:
+    """The case when its loop was stable; None where nothing is said of it. Raises Unusable."""
+    from ident.hybrid.case import read_case
+    from ident.hybrid.hybrid_loop import EarlierCase
+
+    if before is None and gain is None and before_case is None:
+        return None
+    then = EarlierCase(
+        fit if before is None else read_fit(before), case if before_case is None else read_case(before_case)
+    )
+    return then.with_gain(gain_of(gain))
