@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from itertools import product
 
 import numpy as np
 import scipy  # stats, which takes half a second to load, is loaded where it is first used
@@ -12,7 +13,7 @@ from numpy.typing import NDArray
 from ident.cached import cached_property
 from ident.chain.channels import unmeasured
 from ident.diagnosis.compared_records import ComparedRecords
-from ident.diagnosis.criteria import CRITERIA
+from ident.diagnosis.criteria import CRITERIA, EPSILON
 from ident.diagnosis.fitted_model import FittedModel
 from ident.diagnosis.tie_breaking import stable_minimum, stable_ranking
 from ident.diagnosis.verdict import Residual, is_noise
@@ -45,6 +46,12 @@ def _has_specimen(preset: Preset, matrix: Matrix) -> bool:
     """Whether something may yield: what is moved, a stated or a measured specimen, or a spring of the machine's own."""
     yields = preset.data.driven_by in MOTIONS or any(p.name == "k0" for p in preset.parameters)
     return yields or any(run.specimen or "force" in run.channels for run in matrix.runs)
+
+
+def _is_beyond(value: float, lower: float, upper: float) -> bool:
+    """Whether a value lies outside of its bounds, but for rounding."""
+    least = EPSILON * (upper - lower)
+    return not lower - least <= value <= upper + least
 
 
 @dataclass
@@ -184,20 +191,41 @@ class CandidateModels:
 
     def at_bound(self, refit: FittedModel, effect: str) -> bool:
         """Whether the strength of an effect ended at a bound that the search set, and no user."""
-        strength, preset = self.strength(effect), refit.fitness.preset
-        own = [name for name in self.given.bounds if name.partition(".")[0] == effect]
-        if self.effects[effect].own or strength not in refit.space.names:
-            return False
-        if strength in {preset.parameter(name).in_equations for name in own}:
+        strength = self.strength(effect)
+        if not self._is_searched(refit.fitness, effect):
             return False
         return refit.values[strength] != 0 and refit.space.at_bound(strength, refit.point)
 
-    def _asks_farther(self, refit: FittedModel, effect: str) -> bool:
-        """Whether a strength ended at a bound that is but an order of magnitude: no part of a whole, nobody's own."""
-        if not refit.stable or not self.at_bound(refit, effect):
+    def _is_searched(self, fitness: SimulatedFitness, effect: str) -> bool:
+        """Whether the strength of an effect is searched between bounds that nobody set."""
+        strength, preset = self.strength(effect), fitness.preset
+        own = [name for name in self.given.bounds if name.partition(".")[0] == effect]
+        if self.effects[effect].own or strength not in fitness.space.names:
             return False
-        axis = next(axis for axis in refit.space.axes if axis.name == self.strength(effect))
+        return strength not in {preset.parameter(name).in_equations for name in own}
+
+    def may_reach_farther(self, fitness: SimulatedFitness, effect: str) -> bool:
+        """Whether the bounds of a strength are but an order of magnitude: no part of a whole, nobody's own."""
+        if not self._is_searched(fitness, effect):
+            return False
+        axis = next(axis for axis in fitness.space.axes if axis.name == self.strength(effect))
         return axis.scale is not None and axis.scale.names != frozenset()
+
+    def _asks_farther(self, refit: FittedModel, effect: str) -> bool:
+        """Whether a strength ended at a bound that is but an order of magnitude."""
+        return refit.stable and self.at_bound(refit, effect) and self.may_reach_farther(refit.fitness, effect)
+
+    def reaching(
+        self, effects: Iterable[str], fitness: SimulatedFitness, starts: Sequence[Mapping[str, float]]
+    ) -> SimulatedFitness:  # fmt: skip
+        """The objective, its strengths reaching as far as those of some starts, where nobody set how far."""
+        names = [name for name in effects if name in self.effects and self.may_reach_farther(fitness, name)]
+        for start, _ in product(starts, range(ROUNDS)):
+            bounds = fitness.space.bounds(start)
+            of = {symbol: bounds[symbol] for symbol in map(self.strength, names)}
+            if beyond := [symbol for symbol, ends in of.items() if _is_beyond(start[symbol], *ends)]:
+                fitness = replace(fitness, space=wider_at(fitness.space, fitness.space.point(start), beyond))
+        return fitness
 
     def fitness(self, effects: tuple[str, ...], samples: int = 0) -> SimulatedFitness:
         """The objective of the model with these effects, on records of at most `samples` in all where that is given."""
@@ -348,8 +376,9 @@ class CandidateModels:
     ) -> FittedModel:
         """The optimum near `start`, on shortened records where `samples` is given."""
         fitness = self.fitness(effects, samples)
-        known = {p.in_equations: p.value for p in fitness.preset.parameters} | dict(start)
-        point = fitness.space.point({**known, **fitness.space.fixed})
+        known = {p.in_equations: p.value for p in fitness.preset.parameters} | dict(start) | dict(fitness.space.fixed)
+        fitness = self.reaching(effects, fitness, [known])
+        point = fitness.space.point(known)
         way = way or (CRITERIA.estimation.trial if samples else CRITERIA.estimation.full)
         found = self._optimum(effects, fitness, point, way, samples)
         for _ in range(ROUNDS):
@@ -425,9 +454,9 @@ class CandidateModels:
         It is given up where it cannot come below `aim`.
         """
         fitness = self.fitness(effects, CRITERIA.estimation.trial_samples)
-        errors = fitness.errors(
-            np.array([fitness.space.point({**self.off, **s, **fitness.space.fixed}) for s in starts])
-        )
+        values = [{**self.off, **start, **fitness.space.fixed} for start in starts]
+        fitness = self.reaching(effects, fitness, values)
+        errors = fitness.errors(np.array([fitness.space.point(one) for one in values]))
         start, _ = stable_minimum(list(zip(starts, errors.tolist(), strict=True)), lambda one: one[1])
         return self.refit(
             effects, start, CRITERIA.estimation.trial_samples, replace(CRITERIA.estimation.trial, aim=aim)

@@ -8,7 +8,7 @@ tiny ones: kinks need room, and what approaches zero as a fast time constant wou
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import chain, pairwise
 
@@ -27,6 +27,7 @@ from ident.fit.bounded_step import bounded_steps
 from ident.fit.responses import Responses, Sensitivities
 from ident.fit.simulated_fitness import SimulatedFitness
 from ident.fit.space import Space
+from ident.fit.wider_bounds import FURTHER, ROUNDS
 from ident.parallel import each
 
 Array = NDArray[np.float64]
@@ -131,41 +132,68 @@ def _values_without(models: CandidateModels, base: FittedModel, fitness: Simulat
 
 
 def _predicted(given: _Sensitivities, base: FittedModel, names: Sequence[str]) -> list[Prediction]:
-    """The predictions of effects that one chain holds; strengths are added where a threshold was jumped over."""
+    """The predictions of effects that one chain holds.
+
+    Strengths are added where a threshold was jumped over, and beyond a range whose end is not enough.
+    """
     models, fitness = given.models, given.models.fitness((*base.effects, *names), CRITERIA.screening.samples)
     values = _values_without(models, base, fitness)
     trials = [trial for name in names for trial in _trials(models, base, fitness.space, name, values)]
     found = given.with_effects(fitness, values, trials)
-    between = found.thresholds()
-    every = [found, given.with_effects(fitness, values, between)] if between else [found]
     before = given.before
-    nothing = {trial.effect: (before, np.zeros(len(base.point) + 1), trial) for trial in reversed(trials)}
+    promises = list(found.predicted_fits())
+    if between := found.thresholds():
+        promises += given.with_effects(fitness, values, between).predicted_fits()
+    for _ in range(ROUNDS):
+        if not (beyond := _beyond(models, fitness, values, promises)):
+            break
+        promises += given.with_effects(fitness, values, beyond).predicted_fits()
+    nothing = {trial.effect: (trial, before, np.zeros(len(base.point) + 1)) for trial in reversed(trials)}
     best: dict[str, dict[tuple[float, ...], _Promise]] = {name: {} for name in names}
-    all_of: dict[str, list[_Promise]] = {name: [] for name in names}
-    for trial, after, step in chain.from_iterable(responses_of.predicted_fits() for responses_of in every):
+    for promise in promises:
+        trial, after, _ = promise
         of_shape, shape = best[trial.effect], tuple(trial.shape.values())
-        all_of[trial.effect].append((after, step, trial))
-        if (
-            after.score
-            < (1.0 - CRITERIA.screening.score_tolerance) * of_shape.get(shape, nothing[trial.effect])[0].score
-        ):
-            of_shape[shape] = after, step, trial
+        known = of_shape.get(shape, nothing[trial.effect])[1].score
+        if after.score < (1.0 - CRITERIA.screening.score_tolerance) * known:
+            of_shape[shape] = promise
     few = slice(CRITERIA.screening.elsewhere)
 
     def prediction(name: str) -> Prediction:
         first, *others = sorted(best[name].values(), key=_score) or [nothing[name]]
         recorded = _from_records(models, base, fitness.space, name, values)
+        of_effect = sorted((promise for promise in promises if promise[0].effect == name), key=_score)
         return Prediction(
             name,
-            first[0],
+            first[1],
             before,
             len(given.gram),
-            (*_refit_starts(models, base, *first), *recorded),
-            tuple(_refit_starts(models, base, *other) for other in others[few]),
-            tuple(_as_simulated(models, base, trial) for _, _, trial in sorted(all_of[name], key=_score)[few]),
+            (*_refit_starts(models, base, first), *recorded),
+            tuple(_refit_starts(models, base, other) for other in others[few]),
+            tuple(_as_simulated(models, base, trial) for trial, _, _ in of_effect[few]),
         )
 
     return [prediction(name) for name in names]
+
+
+def _beyond(
+    models: CandidateModels, fitness: SimulatedFitness, known: Mapping[str, float], promises: Iterable[_Promise]
+) -> list[_Trial]:  # fmt: skip
+    """Strengths beyond the end of a range, of effects that promise most there, and more the stronger they are.
+
+    The range of a machine of unknown size is an order of magnitude.
+    """
+    best: dict[str, _Promise] = {}
+    for promise in promises:
+        effect = promise[0].effect
+        best[effect] = min(best.get(effect, promise), promise, key=_score)
+    bounds, most = fitness.space.bounds(known), (1.0 - EPSILON) * CRITERIA.screening.max_scaling
+    found = []
+    for trial, _, step in best.values():
+        lower, upper = bounds[models.strength(trial.effect)]
+        at_end = trial.strength >= (1.0 - EPSILON) * upper or trial.strength <= (1.0 - EPSILON) * lower < 0
+        if at_end and step[-1] >= most and models.may_reach_farther(fitness, trial.effect):
+            found.append(replace(trial, strength=FURTHER * trial.strength))
+    return found
 
 
 def _as_simulated(models: CandidateModels, base: FittedModel, trial: _Trial) -> dict[str, float]:
@@ -174,7 +202,7 @@ def _as_simulated(models: CandidateModels, base: FittedModel, trial: _Trial) -> 
 
 
 def _score(promise: _Promise) -> float:
-    return promise[0].score
+    return promise[1].score
 
 
 @dataclass(frozen=True)
@@ -186,8 +214,8 @@ class _Trial:
     shape: Mapping[str, float]
 
 
-_Promise = tuple[PredictedFit, Array, _Trial]
-"""What a trial would leave, the step to there, and the trial."""
+_Promise = tuple[_Trial, PredictedFit, Array]
+"""A trial, what it would leave, and the step to there."""
 
 
 @dataclass(frozen=True)
@@ -243,7 +271,7 @@ class _EffectResponses:
     trials: list[_Trial]
     responses: Responses
 
-    def predicted_fits(self) -> Iterator[tuple[_Trial, PredictedFit, Array]]:
+    def predicted_fits(self) -> Iterator[_Promise]:
         """What was simulated, what is left with a share of its response, and the step to there."""
         shown = [i for i in range(len(self.trials)) if self._power(i) > 0]
         for few in (
@@ -279,10 +307,9 @@ class _EffectResponses:
         return _after(gram, means, given.records, given.point, p)
 
 
-def _refit_starts(
-    models: CandidateModels, base: FittedModel, _after: PredictedFit, step: Array, trial: _Trial
-) -> tuple[dict[str, float], ...]:
+def _refit_starts(models: CandidateModels, base: FittedModel, promise: _Promise) -> tuple[dict[str, float], ...]:
     """The values from which to refit with the effect: parts of the way to the prediction, and of the way back."""
+    trial, _, step = promise
     p, symbol = len(base.point), models.strength(trial.effect)
     moved = np.clip(step[:p], -CRITERIA.screening.max_step, CRITERIA.screening.max_step)
 
