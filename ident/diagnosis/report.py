@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import replace
 from importlib.metadata import version
@@ -15,7 +15,7 @@ from ident.diagnosis.fitted_model import FittedModel
 from ident.diagnosis.free_shapes import bounds_of_freed, held_widths
 from ident.diagnosis.ladder import Rungs
 from ident.diagnosis.model_comparison import evidence
-from ident.diagnosis.result import NO_ERRORS, Baseline, Diagnosis, EffectSet, Errors, Ranked, Rung
+from ident.diagnosis.result import NO_ERRORS, Baseline, Diagnosis, EffectSet, Errors, Ranked, Rung, Verdict
 from ident.diagnosis.selection import Selection
 from ident.diagnosis.sentences import evidence_figures, verdict_text, why
 from ident.diagnosis.verdict import Findings, conclude, contradiction
@@ -41,7 +41,7 @@ def report(fit: FitResult, models: CandidateModels, selection: Selection, steps:
         horizon=selection.models.horizon,
         memory=selection.models.memory,
         left_out=tuple(run.id for run in models.matrix.runs if run.id in selection.models.left_out),
-        candidates=tuple(_ranked(selection, floor["fit"], verdict.probabilities)),
+        candidates=tuple(_ranked(selection, floor["fit"], verdict)),
         ladder=tuple(ladder),
         verdict=verdict,
         proposals=(),
@@ -106,10 +106,17 @@ def better_with_fewer(steps: Rungs) -> tuple[float, tuple[str, ...]] | None:
     return least, tuple(name for name, _ in steps[errors.index(least) + 1 :] if name)
 
 
-def _ranked(selection: Selection, floor: float | None, probabilities: Mapping[str, float]) -> list[Ranked]:
+def group_of(effect: str, verdict: Verdict) -> tuple[str, ...]:
+    """The group of the verdict that an effect belongs to; none where there is no other, or where it holds two lags.
+
+    Effects that tie at the first step may be told apart at the last: what the verdict tells apart is no group.
+    """
+    groups = (group for group in verdict.indistinguishable if len({*group} & {*verdict.effects}) < 2)
+    return next((group for group in groups if effect in group), ())
+
+
+def _ranked(selection: Selection, floor: float | None, verdict: Verdict) -> list[Ranked]:
     base, models = selection.base, selection.models
-    tied = tuple(candidate.effect for candidate in in_time(selection.tied_first) or ())
-    group = tied if len(tied) > 1 else ()
     before = in_time(lambda: base.held_out.error) or 0.0  # without it nothing was refitted that it is compared with
     with suppress(TimeIsUp):  # side by side, not one by one below
         each(lambda candidate: candidate.refit and candidate.refit.errors, selection.ranking)
@@ -122,8 +129,8 @@ def _ranked(selection: Selection, floor: float | None, probabilities: Mapping[st
             offset=refit.held_out.offset if refit else None,
             predicted_error=base.error * candidate.prediction.remaining,
             parameters=refit.parameters if refit else {},
-            group=group if candidate.effect in group else (),
-            probability=probabilities.get(candidate.effect),
+            group=group_of(candidate.effect, verdict),
+            probability=verdict.probabilities.get(candidate.effect),
             error_with_mean=refit.errors_with_mean if refit else {},
             unstable=refit.unstable if refit else {},
             evidence={"predicted_fall": candidate.prediction.reduction,

@@ -50,7 +50,7 @@ class Baseline(Judged):
 class Ranked(Judged):
     """An effect that the model lacks: what it was predicted to gain, what its refit gained, and why.
 
-    `group` are the effects that the data cannot tell from it. Without `parameters` only the prediction was made.
+    `group` is the group of the verdict that it belongs to. Without `parameters` only the prediction was made.
     `unstable` has by use the runs on which the model is unstable with it.
     """
 

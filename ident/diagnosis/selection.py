@@ -5,11 +5,10 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
-from ident.diagnosis.candidate import Candidate, not_dominated
+from ident.diagnosis.candidate import Candidate
 from ident.diagnosis.candidate_models import CandidateModels
 from ident.diagnosis.fitted_model import FittedModel
 from ident.diagnosis.ladder import Ladder, Rungs
-from ident.diagnosis.model_comparison import indistinguishable
 from ident.diagnosis.refitted_sets import RefittedSets
 
 
@@ -49,10 +48,3 @@ class Selection:
     def known_ladder(self) -> Rungs:
         """The same of what is known, where there is no time for a refit."""
         return self.rungs.known(self.path, self.base)
-
-    def tied_first(self) -> list[Candidate]:
-        """The candidates of the first ranking that tie with its best, if that improves the model, best first."""
-        best = self.ranking[0].refit if self.ranking else None
-        if best is None or not self.ranking[0].improves:
-            return []
-        return not_dominated([c for c in self.ranking if c.refit and indistinguishable(best, c.refit)])

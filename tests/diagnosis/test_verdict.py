@@ -8,7 +8,9 @@ from dataclasses import replace
 import pytest
 
 from ident.diagnosis.criteria import Criteria, Noise
+from ident.diagnosis.evidence.criteria import EVIDENCE_CRITERIA
 from ident.diagnosis.evidence.probability import NOTHING, SetGains
+from ident.diagnosis.report import group_of
 from ident.diagnosis.verdict import Findings, Residual, conclude, is_noise
 from ident.diagnosis.verification import VerifyChange
 
@@ -79,12 +81,30 @@ def test_a_group_is_told_once_and_never_with_what_is_dispensable():
 
 
 def test_two_lags_that_are_named_are_as_probable_as_both_together():
-    """By hand: ln w = 0.41 G − 4.5 k, and with something unlisted 0.41 · 0.9 (60 − G) − 5.15 more."""
+    """By hand: ln w = η G − κ k, and with something unlisted η λ (60 − G) − κ_u more."""
+    c = EVIDENCE_CRITERIA
     gains = SetGains({NOTHING: 0.0, frozenset({"lag"}): 40.0, frozenset({"lag", "delay"}): 58.0}, most=60.0)
     found = Findings(added=("lag", "delay"), lag_pairs=(("lag", "delay", "lead"),), residual=NOISE, set_gains=gains)
-    alone = [math.exp(0.41 * gain - 4.5 * count) for count, gain in enumerate((0.0, 40.0, 58.0))]
-    unlisted = [w * math.exp(0.369 * (60.0 - gain) - 5.15) for w, gain in zip(alone, (0.0, 40.0, 58.0), strict=True)]
+    alone = [math.exp(c.learning_rate * gain - c.effect_prior * count) for count, gain in enumerate((0.0, 40.0, 58.0))]
+    left = [math.exp(c.learning_rate * c.unlisted_share * most - c.unlisted_prior) for most in (60.0, 20.0, 2.0)]
+    unlisted = [w * more for w, more in zip(alone, left, strict=True)]
     both = (alone[2] + unlisted[2]) / (sum(alone) + sum(unlisted))
     verdict = conclude(found)
     assert verdict.probability == pytest.approx(both)
     assert verdict.group_probabilities == (pytest.approx(both),)
+
+
+def test_a_candidate_is_grouped_as_the_verdict_groups_it():
+    """At the first step Coulomb and presliding friction tie; the verdict tells them apart, and so does the list."""
+    friction = Findings(added=("coulomb_friction",), residual=NOISE)
+    assert group_of("presliding_friction", conclude(friction)) == ()
+    together = ("coulomb_friction", "dead_zone")
+    grouped = conclude(replace(friction, alternatives=(together,)))
+    assert group_of("dead_zone", grouped) == group_of("coulomb_friction", grouped) == together
+    assert group_of("presliding_friction", grouped) == ()
+
+
+def test_two_lags_of_one_group_are_two_candidates():
+    """Both are named: one card of the two would say that either is enough."""
+    lags = Findings(added=("command_delay", "sensor_lag"), lag_pairs=(("command_delay", "sensor_lag", "loop_delay"),))
+    assert group_of("command_delay", conclude(lags)) == ()
