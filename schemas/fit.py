@@ -254,7 +254,10 @@ class ProfileRequest(BaseModel):
 
 
 class FitColumn(BaseModel):
-    """One of several fits, under the letter that the runs name it by, and the serial number of its actuator."""
+    """One of several fits, under the letter that the runs name it by, and the serial number of its actuator.
+
+    `ratio` is its error over that of the first fit, `points` the difference in per cent of the signal, each by use.
+    """
 
     fit: str
     name: str
@@ -263,14 +266,21 @@ class FitColumn(BaseModel):
     effects: list[str]
     error: Errors
     parameters: dict[str, EstimateView]
+    ratio: Errors = Field(default_factory=dict)
+    points: Errors = Field(default_factory=dict)
 
 
 class RunBeside(BaseModel):
-    """A run, and its eq. (17) in each of the fits by their letters; null where a fit has not seen it."""
+    """A run, and its eq. (17) in each of the fits by their letters; null where a fit has not seen it.
+
+    `ratio` is the error over that in the first fit, `points` the difference in per cent of the signal.
+    """
 
     id: str
     use: str
     error: dict[str, float | None]
+    ratio: dict[str, float | None] = Field(default_factory=dict)
+    points: dict[str, float | None] = Field(default_factory=dict)
 
 
 class SideBySideView(BaseModel):

@@ -1,12 +1,13 @@
-"""`servoident compare` with several fits: one table and one plot of them all."""
+"""`servoident compare` with several fits: tables and figures of them all."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
+from types import MappingProxyType
+from typing import TYPE_CHECKING, Any
 
-from app.cli.figure_files import write_figures
+from app.cli.figure_files import draw_study, write_figures
 from app.cli.output import STANDARD_OUTPUT, write_json
 
 if TYPE_CHECKING:
@@ -16,8 +17,11 @@ if TYPE_CHECKING:
 NAME = "side-by-side"
 
 
-def compare_several(matrix: Matrix, fits: Sequence[FitResult], json: Path | None, out: Path | None) -> None:
-    """Each fit against every run of the matrix, whatever it was fitted to."""
+def compare_several(
+    matrix: Matrix, fits: Sequence[FitResult], json: Path | None, out: Path | None, figures: Sequence[str] = (),
+    options: Mapping[str, Any] = MappingProxyType({}),
+) -> None:  # fmt: skip
+    """Each fit against every run of the matrix, whatever it was fitted to; all of them in the `figures` asked for."""
     from app.cli.tables import show
     from ident.comparison.side_by_side import of_comparisons
     from ident.workflows import compare
@@ -37,3 +41,4 @@ def compare_several(matrix: Matrix, fits: Sequence[FitResult], json: Path | None
         from ident.figures.subjects import Compared
 
         write_figures(Compared(found, matrix.actuator), out)
+        draw_study(matrix, fits[0], out, figures, options, fits[1:])

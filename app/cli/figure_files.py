@@ -4,12 +4,19 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import Any
+from types import MappingProxyType
+from typing import TYPE_CHECKING, Any
 
 from app.cli.output import write_bytes
 from ident.errors import Unusable
 from ident.words.nearest import did_you_mean
 
+if TYPE_CHECKING:
+    from ident.fit.result import FitResult
+    from ident.matrix import Matrix
+
+_CANNOT = ("unstable-model", "cannot-draw")
+"""Codes of what one figure cannot show, and others can."""
 FORMATS = ("svg", "png", "pdf", "json")
 OF_ALL = ("theme", "share")
 """Options that every figure takes."""
@@ -70,6 +77,37 @@ def write_figures(subject: object, out: Path) -> None:
     for name in names:
         write_figure(subject, name, out)
     print(f"wrote {', '.join(names)} to {out}")
+
+
+def draw_study(
+    matrix: Matrix, fit: FitResult, out: Path, names: Sequence[str] = (),
+    options: Mapping[str, Any] = MappingProxyType({}), others: Sequence[FitResult] = (),
+) -> None:  # fmt: skip
+    """Write figures of a fit to the folder `out`, all or those of these names, each with the options that it takes.
+
+    With `others` they are those in which several fits are drawn. Raises Unusable for a figure that the fit does not
+    have, and for an option that none of the figures takes.
+    """
+    from ident.figures import drawings
+    from ident.workflows import study
+
+    studied, drawn = study(matrix, fit), []
+    if others:
+        options = {**options, "other": list(others)}
+        several = [
+            name for name, one in drawings(studied).items() if "other" in {option.name for option in one.options}
+        ]
+        names = names or several
+    for name, taken in with_options(studied, names, options).items():
+        try:
+            write_figure(studied, name, out, **taken)
+        except Unusable as error:
+            if error.code not in _CANNOT:
+                raise
+            print(f"{name} cannot be drawn: {error.what}")
+            continue
+        drawn.append(name)
+    print(f"wrote {', '.join(drawn)} to {out}")
 
 
 def write_figure(subject: object, name: str, out: Path, stem: str = "", **options: Any) -> None:

@@ -39,14 +39,21 @@ def _subject(context: Context, fit_id: str, name: str, options: dict[str, Any]) 
         return Ladder(steps, fit.noise_floor.get("fit"), actuator)
     if candidate := options.pop("candidate", None):
         options["candidate"] = _candidate(context, fit, str(candidate))
+    if wanted := options.pop("other", None):
+        options["other"] = [_stored(context, one) for one in ([wanted] if isinstance(wanted, str) else wanted)]
     return studied
+
+
+def _stored(context: Context, fit_id: str) -> FitResult:
+    """A fit by its id. Raises Failure 404."""
+    return FitResult.from_json(service.find(context, fit_id).result)
 
 
 def _candidate(context: Context, fit: FitResult, wanted: str) -> FitResult:
     """Another fit by its id, or what a diagnosis found of an effect: DIAGNOSIS:EFFECT. Raises Failure 404."""
     diagnosis, colon, effect = wanted.partition(":")
     if not colon:
-        return FitResult.from_json(service.find(context, wanted).result)
+        return _stored(context, wanted)
     return diagnoses.refit(context, diagnosis, fit, effect)
 
 

@@ -17,7 +17,7 @@ from app.matrices import service as matrices
 from app.own_effects.naming import with_kept
 from app.parameters.error import error_of
 from app.tables import FitRow
-from ident.comparison.side_by_side import SideBySide, of_fits
+from ident.comparison.side_by_side import Change, SideBySide, of_fits
 from ident.fit.choices import Choices
 from ident.fit.choices import settings_of as chosen_settings
 from ident.fit.identification import check_settings
@@ -186,16 +186,21 @@ def beside(context: Context, fit_id: str, others: Sequence[str]) -> SideBySide:
 def side_by_side(context: Context, fit_id: str, others: Sequence[str]) -> SideBySideView:
     """The same as it is sent."""
     found = beside(context, fit_id, others)
+    first = found.columns[0]
     fits = [
         FitColumn(fit=name, name=one.name, serial=one.serial, model=one.fit.model, effects=list(one.fit.effects),
                   error=dict(one.error),
+                  ratio={use: Change(first.error.get(use), error).ratio for use, error in one.error.items()},
+                  points={use: Change(first.error.get(use), error).points for use, error in one.error.items()},
                   parameters={key: EstimateView(**entry) for key, entry in written(one.fit.parameters).items()})
         for name, one in zip((fit_id, *others), found.columns, strict=True)
     ]  # fmt: skip
     runs = [
-        RunBeside(id=run, use=use, error={one.name: one.runs.get(run) for one in found.columns})
+        RunBeside(id=run, use=use, error={one.name: one.runs.get(run) for one in found.columns},
+                  ratio={one.name: Change(first.runs.get(run), one.runs.get(run)).ratio for one in found.columns},
+                  points={one.name: Change(first.runs.get(run), one.runs.get(run)).points for one in found.columns})
         for run, use in found.uses.items()
-    ]
+    ]  # fmt: skip
     return SideBySideView(fits=fits, runs=runs)
 
 

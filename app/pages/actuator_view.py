@@ -38,7 +38,7 @@ class ActuatorRow:
 
 @dataclass(frozen=True)
 class FitRow:
-    """A fit or the job that is to make it."""
+    """A fit or the job that is to make it; `done` where it is a fit, and can be compared."""
 
     id: str
     state: str
@@ -51,6 +51,7 @@ class FitRow:
     said_fit: ErrorOf
     said_verify: ErrorOf
     made: str
+    done: bool = False
 
 
 def actuator_row(
@@ -138,6 +139,7 @@ def _fit_row(job: JobView, made: ParameterSetView | None) -> FitRow:
         said_fit=error_of(made, "fit"),
         said_verify=error_of(made, "verify"),
         made=job.created_at,
+        done=made is not None,
     )
 
 

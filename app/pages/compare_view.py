@@ -7,7 +7,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 from app.fits.service import Stored
-from app.pages.figure_forms import FigureForm, forms
+from app.pages.figure_forms import FigureForm, overlaid
 from ident.fit.information import aic_change
 from ident.fit.result import Estimate, FitResult
 from ident.presets import preset
@@ -66,7 +66,7 @@ class ComparedRun:
 
 @dataclass(frozen=True)
 class CompareView:
-    """What the page shows; `figures` of the second fit take the first one as candidate, where the data are the same."""
+    """What the page shows; `figures` are of both fits, where they are of one actuator."""
 
     first: Side
     second: Side
@@ -100,9 +100,7 @@ def in_order(stored: Sequence[Stored]) -> list[Stored]:
 def compare_view(first: Stored, second: Stored, matrix: MatrixView) -> CompareView:
     """The page of two fits; `matrix` is that of the first."""
     a, b = first.found, second.found
-    known = {run.id for run in matrix.runs}
-    same = first.matrix == second.matrix or (first.serial == second.serial and {run.id for run in b.runs} == known)
-    figures = tuple(form for form in forms(matrix.runs, a) if form.name == "bode") if same else ()
+    figures = overlaid(matrix.runs, (a, b)) if first.serial == second.serial else ()
     return CompareView(
         first=_side(first, a), second=_side(second, b), errors=tuple(_errors(a, b)),
         parameters=tuple(_parameters(a, b)), runs=tuple(_runs(a, b)), figures=figures,

@@ -105,8 +105,8 @@ def effects(request: Request, here: Here) -> HTMLResponse:
 
 
 @router.get("/compare", dependencies=[READERS])
-def compare(request: Request, here: Here, fits: str) -> HTMLResponse:
-    """Two fits side by side, or more in one table and plot."""
+def compare(request: Request, here: Here, fits: Annotated[list[str], Query()]) -> HTMLResponse:
+    """Two fits side by side, or up to eight in the same tables and figures."""
     template, shown = service.compared(here, fits)
     return page(request, template, **shown, vega=assets.VEGA)
 

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from app.pages.run_view import specimen_of
 from ident.custom.definition import preset_with
 from ident.figures import FIGURES, Study, figures_of
 from ident.figures.drawing import Choices, Drawing, Offer, OfferedRun
+from ident.figures.options import CONDITIONS, OTHER, USE
 from ident.fit.result import FitResult
 from ident.presets import preset
 from schemas.matrix import RunView
@@ -51,6 +52,19 @@ def forms(runs: Sequence[RunView], fit: FitResult) -> tuple[FigureForm, ...]:
         )
         for drawing in drawings
     )  # fmt: skip
+
+
+_OF_RUNS = {option.name for option in (USE, *CONDITIONS)}
+
+
+def overlaid(runs: Sequence[RunView], fits: Sequence[FitResult]) -> tuple[FigureForm, ...]:
+    """The figures that show all of these fits, each of one run, with their fields."""
+    named = [set(figures_of(fit)) for fit in fits]
+    return tuple(
+        replace(form, fields=tuple(field for field in form.fields if field.name not in _OF_RUNS))
+        for form in forms(runs, fits[0])
+        if all(form.name in names for names in named) and OTHER in FIGURES[form.name].options
+    )
 
 
 def _fields(drawing: Drawing[Study], offer: Offer) -> Iterator[Field]:

@@ -148,9 +148,9 @@ def own_list(context: Context) -> Shown:
     return {"rows": tuple(kept_rows(own_effects.every(context)))}
 
 
-def compared(context: Context, wanted: str) -> tuple[str, Shown]:
-    """The page of two fits or more, by their ids with commas between, and what it shows; raises Failure 404, 422."""
-    names = [name for name in wanted.split(",") if name]
+def compared(context: Context, wanted: Sequence[str]) -> tuple[str, Shown]:
+    """The page of two fits or more, by their ids, one each or with commas between; raises Failure 404, 422."""
+    names = list(dict.fromkeys(name for several in wanted for name in several.split(",") if name))
     if not 2 <= len(names) <= MOST:
         what, remedy = f"{count(len(names), 'fit')} to compare", f"give 2 to {MOST}: /compare?fits=A,B"
         raise Failure(422, "bad-request", what, "fits", remedy)
@@ -160,7 +160,10 @@ def compared(context: Context, wanted: str) -> tuple[str, Shown]:
     others = further(known, names)
     if len(names) > 2:
         found = fits.beside(context, names[0], names[1:])
-        return "side_by_side.html", {"of": side_view(stored, found), "others": others}
+        return "side_by_side.html", {
+            "of": side_view(stored, found, matrices.get(context, stored[0].matrix)),
+            "others": others,
+        }
     first, second = stored
     return "compare.html", {"both": compare_view(first, second, matrices.get(context, first.matrix)), "others": others}
 

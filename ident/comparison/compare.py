@@ -5,14 +5,15 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
+from functools import partial
 from typing import Any
 
 import numpy as np
-import scipy  # signal, which takes most of a second to load, is loaded where it is first used
 from numpy.typing import NDArray
 
 from ident.cached import cached_property
 from ident.chain.chain import linear_model
+from ident.comparison.frequency_response import DescribingGain, Spectra, describing_gain, spectra
 from ident.custom.definition import preset_with
 from ident.effects.effect import usual_shapes
 from ident.errors import Unusable
@@ -38,7 +39,6 @@ Simulator = Callable[[Preset, Mapping[str, float], Matrix], dict[str, Array]]
 """A model, its values by the equations' names and a matrix in; the output of every run out, by the run's id."""
 _HUGE = 1e100  # of a signal: its square is still a number
 _NUMBERS = ("RMSE", "with the mean", "NRMSE fit", "eq. (17)", "offset", "MAE")
-_WINDOW = 1.0  # s: the length of a window of the spectral estimate, and with it its resolution of 1 Hz
 
 
 @dataclass(frozen=True)
@@ -46,13 +46,14 @@ class RunComparison(Shown):
     """One run: eq. (17), the offset, the model's output and the frequency responses.
 
     `modelled` (n,) is in the run's own unit, beside ``run.measured``, with the offset `of_transducer`; `linear` is None
-    for a model with effects.
+    for a model with effects. `core` makes the linear model that such a model has without its effects.
     """
 
     run: Run
     linear: LinearModel | None
     modelled: Array
     of_transducer: float = 0.0
+    core: Callable[[], LinearModel] | None = None
 
     def listings(self) -> Iterable[Listing | str]:
         """Its errors, a row."""
@@ -123,44 +124,46 @@ class RunComparison(Shown):
         """The residual's mean size, mean |x_m − x|, in `unit`; None where the model is unstable on the run."""
         return None if self.unstable else float(np.mean(np.abs(self._residual)))
 
-    @cached_property
+    @property
     def frequency(self) -> Array:
         """Frequencies of the estimates in Hz, (f,), without zero."""
-        return np.asarray(self._spectra[0])
+        return self._spectra.frequency
 
-    @cached_property
+    @property
     def measured(self) -> Complex:
         """Measured frequency response, the H1 estimate S_ux / S_uu, (f,)."""
-        _, uu, _, ux = self._spectra
-        return np.asarray(ux / uu)
+        return self._spectra.response
 
-    @cached_property
+    @property
     def coherence(self) -> Array:
         """|S_ux|² / (S_uu S_xx), (f,)."""
-        _, uu, xx, ux = self._spectra
-        return np.asarray(np.abs(ux) ** 2 / (uu * xx))
+        return self._spectra.coherence
 
-    @cached_property
-    def model(self) -> Complex:
-        """The model's frequency response, (f,); with effects, estimated from its output as the measured one is."""
+    @property
+    def random_error(self) -> Array:
+        """Relative standard error of the measured response, (f,)."""
+        return self._spectra.random_error
+
+    def response(self, frequency: Array) -> Complex:
+        """The model's own frequency response at `frequency` (f,) in Hz; with effects its describing gain."""
         if self.linear is not None:
-            return np.asarray(self.linear.frequency_response(self.frequency)[0])
-        _, uu, _, ux = self._spectra_of(self.modelled)
-        return np.asarray(ux / uu)
+            return np.asarray(self.linear.frequency_response(frequency)[0])
+        core, gain = self._described
+        answer = gain.at(frequency)
+        return answer if core is None else np.asarray(core.frequency_response(frequency)[0] * answer)
 
     @cached_property
-    def _spectra(self) -> tuple[Array, Array, Array, Complex]:
-        return self._spectra_of(self.run.measured)
+    def _described(self) -> tuple[LinearModel | None, DescribingGain]:
+        """The linear model without effects and the describing gain over its output; or None, and over the command."""
+        core = self.core() if self.core else None
+        reference = None if core is None else output(self.run, core)
+        if reference is None or not np.abs(reference).max() < _HUGE:
+            return None, describing_gain(self.run, self.run.command, self.modelled)
+        return core, describing_gain(self.run, reference, self.modelled)
 
-    def _spectra_of(self, output: Array) -> tuple[Array, Array, Array, Complex]:
-        run = self.run
-        segment = min(run.length // 2, max(16, round(_WINDOW * run.sample_rate))) if run.time_unit == "s" else 256
-        options = {"fs": run.sample_rate, "nperseg": min(segment, run.length), "detrend": "constant"}
-        frequency, ux = scipy.signal.csd(run.command, output, **options)
-        _, uu = scipy.signal.welch(run.command, **options)
-        _, xx = scipy.signal.welch(output, **options)
-        used = slice(1, None)
-        return frequency[used], np.maximum(uu[used], 1e-300), np.maximum(xx[used], 1e-300), ux[used]
+    @cached_property
+    def _spectra(self) -> Spectra:
+        return spectra(self.run, self.run.command, self.run.measured)
 
 
 @dataclass(frozen=True)
@@ -261,7 +264,8 @@ def compare(matrix: Matrix, fit: FitResult, simulator: Simulator = modelled) -> 
         own = offset_at(run, fit.transducer_offset)
         model = linear_model(preset.core, values, run, matrix.actuator) if preset.is_linear else None
         if outputs is not None:
-            return RunComparison(run, model, outputs[run.id] + own, own)
+            core = None if preset.core.memories else partial(linear_model, preset.core, values, run, matrix.actuator)
+            return RunComparison(run, model, outputs[run.id] + own, own, core)
         assert model is not None
         return RunComparison(run, model, output(run, model) + own, own)
 

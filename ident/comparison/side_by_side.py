@@ -11,7 +11,9 @@ from ident.comparison.compare import Comparison
 from ident.errors import Unusable
 from ident.fit.information import same_samples
 from ident.fit.result import Estimate, FitResult
+from ident.unstable import UNSTABLE
 from ident.words.error import ErrorOf
+from ident.words.error_change import error_change
 from ident.words.number import count
 from ident.words.plus_minus import plus_minus
 from ident.words.shown import Listing, Shown
@@ -34,15 +36,40 @@ class Column:
 
     @property
     def title(self) -> str:
-        """Letter, model, and the parameters that were held."""
-        held = ", ".join(name for name, estimate in self.fit.parameters.items() if estimate.fixed)
-        model = " + ".join((self.fit.model, *self.fit.effects))
-        return f"{self.name}: {model}{f', {held} held' if held else ''}"
+        """Letter, model, and the parameters of the machine that were held."""
+        return _title(self.name, self.fit)
 
     @property
     def title_with_serial(self) -> str:
         """The same with the actuator that it is of."""
         return self.title.replace(": ", f": {self.serial}, ", 1) if self.serial else self.title
+
+
+@dataclass(frozen=True)
+class Change:
+    """Two errors, fractions as eq. (17); None where one is not known."""
+
+    first: float | None
+    other: float | None
+
+    @property
+    def ratio(self) -> float | None:
+        """The other over the first; None where one is not known, or the model is unstable."""
+        return self.other / self.first if self._known and self.first and self.other is not None else None
+
+    @property
+    def points(self) -> float | None:
+        """By how many points, per cent of the signal, the other is larger."""
+        if not self._known or self.first is None or self.other is None:
+            return None
+        return 100 * (self.other - self.first)
+
+    @property
+    def _known(self) -> bool:
+        return all(error is not None and error < UNSTABLE for error in (self.first, self.other))
+
+    def __str__(self) -> str:
+        return error_change(self.first, self.other) if self._known else "–"
 
 
 @dataclass(frozen=True)
@@ -70,12 +97,15 @@ class SideBySide(Shown):
         yield Listing("", ("error (eq. 17)", *names), self.error_rows(), names)
         yield Listing("", ("parameter", *names), self.parameter_rows(), names)
         yield Listing("", ("run", "use", *names), self.run_rows(), names)
+        yield Listing(f"Change from {names[0]}", ("run", "use", *names[1:]), self.change_rows(), names)
 
     def error_rows(self) -> Iterator[tuple[str, ...]]:
         """One row a use of which there are runs."""
         for use, title in DATA.items():
             if any(column.error.get(use) is not None for column in self.columns):
                 yield title, *(column.words[use].said() if use in column.words else "–" for column in self.columns)
+                changes = self._changes([column.error.get(use) for column in self.columns])
+                yield f"change from {self.columns[0].name}, {title}", "", *changes
         for use, title in DATA.items():
             if any(use in column.words and column.words[use].with_mean is not None for column in self.columns):
                 known = (column.words.get(use) for column in self.columns)
@@ -96,6 +126,15 @@ class SideBySide(Shown):
             known = (column.run_words.get(run) for column in self.columns)
             yield run, use, *("–" if of is None else of.said() for of in known)
 
+    def change_rows(self) -> Iterator[tuple[str, ...]]:
+        """One row a run: how its error differs from that in the first fit, in points and as a factor."""
+        for run, use in self.uses.items():
+            yield run, use, *self._changes([column.runs.get(run) for column in self.columns])
+
+    def _changes(self, errors: Sequence[float | None]) -> Iterator[str]:
+        """How the errors of all columns but the first differ from that of the first, in words."""
+        return (str(Change(errors[0], error)) for error in errors[1:])
+
     def records(self) -> list[dict[str, Any]]:
         """A record a run, for a data frame: its error in each fit, by letter."""
         return [
@@ -106,6 +145,17 @@ class SideBySide(Shown):
 
 def _value(entry: Estimate | None) -> str:
     return "–" if entry is None else plus_minus(entry.value, entry.std_error, entry.unit)
+
+
+def titles(fits: Sequence[FitResult]) -> tuple[str, ...]:
+    """What each of some fits is called: its letter, its model, and the parameters that were held."""
+    return tuple(_title(name, fit) for name, fit in zip(ascii_uppercase, fits, strict=False))
+
+
+def _title(letter: str, fit: FitResult) -> str:
+    held = ", ".join(name for name, entry in fit.parameters.items() if entry.fixed and "." not in name)
+    model = " + ".join((fit.model, *fit.effects))
+    return f"{letter}: {model}{f', {held} held' if held else ''}"
 
 
 def of_fits(fits: Sequence[FitResult], serials: Sequence[str] = ()) -> SideBySide:

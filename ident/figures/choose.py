@@ -12,6 +12,7 @@ import numpy as np
 from ident.errors import Unusable
 from ident.figures import words
 from ident.figures.drawing import Several
+from ident.fit.result import FitResult
 from ident.matrix import Matrix
 from ident.run import Run
 
@@ -97,6 +98,14 @@ def asked(options: Mapping[str, Any], names: Sequence[str] = RUNS) -> Wish:
 def one(matrix: Matrix, options: Mapping[str, Any]) -> Run | None:
     """The run that was asked for by its id."""
     return None if not options.get("run") else chosen(matrix, wish(run=options["run"]))[0]
+
+
+def typical(matrix: Matrix, fit: FitResult) -> Run:
+    """The verify run (or, without one, the run) whose error is the middle one."""
+    runs = matrix.of_use("verify") or matrix.runs
+    errors = {entry.id: entry.error for entry in fit.runs}
+    ordered = sorted(runs, key=lambda run: errors.get(run.id, 0.0))
+    return ordered[len(ordered) // 2]
 
 
 def by_gain(runs: Sequence[Run]) -> dict[float | None, list[Run]]:

@@ -68,3 +68,5 @@ AXIS = Option("axis", "Frequency axis", takes=str | None, choices=_axes)
 VIEW = Option("view", "Curve", takes=str | None, choices=_views)
 CANDIDATE = Option("candidate", takes=Any)
 """Another fit, judged where it is used."""
+OTHER = Option("other", takes=Any)
+"""Other fits, which are drawn over this one."""

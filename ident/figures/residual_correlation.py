@@ -8,14 +8,13 @@ import altair as alt
 
 from ident.comparison.compare import RunComparison
 from ident.figures import words
-from ident.figures.choose import one
+from ident.figures.choose import one, typical
 from ident.figures.drawing import Drawing, Option, Options
 from ident.figures.look import Look
 from ident.figures.options import RUN
 from ident.figures.render import Chart, Panel, datasets
 from ident.figures.selection import number
 from ident.figures.study import Study
-from ident.figures.time import typical
 from ident.fit.result import FitResult
 from ident.matrix import Actuator
 from ident.residuals.correlation import SURE, Correlation, correlation

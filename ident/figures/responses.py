@@ -8,27 +8,38 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ident.cached import cached_property
 from ident.comparison.compare import RunComparison
 from ident.figures import words
-from ident.figures.thin import Places, excited_band, significant, spread
+from ident.figures.thin import Real, excited_band, significant, spread
+from ident.hybrid.readouts import Readouts
 from ident.run import Run
 
-MOST_ROWS = 2200  # inline data stay below 300 kB
+MOST_POINTS, MOST_LINES = 1000, 1200  # rows: inline data stay below 300 kB
+_POINTS, _LINES = (24, 80), (40, 160)  # of a run, at least and at most
+MEASURED = "measured"
+_SURE = 1.96  # standard errors on either side: 95 %
 RELIABLE = 0.5  # coherence under which a point does not count for the limits of an axis
+
+Complex = NDArray[np.complex128]
+Row = dict[str, Any]
 
 
 @dataclass(frozen=True)
 class Responses:
     """The responses of some runs, their common frequency band, and what tells them apart.
 
-    `others` are the same runs compared with another model, whose lines are drawn beside.
+    `others` are the same runs compared with another model, whose lines are drawn beside. `models` names the models
+    where all entries are of one run, each with another model. `errors` give the standard errors of each entry's line.
     """
 
     compared: Sequence[RunComparison]
     logarithmic: bool = True
     others: Sequence[RunComparison] = ()
+    models: Sequence[str] = ()
+    errors: Sequence[Callable[[Real], tuple[Real, Real] | None]] = ()
 
     @cached_property
     def band(self) -> tuple[float, float]:
@@ -62,6 +73,8 @@ class Responses:
     @cached_property
     def domain(self) -> list[str]:
         """Legend entries in numeric order (Vega would sort them as text)."""
+        if self.models:
+            return [MEASURED, *self.models]
         ordered = sorted((entry.run for entry in self.compared), key=_numeric)
         return list(dict.fromkeys(self.labels[run.id] for run in ordered))
 
@@ -73,49 +86,91 @@ class Responses:
         return "dB" if into == out else f"dB re {words.tidy_unit(out)}/{words.tidy_unit(into)}"
 
     @cached_property
-    def rows(self) -> dict[float | None, list[dict[str, Any]]]:
-        """By gain: f frequency; a, A magnitude (dB) and p, P phase (deg), measured and model; c coherence; s label.
+    def points(self) -> dict[float | None, list[Row]]:
+        """Measured, by gain: f frequency, a magnitude (dB), p phase (deg), c coherence, e relative error; s label."""
+        entries = self.compared[:1] if self.models else self.compared
+        count = _within(MOST_POINTS // len(entries), _POINTS)
+        rows: dict[float | None, list[Row]] = {}
+        for entry, own in zip(entries, self._own, strict=False):
+            places = spread(entry.frequency, *self.band, count, self.logarithmic)
+            label = MEASURED if self.models else self.labels[entry.run.id]
+            frequency, measured = entry.frequency[places], entry.measured[places]
+            near = np.interp(frequency, self.frequency, np.unwrap(np.angle(own)))
+            columns = {
+                "f": frequency, "a": _decibel(measured),
+                "p": np.degrees(near + np.angle(measured * np.exp(-1j * near))),  # the branch next to the model's
+                "c": entry.coherence[places], "e": _SURE * entry.random_error[places],
+            }  # fmt: skip
+            rows.setdefault(entry.run.gain, []).extend(_rows(columns, label, entry.run.id))
+        return rows
+
+    @cached_property
+    def lines(self) -> dict[float | None, list[Row]]:
+        """The models, by gain: f frequency, A magnitude (dB), P phase (deg), u and v their errors; s label.
 
         B and Q are magnitude and phase of another model.
         """
-        count = max(24, min(160, MOST_ROWS // len(self.compared)))
-        rows: dict[float | None, list[dict[str, Any]]] = {}
-        for entry in self.compared:
-            places = spread(entry.frequency, *self.band, count, self.logarithmic)
-            found = _rows(entry, places, self.labels[entry.run.id])
-            other = next((each for each in self.others if each.run.id == entry.run.id), None)
-            if other is not None:
-                beside = _rows(other, places, "")
-                found = [row | {"B": o["A"], "Q": o["P"]} for row, o in zip(found, beside, strict=True)]
-            rows.setdefault(entry.run.gain, []).extend(found)
+        rows: dict[float | None, list[Row]] = {}
+        others = {other.run.id: other for other in self.others}
+        for place, entry in enumerate(self.compared):
+            columns = dict(zip("AP", _bode(self._own[place]), strict=True))
+            if self.errors and (error := self.errors[place](self.frequency)) is not None:
+                columns |= {"u": 20 / np.log(10) * _SURE * error[0], "v": np.degrees(_SURE * error[1])}
+            if entry.run.id in others:
+                columns |= dict(zip("BQ", _bode(others[entry.run.id].response(self.frequency)), strict=True))
+            label = self.models[place] if self.models else self.labels[entry.run.id]
+            rows.setdefault(entry.run.gain, []).extend(_rows({"f": self.frequency, **columns}, label, entry.run.id))
         return rows
 
-    def limits(self, *fields: str) -> tuple[float, float]:
-        """Smallest and largest reliable value of some fields over all runs, with a margin."""
-        rows = [row for group in self.rows.values() for row in group]
-        trusted = [row for row in rows if row["c"] >= RELIABLE] or rows
-        values = [row[field] for row in trusted for field in fields if row[field] is not None]
+    def marks(self, read: Sequence[Readouts]) -> dict[float | None, list[Row]]:
+        """Where each line has its −3 dB and −90° frequency, by gain: f, A or P; t says which, s label."""
+        rows: dict[float | None, list[Row]] = {}
+        for place, (found, entry) in enumerate(zip(read, self.compared, strict=False)):
+            label = self.models[place] if self.models else self.labels[entry.run.id]
+            curves = zip("AP", _bode(self._own[place]), ("−3 dB", "−90°"), (found.bandwidth, found.lag_90), strict=True)
+            rows.setdefault(entry.run.gain, []).extend(
+                {"f": at, name: float(np.interp(at, self.frequency, curve)), "t": text, "s": label, "r": entry.run.id}
+                for name, curve, text, at in curves if at is not None and at >= self.frequency[0]
+            )  # fmt: skip
+        return rows
+
+    @cached_property
+    def _own(self) -> tuple[Complex, ...]:
+        """The own response of each model, (f,)."""
+        return tuple(entry.response(self.frequency) for entry in self.compared)
+
+    @cached_property
+    def frequency(self) -> Real:
+        """Where the models are evaluated, (f,), Hz."""
+        count = _within(MOST_LINES // len(self.compared), _LINES)
+        return np.geomspace(*self.band, count) if self.logarithmic else np.linspace(*self.band, 2 * count)
+
+    def limits(self, measured: str, modelled: str) -> tuple[float, float]:
+        """Smallest and largest value of a field of the reliable points and of one of the lines, with a margin."""
+        points = [row for group in self.points.values() for row in group]
+        trusted = [row for row in points if (row["c"] or 0.0) >= RELIABLE] or points
+        lines = [row for group in self.lines.values() for row in group]
+        both = [row[measured] for row in trusted] + [row[modelled] for row in lines]
+        values = [value for value in both if value is not None]
         low, high = min(values, default=0.0), max(values, default=1.0)
         margin = 0.04 * (high - low) or 1.0
         return low - margin, high + margin
 
 
-def _rows(entry: RunComparison, places: Places, label: str) -> list[dict[str, Any]]:
-    model = np.unwrap(np.angle(entry.model))
-    measured = model + np.angle(entry.measured * np.conj(entry.model))  # the branch next to the model's
-    columns = {
-        "f": entry.frequency,
-        "a": _decibel(entry.measured),
-        "A": _decibel(entry.model),
-        "p": np.degrees(measured),
-        "P": np.degrees(model),
-        "c": entry.coherence,
-    }
-    short = {name: significant(np.asarray(column)[places], 5 if name != "c" else 3) for name, column in columns.items()}
-    table = zip(*short.values(), strict=True)
+def _within(count: int, ends: tuple[int, int]) -> int:
+    return max(ends[0], min(ends[1], count))
+
+
+def _bode(response: Complex) -> tuple[Real, Real]:
+    """Magnitude (dB) and phase (deg, unwrapped)."""
+    return _decibel(response), np.degrees(np.unwrap(np.angle(response)))
+
+
+def _rows(columns: dict[str, Real], label: str, run: str) -> list[Row]:
+    short = {name: significant(column, 3 if name in "ceuv" else 5) for name, column in columns.items()}
     return [
-        {k: v if math.isfinite(v) else None for k, v in zip(short, row, strict=True)} | {"s": label, "r": entry.run.id}
-        for row in table
+        {k: v if math.isfinite(v) else None for k, v in zip(short, row, strict=True)} | {"s": label, "r": run}
+        for row in zip(*short.values(), strict=True)
     ]
 
 
@@ -125,7 +180,7 @@ def _rounded_up(value: float) -> float:
     return float(f"{step * math.ceil(value / step * (1 - 1e-9)):.2g}")
 
 
-def _decibel(response: np.ndarray[Any, np.dtype[np.complex128]]) -> np.ndarray[Any, np.dtype[np.float64]]:
+def _decibel(response: Complex) -> Real:
     with np.errstate(divide="ignore"):
         return np.asarray(20 * np.log10(np.abs(response)))
 

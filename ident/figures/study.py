@@ -10,8 +10,10 @@ from ident.bench.records import BenchSet, bench_set
 from ident.cached import cached_property
 from ident.comparison.compare import Comparison, RunComparison, Simulator, compare, modelled
 from ident.figures.selection import Band
+from ident.fit.reduction import excited_band
 from ident.fit.result import FitResult
 from ident.matrix import Matrix
+from ident.noise.floor import Floors, noise_floors
 from ident.residuals.curve_fit import CurveFit
 from ident.residuals.curves import Curve, curve_fits, curves, curves_of, traced
 from ident.residuals.traces import Traces
@@ -39,6 +41,12 @@ class Study:
         """The records of a bench, and what its procedures say of them whatever the fit."""
         bench = bench_set(self.matrix)
         return bench, analyse(bench)
+
+    @cached_property
+    def floors(self) -> Floors:
+        """The noise floors of the runs."""
+        band = excited_band(self.matrix.of_use("fit") or self.matrix.runs)
+        return noise_floors(self.matrix.runs, band, self.fit.left_out)
 
     def beside(self, other: FitResult) -> Study:
         """Another fit beside the same data."""

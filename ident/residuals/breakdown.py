@@ -85,6 +85,14 @@ def in_bands(compared: RunComparison, edges: Sequence[float]) -> tuple[float | N
     return tuple(float(np.sqrt(s / total)) if count else None for s, count in zip(sums, there, strict=True))
 
 
+def noise_in_bands(run: Run, floor: float, edges: Sequence[float]) -> tuple[float | None, ...]:
+    """White noise of a floor, as a fraction like eq. (17), in each band; their squares add up to its square."""
+    n = run.length
+    frequency = np.fft.rfftfreq(n, 1 / run.sample_rate)[1:]
+    there = np.bincount(np.searchsorted(edges, frequency, side="left"), minlength=len(edges) + 1)[1 : len(edges)]
+    return tuple(float(floor * np.sqrt(count / len(frequency))) if count else None for count in there)
+
+
 def _residual(compared: RunComparison) -> Array:
     residual = compared.run.measured - compared.modelled
     return np.asarray(residual - residual.mean())

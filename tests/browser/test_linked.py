@@ -167,7 +167,7 @@ def test_two_fits_stand_side_by_side(page, site, fitted, second, screenshots):
     expect(zone.locator("td").nth(1)).to_have_text("off")
     expect(zone.locator("td").nth(2)).to_contain_text(re.compile(r" ± .* µ?m$|⁻⁹ m"))
     page.locator("[data-pick]").first.click()
-    answered(page, BODE, f"candidate={second}.*run=")
+    answered(page, BODE, f"other={second}.*run=")
     expect(page.locator(f"{BODE} canvas")).to_be_visible(timeout=LONG)
     for theme in ("light", "dark"):
         page.emulate_media(color_scheme=theme)

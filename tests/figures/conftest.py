@@ -53,9 +53,17 @@ class HandMade:
     frequency: np.ndarray
     measured: np.ndarray
     coherence: np.ndarray
-    model: np.ndarray
     modelled: np.ndarray
     unstable: bool = False
+
+    def response(self, frequency: np.ndarray) -> np.ndarray:
+        """The exact one."""
+        return second_order(self.run, frequency)
+
+    @property
+    def random_error(self) -> np.ndarray:
+        """As of ten windows."""
+        return np.sqrt((1 - np.minimum(self.coherence, 1)) / (20 * np.maximum(self.coherence, 1e-3)))
 
     @property
     def words(self) -> ErrorOf:
@@ -71,7 +79,7 @@ def make_comparison(run: Run) -> HandMade:
     coherence = np.clip(1.02 - (frequency / 95) ** 6, 0.0, 1.0)
     noise = (1.02 - coherence) * 0.4 * (rng.standard_normal(512) + 1j * rng.standard_normal(512))
     modelled = np.fft.irfft(np.fft.rfft(run.command) * second_order(run, np.fft.rfftfreq(1024, 1 / RATE)))
-    return HandMade(run, 0.005, 0.001, frequency, model * (1 + noise), coherence, model, modelled)
+    return HandMade(run, 0.005, 0.001, frequency, model * (1 + noise), coherence, modelled)
 
 
 @pytest.fixture(scope="session")
