@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from ident.diagnosis.evidence.probability import is_doubtful
 from ident.diagnosis.result import Diagnosis, Suspect
 from ident.words.message import Message, message
 from ident.words.shown import in_brief
@@ -44,25 +45,23 @@ def _missing(found: Diagnosis) -> Message:
 
 def _missing_and_helping(found: Diagnosis, named: Sequence[Message]) -> Message:
     """What is missing, and apart from it what helps though it is less probable than not."""
-    improbable = [_is_improbable(found, name) for name in found.verdict.effects]
+    known = found.verdict.probabilities
+    improbable = [is_doubtful(_probability(found, name), known) for name in found.verdict.effects]
     missing = [effect for effect, doubted in zip(named, improbable, strict=True) if not doubted]
     helping = [effect for effect, doubted in zip(named, improbable, strict=True) if doubted]
     if not helping:
         partly = found.verdict.standing == "stand_in" and found.verdict.unexplained
         return message("summary.missing_partly" if partly else "summary.missing", effects=missing)
     if not missing:
-        return message("summary.helping", helping=helping)
+        return message("summary.helping_by_chance" if _by_chance(found) else "summary.helping", helping=helping)
     return message("summary.missing_and_helping", effects=missing, helping=helping)
 
 
-def _is_improbable(found: Diagnosis, name: str) -> bool:
-    """Whether an effect, with all of its group, is less probable than not, and something unlisted more probable.
-
-    The median model leaves it out. Where nothing unlisted acts, an effect is but one of several that may.
-    """
-    probability = _probability(found, name)
-    unlisted = found.verdict.probabilities.get("unlisted", 0.0)
-    return probability is not None and probability < 0.5 <= unlisted
+def _by_chance(found: Diagnosis) -> bool:
+    """Whether all that is named is doubtful, and most probably nothing is missing."""
+    verdict, known = found.verdict, found.verdict.probabilities
+    doubtful = all(is_doubtful(_probability(found, name), known) for name in verdict.effects)
+    return bool(verdict.effects) and doubtful and known.get("nothing", 0.0) > known.get("unlisted", 0.0)
 
 
 def _probability(found: Diagnosis, name: str) -> float | None:
@@ -132,6 +131,8 @@ def _next(found: Diagnosis) -> Message:
         return message("next.time")
     if verdict.standing == "contradicted":
         return message("next.compare", effect=verdict.contradicted_by[0])
+    if _by_chance(found):
+        return message("next.then", then=_then(found))
     if verdict.indistinguishable and found.next_experiment is not None:
         return message("next.distinguish", group=verdict.indistinguishable[0])
     if verdict.unexplained and verdict.effects:

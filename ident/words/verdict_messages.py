@@ -10,6 +10,8 @@ SUMMARY: Mapping[str, str] = {
     "summary.missing_and_helping":
         "Missing: {effects:all}. The error also falls with {helping:all}, but something else is probably the cause.",
     "summary.helping": "The error falls with {helping:all}, but something else may be the cause.",
+    "summary.helping_by_chance":
+        "Probably nothing is missing. The error falls with {helping:all}, which may be chance.",
     "summary.contradicted":
         "Not confirmed: {effects:all}. The error on estimation data falls, but validation data contradict it.",
     "summary.label": "The label of {run:run} looks wrong: correct it before you conclude what is missing.",
@@ -72,6 +74,8 @@ VERDICT: Mapping[str, str] = {
     "verdict.stopped":
         "The search was not over: other missing effects, and alternatives to those found, were not examined.",
     "verdict.lacks": "The model lacks {effects:all}: with {effects:them} the error falls {change}.",
+    "verdict.may_lack":
+        "The error falls {change} with {effects:all}. More probably this has another cause, or is chance.",
     "verdict.partly":
         "On estimation data the error is partly explained by {effects:all}: with {effects:them} it falls {change}.",
     "verdict.unconfirmed": "No effect was confirmed that lowers the error of {before:error}.",

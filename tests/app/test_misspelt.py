@@ -102,8 +102,8 @@ MISSPELT: dict[tuple[str, str], list[tuple[tuple[str, ...], str]]] = {
 ADDRESSES = {"--server", "--token", "--data", "--database", "--blobs", "--host", "--allow-host", "--proxy",
              "--webhook-host", "url"}  # fmt: skip
 MADE_UP = {"--executor", "--why", "--name", "--expires", "--approved-after", "--confirm"}
-QUANTITIES = {"--rate", "--area", "--gain", "--noise", "--peak", "--amplitude", "--tolerance", "--axes", "--up-to", "--sample-rate",
-              "--before-gain"}  # fmt: skip
+QUANTITIES = {"--rate", "--area", "--gain", "--noise", "--peak", "--amplitude", "--tolerance", "--axes", "--up-to",
+              "--sample-rate", "--before-gain"}  # fmt: skip
 DRAWN = {"fit", "matrix", "webhook", "token", "--by", "--object"}
 """Ids that the service drew: none is near another."""
 FREE = ADDRESSES | MADE_UP | QUANTITIES | DRAWN | {"files", "source"}

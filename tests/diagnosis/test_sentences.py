@@ -51,6 +51,10 @@ def test_an_effect_of_a_group_is_said_with_the_others_and_the_probability_of_the
     text = verdict_text(("spool_stiction", "dead_zone"), groups, (), False, {"fit": 0.01}, 0.2, probabilities=single,
                         group_probabilities=[0.96])  # fmt: skip
     assert "lacks spool stiction or backlash (probability 96 %) and dead zone (probability 97 %)" in text
+    doubtful = {"dead_zone": 0.04, "nothing": 0.95, "unlisted": 0.01}
+    text = verdict_text(("dead_zone",), (), (), False, {"fit": 0.19}, 0.2, probabilities=doubtful)
+    assert "lacks" not in text
+    assert "More probably this has another cause, or is chance." in text
 
 
 @pytest.mark.parametrize("against", [True, False])

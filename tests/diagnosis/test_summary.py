@@ -66,6 +66,12 @@ def test_what_is_less_probable_than_not_is_told_apart_from_what_is_missing():
         "The error falls with dead zone (80.00 ± 0.20 µm, probability 30 %), but something else may be the cause."
     )
     assert lines(probabilities={"dead_zone": 0.4, "unlisted": 0.1})[0].startswith("Missing: dead zone")
+    chance = lines(probabilities={"dead_zone": 0.04, "nothing": 0.93, "unlisted": 0.01})
+    assert chance[0] == (
+        "Probably nothing is missing. The error falls with dead zone (80.00 ± 0.20 µm, probability 4 %), which may be "
+        "chance."
+    )
+    assert chance[2] == "Next: search for unknown terms."
     group = ("dead_zone", "underlap")
     grouped = lines(indistinguishable=(group,), group_probabilities=(0.8,), probabilities={"dead_zone": 0.3})
     assert grouped[0] == "Missing: dead zone or underlap (probability 80 %)."

@@ -88,6 +88,18 @@ def probabilities(sets: SetGains, criteria: EvidenceCriteria = EVIDENCE_CRITERIA
     return Probabilities(*(dict(zip(sets.gains, of.tolist(), strict=True)) for of in weights))
 
 
+def is_doubtful(probability: float | None, of_all: Mapping[str, float]) -> bool:
+    """Whether an effect, with all of its group, is less probable than not, and what speaks against it is more probable.
+
+    That is something unlisted, more probable than not, or that nothing is missing. The median model leaves it out
+    (Barbieri and Berger 2004). Otherwise it is but one of several listed effects that may act. `of_all` has the
+    probabilities of :attr:`Probabilities.named`.
+    """
+    if probability is None or probability >= 0.5:
+        return False
+    return of_all.get("unlisted", 0.0) >= 0.5 or of_all.get("nothing", 0.0) > probability
+
+
 def structure_probabilities(
     gains: Sequence[float], parameters: Sequence[int], criteria: EvidenceCriteria = EVIDENCE_CRITERIA
 ) -> list[float]:
