@@ -6,6 +6,7 @@ field's default; a key that is not known is passed over; an empty object stands 
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping
 from dataclasses import MISSING, Field, fields, is_dataclass
 from functools import cache
@@ -41,7 +42,12 @@ def read(kind: type[T], data: object) -> T:
 
 
 def written(value: Any) -> Any:
-    """A dataclass, with all that is in it, as plain JSON data."""
+    """A dataclass, with all that is in it, as plain JSON data; what is no finite number is not known, null.
+
+    Such are the errors of a model that is unstable on some runs.
+    """
+    if isinstance(value, float) and not math.isfinite(value):
+        return None
     if value is None or isinstance(value, float | int | str):
         return value
     if is_dataclass(value):

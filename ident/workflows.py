@@ -119,6 +119,8 @@ def identify(
 ) -> FitResult:  # fmt: skip
     """The whole fit in one call; `choices` stand over the settings, as effects=["dead_zone"], fixed={"tau": "1 ms"}.
 
+    Where nothing is chosen it is the fit of the model that the channels allow and the data prefer.
+
     With a `start` it is the fit that begins where that ended, and nothing else is chosen; of a diagnosis the one that
     it recommends, see :func:`ident.diagnosis.recommended.settings_after` for others. Raises Unusable as
     :func:`identification`.
@@ -128,7 +130,7 @@ def identify(
             raise Unusable("bad-option", "settings cannot be given with a start", "start",
                            "give one of the two: model, effects and bounds are those of the start")  # fmt: skip
         return replace(completed(identification(matrix, settings_after(start), report)), matrix=matrix)
-    chosen = settings_of(choices, settings) if choices else settings or Settings()
+    chosen = settings_of(choices, settings) if choices else settings or Settings(model="")
     return replace(completed(identification(matrix, chosen, report)), matrix=matrix)
 
 

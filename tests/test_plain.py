@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import json
+import math
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -29,3 +31,18 @@ def test_what_is_known_is_written_numbers_of_numpy_too(entry):
     data = json.loads(json.dumps(written(Known(entry))))
     assert data == {"entry": entry}
     assert read(Known, data) == Known(entry)
+
+
+@dataclass(frozen=True)
+class Judged:
+    """An error that is infinite where a model is unstable, and one by use."""
+
+    error: float | None
+    by_use: Mapping[str, float | None]
+
+
+def test_what_is_no_finite_number_is_written_as_not_known():
+    """JSON has none of them, and a result is not lost for one."""
+    data = written(Judged(math.inf, {"held_out": math.nan, "fit": 0.1}))
+    assert data == {"error": None, "by_use": {"held_out": None, "fit": 0.1}}
+    assert read(Judged, json.loads(json.dumps(data, allow_nan=False))) == Judged(None, {"held_out": None, "fit": 0.1})

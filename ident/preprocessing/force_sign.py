@@ -5,24 +5,34 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ident.preprocessing.step import Prepared, Step, Threshold
 from ident.run import MOTIONS, Run
 
+Array = NDArray[np.float64]
 GIVES_BACK = Threshold(
     -0.1,
-    "of the product of the deviations of force and speed",
+    "of the product of the sizes of force and speed",
     "a mean of force times speed below it says that the specimen gives work back",
     "a spring or a mass alone takes no work in the mean, and noise neither: they stay around zero",
 )
 
 
 def work(run: Run) -> float | None:
-    """mean(F v) over the product of the deviations, −1 … 1; None where the run has no force and speed of its own."""
+    """mean(F v) over the product of the sizes, −1 … 1; None where the run has no force and speed of its own.
+
+    The larger of that as recorded and that without the means: a force that is not zeroed does work only where the
+    motion goes one way, and a specimen that is moved one way takes its work by the means.
+    """
     if run.output != "force" or not {"force", "velocity"} <= run.channels.keys():
         return None
-    force, speed = (samples - samples.mean() for samples in (run.channels["force"], run.channels["velocity"]))
-    size = float(np.std(force) * np.std(speed))
+    recorded = run.channels["force"], run.channels["velocity"]
+    return max(_product(*recorded), _product(*(samples - samples.mean() for samples in recorded)))
+
+
+def _product(force: Array, speed: Array) -> float:
+    size = float(np.sqrt(np.mean(force**2) * np.mean(speed**2)))
     return float(np.mean(force * speed)) / size if size > 0 else 0.0
 
 
