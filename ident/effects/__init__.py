@@ -66,6 +66,7 @@ OF_BENCH = _of_files(
 OF_RECORDS = _of_files(
     "speed_asymmetry",
     "root_outflow",
+    "upper_overflow",
     "overflow",
     "normal_force_friction",
     "pressure_friction",

@@ -13,8 +13,10 @@ UPPER_LEVEL = stage(
     (
         Quantity("h", "m", "level of the upper tank, in the unit of the lower one"),
         Quantity("xi", "m", "what runs into the lower tank"),
+        Quantity("ho", "m", "what leaves the upper tank"),
     ),
-    ("h' = (gain * w - xi) / tau1", "the command fills the upper tank"),
+    ("h' = (gain * w - ho) / tau1", "the command fills the upper tank"),
+    ("ho = xi", "all of it runs into the lower one"),
     ("xi = h / (1 + (h / hr)**2)**0.25", "laminar outflow at a low level, turbulent at a high one"),
     parameters=(
         Parameter("gain", "k", "1", 1e-2, 1e2, 1.0, "inflow for each unit of the command", ORDER_OF_MAGNITUDE),

@@ -25,6 +25,7 @@ from ident.simulation.simulate import responses
 RATE, SECONDS = 100.0, 8.0
 GAIN, TAU = 0.8, 0.4
 MASS, DAMPING, STIFFNESS = 2.0, 3.0, 40.0
+TURBULENT = 0.5  # level
 T = np.arange(round(RATE * SECONDS)) / RATE
 LEVEL = 1.0 + 0.8 * np.sin(1.3 * T) + 0.15 * np.sin(5.0 * T)
 FORCE = 40.0 * np.sin(2.0 * T) + 15.0 * np.sin(5.3 * T)
@@ -62,6 +63,19 @@ def mass(resists: Callable[[float, float, float], float]) -> np.ndarray:
     return solved(rates, 2)[0]
 
 
+def tanks(edge: float) -> np.ndarray:
+    """The lower of two tanks with laminar and turbulent outflow; the upper runs over an edge, or with 0 over none."""
+
+    def out(level: float) -> float:
+        return level / (1.0 + (level / TURBULENT) ** 2) ** 0.25
+
+    def rates(t: float, s: np.ndarray) -> list[float]:
+        over = 30.0 * max(s[0] - edge, 0.0) if edge else 0.0
+        return [(GAIN * at(LEVEL, t) - out(s[0]) - over) / TAU, (out(s[0]) - out(s[1])) / TAU]
+
+    return solved(rates, 2)[1]
+
+
 def dry(v: float) -> float:
     """The direction of sliding; so steep that what creeps is far below what is compared."""
     return float(np.tanh(v / 1e-4))
@@ -91,6 +105,9 @@ CASES = {
     "overflow": Case(
         "first_order", {"overflow.inverse_level": 1.0, "overflow.ratio": 30.0},
         lambda k: lag(lambda x: x + 30.0 * max(x - 1.0 / k, 0.0) if k else x), {}),
+    "upper_overflow": Case(
+        "levels", {"upper_overflow.inverse_level": 1.25, "upper_overflow.ratio": 30.0},
+        lambda k: tanks(0.8 / k if k else 0.0), {}),
     "sensor_curve": Case("first_order", {"sensor_curve.curvature": 0.3}, lambda k: bent(0.3 * k), {}),
     "normal_force_friction": Case(
         "drive", {"normal_force_friction.coefficient": 0.6},
@@ -117,7 +134,16 @@ def ours(case: Case, factor: float) -> np.ndarray:
     run = Run("r", "", RATE, channels, units, assumed_beginning="at rest")
     model, matrix = model.for_matrix(Matrix(Actuator("A"), (run,)))
     known = {p.in_equations: p.value for p in model.parameters} | conditions(run, matrix.actuator)
-    own = {"gain": GAIN, "tau": TAU, "m0": MASS, "c0": DAMPING, "k0": STIFFNESS}
+    own = {
+        "gain": GAIN,
+        "tau": TAU,
+        "tau1": TAU,
+        "tau2": TAU,
+        "hr": TURBULENT,
+        "m0": MASS,
+        "c0": DAMPING,
+        "k0": STIFFNESS,
+    }
     known |= {name: value for name, value in own.items() if name in known}
     known |= {model.parameter(name).in_equations: value for name, value in case.values.items()}
     known[model.effects[0].added[0].in_equations] *= factor
@@ -145,8 +171,13 @@ def test_an_effect_is_looked_for_only_where_the_record_could_show_it():
     of_records, about_zero = {one.name for one in OF_RECORDS}, np.sin(T)
     metres = {"command": "m", "displacement": "m"}
     assert not of_records & candidates("first_order", metres, command=about_zero, displacement=about_zero)
-    level = {"speed_asymmetry", "root_outflow", "overflow", "sensor_curve"}
-    assert of_records & candidates("first_order", metres, command=LEVEL, displacement=LEVEL) == level
+    level = {"speed_asymmetry", "overflow", "sensor_curve"}
+    recorded = {"command": LEVEL, "displacement": LEVEL}
+    assert of_records & candidates("first_order", metres, **recorded) == {*level, "root_outflow"}
+    assert of_records & candidates("levels", metres, **recorded) == {
+        *level,
+        "upper_overflow",
+    }  # its own outflow has one
     driven = {"command": "N", "displacement": "m", "vertical_load": "N", "load_pressure": "Pa"}
     recorded = {"command": FORCE, "displacement": about_zero}
     assert not of_records & candidates("drive", driven, **recorded)

@@ -14,7 +14,7 @@ from ident.presets import PRESETS, preset
 TAKEN = {
     "qian2014": 45,
     "first_order": 17,
-    "levels": 17,
+    "levels": 18,
     "drive": 20,
     "open_valve": 42,
     "motor": 29,
