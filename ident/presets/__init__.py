@@ -15,7 +15,7 @@ from ident.words.nearest import did_you_mean
 _FILES = (
     "qian2014",
     "first_order",
-    "levels",
+    "two_tanks",
     "drive",
     "open_valve",
     "motor",

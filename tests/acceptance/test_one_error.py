@@ -21,8 +21,8 @@ from tests.conftest import FEW
 from tests.fit import rig
 from tests.fit.test_windows import cylinder
 from tests.presets.test_composed import force_loop
-from tests.presets.test_levels import tanks
 from tests.presets.test_machines import motor, specimen
+from tests.presets.test_two_tanks import tanks
 
 RATE = 500.0
 SMALL = {"population": 24.0, "generations": 4.0, "elite": 3.0}  # a search: wherever it ends, the error is one
@@ -88,7 +88,7 @@ MACHINES: dict[str, tuple[str, Callable[[], Matrix], tuple[str, ...]]] = {
     "a loop, held": ("qian2014", lambda: loop(held=True), ()),
     "a loop with an effect": ("qian2014", loop, ("dead_zone",)),
     "a loop as a lag": ("first_order", loop, ()),
-    "two tanks": ("levels", lambda: Matrix(Actuator("TANKS"), (tanks(0, "fit"), tanks(1, "verify"))), ()),
+    "two tanks": ("two_tanks", lambda: Matrix(Actuator("TANKS"), (tanks(0, "fit"), tanks(1, "verify"))), ()),
     "a driven mass": ("drive", driven, ()),
     "a driven mass with an effect": ("drive", driven, ("coulomb_friction",)),
     "a motor": ("motor", lambda: motor(5), ()),

@@ -106,7 +106,7 @@ CASES = {
         "first_order", {"overflow.inverse_level": 1.0, "overflow.ratio": 30.0},
         lambda k: lag(lambda x: x + 30.0 * max(x - 1.0 / k, 0.0) if k else x), {}),
     "upper_overflow": Case(
-        "levels", {"upper_overflow.inverse_level": 1.25, "upper_overflow.ratio": 30.0},
+        "two_tanks", {"upper_overflow.inverse_level": 1.25, "upper_overflow.ratio": 30.0},
         lambda k: tanks(0.8 / k if k else 0.0), {}),
     "sensor_curve": Case("first_order", {"sensor_curve.curvature": 0.3}, lambda k: bent(0.3 * k), {}),
     "normal_force_friction": Case(
@@ -174,7 +174,7 @@ def test_an_effect_is_looked_for_only_where_the_record_could_show_it():
     level = {"speed_asymmetry", "overflow", "sensor_curve"}
     recorded = {"command": LEVEL, "displacement": LEVEL}
     assert of_records & candidates("first_order", metres, **recorded) == {*level, "root_outflow"}
-    assert of_records & candidates("levels", metres, **recorded) == {
+    assert of_records & candidates("two_tanks", metres, **recorded) == {
         *level,
         "upper_overflow",
     }  # its own outflow has one

@@ -21,7 +21,7 @@ from tests.effects import dimensions
 MODELS = {**PRESETS, "drive under control": UNDER_CONTROL}
 COMMAND = {"current": "1", "drive_force": "N", "command": "m", "velocity": "m/s"}
 OTHER_UNIT = {
-    "first_order": {"second_lag"}, "levels": {"second_lag"}, "force_loop": {"second_lag"},
+    "first_order": {"second_lag"}, "two_tanks": {"second_lag"}, "force_loop": {"second_lag"},
     "qian2014": {"second_lag"},
     "open_valve": {"second_lag"},
     "motor": {"second_lag"},

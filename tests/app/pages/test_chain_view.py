@@ -14,7 +14,7 @@ from ident.presets import PRESETS, preset
 TAKEN = {
     "qian2014": 45,
     "first_order": 17,
-    "levels": 18,
+    "two_tanks": 18,
     "drive": 20,
     "open_valve": 42,
     "motor": 29,
@@ -24,8 +24,8 @@ TAKEN = {
     "strano": 42,
 }
 LOOPS = {
-    "qian2014": {"v", "y"}, "first_order": set(), "levels": set(), "drive": set(), "open_valve": {"v"}, "motor": set(),
-    "specimen": set(), "force_loop": {"v", "y"}, "kononykhin": set(),
+    "qian2014": {"v", "y"}, "first_order": set(), "drive": set(), "open_valve": {"v"}, "motor": set(),
+    "two_tanks": set(), "specimen": set(), "force_loop": {"v", "y"}, "kononykhin": set(),
     "strano": {"P", "v", "y"},
 }  # fmt: skip
 

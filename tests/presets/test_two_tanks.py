@@ -42,7 +42,7 @@ def matrix() -> Matrix:
 
 
 def test_the_tanks_are_followed_and_what_torricelli_s_law_determines_is_found(matrix):
-    found = identify(matrix, Settings(model="levels", options=LIGHT, seed=1))
+    found = identify(matrix, Settings(model="two_tanks", options=LIGHT, seed=1))
     lag = identify(matrix, Settings(model="first_order", options=LIGHT, seed=1))
     assert found.error_with_mean["verify"] < 0.03
     assert found.error_with_mean["verify"] < 0.2 * lag.error_with_mean["verify"]
@@ -54,8 +54,8 @@ def test_the_tanks_are_followed_and_what_torricelli_s_law_determines_is_found(ma
 
 
 def test_tanks_are_thought_of_where_command_and_output_stay_on_one_side_of_zero(matrix):
-    assert "levels" in {model.name for model in suited(matrix.runs)}
+    assert "two_tanks" in {model.name for model in suited(matrix.runs)}
     run = matrix.runs[0]
     for name in ("command", "displacement"):
         about_zero = {**run.channels, name: run.channels[name] - run.channels[name].mean()}
-        assert "levels" not in {model.name for model in suited([replace(run, channels=about_zero)])}
+        assert "two_tanks" not in {model.name for model in suited([replace(run, channels=about_zero)])}

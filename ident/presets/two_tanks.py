@@ -4,9 +4,9 @@ from ident.chain.chain import Chain
 from ident.presets.preset import Combined, Preset, RequiredData, SearchPlan
 from ident.stages import IDEAL_SENSOR, INSTANT_VALVE, LOWER_LEVEL, OPENED_BY_COMMAND, RIGID_SPOOL, UPPER_LEVEL
 
-LEVELS = Preset(
-    name="levels",
-    title="Two levels in series",
+TWO_TANKS = Preset(
+    name="two_tanks",
+    title="Two tanks in series",
     citation=(
         "M. Schoukens, J.-P. Noël: Three benchmarks addressing open challenges in nonlinear system identification. "
         "IFAC-PapersOnLine 50 (2017) 446-451; the outflow is laminar at low levels."
