@@ -30,6 +30,8 @@ RESULTS: Mapping[str, str] = {
     "Cause": "CauseView",
     "FactorRange": "FactorRangeView",
     "Followed": "FeedforwardView",
+    "DrawnSimulations": "DrawnSimulationsView",
+    "Interval": "Spread",
     "JointChange": "JointChangeView",
     "Judgement": "JudgementView",
     "Law": "LawView",

@@ -29,6 +29,18 @@ class TargetRequest(_Asked):
     name: Short | None = None
 
 
+class SpreadRequest(_Asked):
+    """What parameters may be off: a `share` of each (20 % without one) and `shares` of some by name.
+
+    Or as they scatter between the approved sets of a `serial`, or the sets in force of a `batch`, of the fit's model.
+    """
+
+    share: Value | None = None
+    shares: dict[str, Value] = Field(default_factory=dict, max_length=50)
+    serial: Short | None = None
+    batch: Short | None = None
+
+
 class BeforeRequest(_Asked):
     """The loop when it was stable: the id of the `fit` of its machine, its `gain` Kp; without one that of the loop."""
 
@@ -46,8 +58,8 @@ class ControllerRequest(_Asked):
     """A controller to be designed for a stored fit with the specimen, gain, sample rate and delay of a case.
 
     `structure` is `feedback` or `two-degree`; `target` stands for eq. (19) of Qian et al. 2014; `seed` is that of the
-    draws from the fitted covariance. `before` is the loop when it was stable, by which the cause is found where it no
-    longer is.
+    draws from the fitted covariance, or from the `spread`. `before` is the loop when it was stable, by which the cause
+    is found where it no longer is.
     """
 
     fit: str
@@ -55,6 +67,7 @@ class ControllerRequest(_Asked):
     target: TargetRequest | None = None
     structure: str = "feedback"
     seed: int = Field(default=0, ge=0, lt=2**31)
+    spread: SpreadRequest | None = None
     before: EarlierRequest | None = None
 
 
@@ -84,7 +97,8 @@ class HybridRequest(_Asked):
 
     `controller` is `none`, `kalman` or another that has a name, the id of a stored one, or what its `.json` holds.
     `effects` are switched on at a fifth of their largest strength; `set` gives values by NAME or NAME.PARAM, with a
-    unit or in SI. With `map` there is also the map over the shares of mass and stiffness that are physical. `before` is
+    unit or in SI. With `map` there is also the map over the shares of mass and stiffness that are physical. With a
+    `spread` 100 machines that are drawn from it are simulated, too. `before` is
     the loop when it was stable, by which the cause is found where it no longer is.
     """
 
@@ -95,6 +109,7 @@ class HybridRequest(_Asked):
     effects: list[Short] = Field(default_factory=list, max_length=50)
     set: dict[str, Value] = Field(default_factory=dict, max_length=50)
     map: bool = False
+    spread: SpreadRequest | None = None
     before: EarlierRequest | None = None
 
 
@@ -128,7 +143,8 @@ class WhatIfRequest(_Asked):
     responses, one or a range. `peak` (Hz) asks for the smallest change that puts a peak there within `tolerance` (2 Hz
     at 45 Hz and in proportion), inside `axes` up to the frequency `up_to`; that takes some seconds. `before` is the
     loop when it was stable, by which the cause is found where it no longer is. `choose` asks for the gain that
-    has a margin, say; responses without `gain` are those at it.
+    has a margin, say; responses without `gain` are those at it. With a `spread` the loop at each gain is also judged
+    over 100 machines drawn from it.
     """
 
     set: dict[str, Value] = Field(default_factory=dict, max_length=50)
@@ -137,6 +153,7 @@ class WhatIfRequest(_Asked):
     gain: Finite | tuple[Finite, Finite] | None = None
     before: BeforeRequest | None = None
     choose: ChooseRequest | None = None
+    spread: SpreadRequest | None = None
     peak: Value | None = None
     tolerance: Value | None = None
     axes: list[AxesRequest] = Field(default_factory=list, max_length=10)

@@ -12,6 +12,7 @@ from app.cli.figure_files import FORMATS, write_figure
 from app.cli.given import read_fit
 from app.cli.output import write_bytes, write_json
 from app.cli.rig_option import RigFile, rig_in
+from app.cli.spread_option import SpreadGiven, spread_in
 from ident.errors import Unusable
 
 if TYPE_CHECKING:
@@ -32,6 +33,7 @@ def control(
         str, typer.Option(metavar="NAME", help="feedback or two-degree (two degrees of freedom).")
     ] = "feedback",
     seed: Annotated[int, typer.Option(min=0, max=2**31 - 1, help="Random seed of the draws from the covariance.")] = 0,
+    spread: SpreadGiven = None,
     before: EarlierFit = None,
     before_gain: EarlierGain = None,
     before_case: CaseBefore = None,
@@ -40,8 +42,8 @@ def control(
     """Design a tracking controller by H-infinity loop shaping.
 
     The design uses the linear part of the fit and the specimen, gain, sample rate and delay of the case. It is tested
-    on 100 models drawn from the covariance of the fit. Exit status 1 if the case is unstable under it: cause and
-    remedies are listed.
+    on 100 models drawn from the covariance of the fit, or from a stated spread. Exit status 1 if the case is unstable
+    under it: cause and remedies are listed.
     """
     from dataclasses import replace
 
@@ -56,6 +58,7 @@ def control(
     made = design_controller(
         result, given.physical, sample_rate=given.sample_rate, gain=given.gain, piston_area=given.piston_area,
         delay=given.delay, target=wanted, structure=structure, seed=seed, before=earlier,
+        spread=spread_in(spread, result.model),
     )  # fmt: skip
     made = on_case(made, result, given if rig is None else replace(given, rig=rig_in(rig)), earlier)
     _write(made, out, given.name)

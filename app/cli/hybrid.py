@@ -14,6 +14,7 @@ from app.cli.given import read_fit
 from app.cli.output import STANDARD_OUTPUT, check_target, write_json
 from app.cli.progress import shown
 from app.cli.rig_option import RigFile, rig_in
+from app.cli.spread_option import SpreadGiven, spread_in
 
 if TYPE_CHECKING:
     from ident.hybrid.share_map import ShareMap
@@ -37,6 +38,7 @@ def hybrid(
     shares: Annotated[
         bool, typer.Option("--map", help="Also map stability over the physical/numerical split.")
     ] = False,
+    spread: SpreadGiven = None,
     before: EarlierFit = None,
     before_gain: EarlierGain = None,
     before_case: CaseBefore = None,
@@ -52,8 +54,9 @@ def hybrid(
     from dataclasses import replace
 
     from app.cli.tables import show
-    from ident.hybrid.acting import controller_called
+    from ident.hybrid.acting import controller_called, linear
     from ident.hybrid.case import read_case
+    from ident.hybrid.drawn_simulations import drawn_simulations
     from ident.hybrid.followed import followed_in
     from ident.hybrid.rig import name_of, simulate_hybrid
 
@@ -61,7 +64,7 @@ def hybrid(
     result, of = read_fit(fit), read_case(case)
     of = of if ground is None else of.with_ground(ground)
     of = of if rig is None else replace(of, rig=rig_in(rig))
-    effects = effect_values(effect or [], result.model)
+    effects, wide = effect_values(effect or [], result.model), spread_in(spread, result.model)
     earlier = earlier_case(result, of, before, before_gain, before_case)
     acting = controller_called(controller, result, of)
     with shown() as report:
@@ -69,13 +72,16 @@ def hybrid(
         if controller != "none" and out is not None:
             runs["no controller"] = simulate_hybrid(result, of, None, effects, report)
         found = _map(shares, acting, result, of, effects, report)
-    worth = followed_in(result, of) if controller == "feedforward" else None
+        drawn = None
+        if wide is not None and controller != "feedforward":
+            drawn = drawn_simulations(result, of, linear(acting, "spread"), effects, wide, report=report)
+    worth = followed_in(result, of, spread=wide) if controller == "feedforward" else None
     main = next(iter(runs.values()))
     if json is not None:
-        beside = {"map": found, "feedforward": worth}
+        beside = {"map": found, "feedforward": worth, "spread": drawn}
         write_json({**main.to_json(), **{name: one.to_json() for name, one in beside.items() if one}}, json)
     if json != STANDARD_OUTPUT:
-        show((*main.listings(), *(worth.listings() if worth else ())))
+        show((*main.listings(), *(worth.listings() if worth else ()), *(drawn.sentences() if drawn else ())))
     if out is not None:
         from ident.figures.subjects import Simulated
 
@@ -86,13 +92,10 @@ def hybrid(
 
 def _map(asked: bool, acting: Any, *rest: Any) -> ShareMap | None:
     """The map, where it is asked for: of linear controllers, which run side by side."""
-    from ident.errors import Unusable
-    from ident.hybrid.controller import SampledController
+    from ident.hybrid.acting import linear
     from ident.hybrid.share_map import share_map
 
     if not asked:
         return None
-    if not isinstance(acting, SampledController):
-        raise Unusable("bad-option", "a map needs a linear controller", "map", "leave --map out, or give another")
     fit, case, effects, report = rest
-    return share_map(fit, case, acting, effects, report=report)
+    return share_map(fit, case, linear(acting, "map"), effects, report=report)

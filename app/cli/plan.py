@@ -3,18 +3,15 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import typer
 
-from app.cli.arguments import split
 from app.cli.given import read_fit
 from app.cli.output import STANDARD_OUTPUT, check_target, write_json
 from app.cli.progress import shown
 from app.cli.rig_option import RigFile, rig_in
-
-if TYPE_CHECKING:
-    from ident.design.spread import Spread
+from app.cli.spread_option import stated_spread
 
 
 def plan(
@@ -54,7 +51,7 @@ def plan(
     from ident.planning.plan import plan as planned
 
     check_target(json)
-    result, limits, wide = None if fit is None else read_fit(fit), rig_in(rig), _spread(spread or [])
+    result, limits, wide = None if fit is None else read_fit(fit), rig_in(rig), stated_spread(spread or [])
     with shown() as report:
         made = planned(program, result, limits, seconds, ramp, seed, wide, least, report)
         made.write(out, tuple(format_ or ("csv",)), report)
@@ -67,18 +64,3 @@ def plan(
         )
     if made.refused:
         raise typer.Exit(1)
-
-
-def _spread(given: list[str]) -> Spread:
-    """What parameters may be off: a share of every one, and of some by name. Raises Unusable."""
-    from ident.design.spread import USUAL, Spread
-    from ident.units.quantity import parameter_value
-
-    usual, stated = USUAL, {}
-    for text in given:
-        if "=" in text:
-            name, share = split(text, "--spread", "NAME=SHARE")
-            stated[name] = parameter_value(share, "1", f"--spread {name}")
-        else:
-            usual = parameter_value(text, "1", "--spread")
-    return Spread(usual, stated)

@@ -16,6 +16,7 @@ from app.cli.output import STANDARD_OUTPUT, check_target, write_json
 from app.cli.progress import shown
 from app.cli.regulator import Amplitudes, OfRegulator, show_margins
 from app.cli.rig_option import RigFile, rig_in
+from app.cli.spread_option import SpreadGiven, spread_in
 from ident.words.nearest import did_you_mean
 
 if TYPE_CHECKING:
@@ -80,7 +81,7 @@ Out = Annotated[Path | None, typer.Option(metavar="DIR", help="Write the figures
 
 def whatif(
     fit: FitPath, set_: Changed = None, fitted: Fitted = None, specimen: OfSpecimen = None, gain: Gains = None,
-    choose: Choose = None, before: EarlierFit = None, before_gain: EarlierGain = None,
+    choose: Choose = None, spread: SpreadGiven = None, before: EarlierFit = None, before_gain: EarlierGain = None,
     peak: AtPeak = None, tolerance: Near = None, axes: InAxes = None, up_to: UpTo = None, seed: Seed = 0,
     rig: RigFile = None, regulator: OfRegulator = None, amplitude: Amplitudes = None, json: Json = None,
     out: Out = None,
@@ -105,7 +106,7 @@ def whatif(
     target = _target(peak, tolerance, axes or [], up_to)
     with shown() as report:
         found = what_if(result, change, gains, target, seed, report, rig_in(rig), _before(before, before_gain),
-                        _wanted(choose))  # fmt: skip
+                        _wanted(choose), spread_in(spread, result.model))  # fmt: skip
     if json is not None:
         write_json(found.to_json(), json)
     if json != STANDARD_OUTPUT:

@@ -14,6 +14,7 @@ from app.fits import service as fits
 from app.hybrid import repository
 from app.hybrid.asked import AskedCase, asked_case
 from app.hybrid.before import earlier_case, stated
+from app.hybrid.spread import spread_of
 from app.lru import LRU
 from app.paging import cursor, keys_of
 from app.tables import ControllerRow
@@ -22,7 +23,7 @@ from ident.hybrid.controller import SampledController
 from ident.hybrid.controller_design import ControllerDesign, design_controller, on_case
 from ident.hybrid.export import as_header, as_mat
 from ident.hybrid.target import QIAN2014_TARGET, target_of
-from schemas.hybrid import ControllerRequest
+from schemas.hybrid import ControllerRequest, SpreadRequest
 from schemas.hybrid_result import ControllerPage, ControllerView, DesignView
 
 FILES = {"json": "application/json", "mat": "application/x-matlab-data", "h": "text/x-c"}
@@ -52,12 +53,13 @@ def _designed(context: Context, asked: dict[str, Any]) -> ControllerDesign:
     """The design that is asked for."""
     fit = _fit(context, asked["fit"])
     case = AskedCase(asked["case"], None).read()
+    asked_spread = SpreadRequest(**asked["spread"]) if "spread" in asked else None
     before = earlier_case(asked.get("before"), fit, case, lambda one: _fit(context, one))
     target = target_of(asked["target"]) if "target" in asked else QIAN2014_TARGET
     made = design_controller(
         fit, case.physical, sample_rate=case.sample_rate, gain=case.gain, piston_area=case.piston_area,
         delay=case.delay, target=target, structure=asked["structure"], seed=asked["seed"],
-        before=before,
+        before=before, spread=spread_of(context, asked_spread, fit.model),
     )  # fmt: skip
     return on_case(made, fit, case, before)
 

@@ -14,15 +14,18 @@ from app.hybrid import repository
 from app.hybrid.acting import acting, named
 from app.hybrid.asked import AskedCase, asked_case, effects_of
 from app.hybrid.before import earlier_case, stated
+from app.hybrid.spread import spread_of
 from app.jobs import service as jobs
 from app.paging import cursor, keys_of
 from app.tables import HybridRow
 from ident.errors import Unusable
 from ident.fit.result import FitResult
+from ident.hybrid.acting import FEEDFORWARD, linear
 from ident.hybrid.case import Case
 from ident.hybrid.controller import SampledController
 from ident.hybrid.machine import machine
 from ident.hybrid.rig import Controller, name_of
+from ident.plain import written
 from schemas.fit import JobView
 from schemas.hybrid import HybridRequest
 from schemas.hybrid_result import HybridPage, HybridView
@@ -43,6 +46,9 @@ def submit(context: Context, request: HybridRequest, job: str) -> JobView:
     given, stored = _controller(context, request.controller)
     chosen = acting(given, fit, case)
     _check(fit, case, effects, chosen, request.map)
+    spread = spread_of(context, request.spread, fit.model)
+    if spread is not None and given != FEEDFORWARD:
+        linear(chosen, "spread")
     settings = {
         "model": fit.model, "effects": list(effects), "case": case.name, "controller": name_of(chosen),
         "ground": case.ground.name,
@@ -50,6 +56,7 @@ def submit(context: Context, request: HybridRequest, job: str) -> JobView:
             **asdict(asked), "text": _kept(context, asked.text), "effects": effects, "map": request.map,
             "controller": given if isinstance(given, str) else _kept(context, json.dumps(given)),
             "inline": not isinstance(given, str), "controller_id": stored,
+            "spread": None if spread is None else written(spread),
             "before": _before(context, stated(request.before), fit, case),
         },
     }  # fmt: skip
@@ -122,7 +129,7 @@ def view(row: HybridRow) -> HybridView:
     return HybridView(
         **held["result"], id=row.id, fit=row.fit, matrix=row.matrix, serial=row.serial, created_at=row.created_at,
         controller_id=row.controller, without=held["without"], map=held["map"],
-        feedforward=held.get("feedforward"), figures=names,
+        feedforward=held.get("feedforward"), spread=held.get("spread"), figures=names,
     )  # fmt: skip
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from app.context import Context
 from app.fits import service as fits
 from app.hybrid.asked import change_of, gains_of, peak_of
+from app.hybrid.spread import spread_of
 from app.lru import LRU
 from ident.fit.result import FitResult
 from ident.hybrid import what_if as library
@@ -22,8 +23,9 @@ def what_if(context: Context, fit: str, request: WhatIfRequest) -> WhatIf:
     def made() -> WhatIf:
         found = _fit(context, fit)
         change, target, before = change_of(found, request), peak_of(request), _before(context, request.before)
+        spread = spread_of(context, request.spread, found.model)
         return library.what_if(found, change, gains_of(request), target, request.seed, before=before,
-                               choose=_wanted(request.choose))  # fmt: skip
+                               choose=_wanted(request.choose), spread=spread)  # fmt: skip
 
     return _answers.get((str(context.storage.folder), fit, request.model_dump_json()), made)
 

@@ -14,10 +14,13 @@ from app.hybrid.asked import AskedCase
 from app.hybrid.before import earlier_case
 from app.hybrid.records import packed
 from app.hybrid.service import KIND
+from app.hybrid.spread import kept
 from app.jobs.work import InOnePiece, Kind, State, Task
 from app.tables import JobRow
 from ident.fit.result import FitResult
+from ident.hybrid.acting import FEEDFORWARD
 from ident.hybrid.controller import SampledController
+from ident.hybrid.drawn_simulations import drawn_simulations
 from ident.hybrid.followed import followed_in
 from ident.hybrid.rig import simulate_hybrid
 from ident.hybrid.share_map import share_map
@@ -44,13 +47,17 @@ class HybridWork(InOnePiece):
         mapped = None
         if asked["map"] and isinstance(chosen, SampledController):
             mapped = share_map(fit, case, chosen, effects, report=report)
-        worth = followed_in(fit, case) if given == "feedforward" else None
+        spread, drawn = kept(asked.get("spread")), None
+        worth = followed_in(fit, case, spread=spread) if given == FEEDFORWARD else None
+        if spread is not None and isinstance(chosen, SampledController):
+            drawn = drawn_simulations(fit, case, chosen, effects, spread, report=report)
         runs = {main.controller: main} | ({WITHOUT: alone} if alone else {})
         return {
             "result": main.to_json(),
             "without": alone.to_json() if alone else None,
             "map": mapped.to_json() if mapped else None,
             "feedforward": worth.to_json() if worth else None,
+            "spread": drawn.to_json() if drawn else None,
             "records": base64.b85encode(packed(runs)).decode(),
         }
 
@@ -61,9 +68,12 @@ class HybridWork(InOnePiece):
         return self.task.storage.path(name).read_text(encoding="utf-8") if name else ""
 
 
+_KEPT = ("result", "without", "map", "feedforward", "spread")
+
+
 def _keep(session: Session, job: JobRow, serial: str, made: State) -> None:
     if repository.simulation(session, job.id) is None:
-        result = {name: made[name] for name in ("result", "without", "map", "feedforward")}
+        result: State = {name: made[name] for name in _KEPT if name in made}
         repository.add_simulation(session, job, serial, result, base64.b85decode(made["records"]))
 
 

@@ -6,6 +6,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
+from ident.hybrid.interval import Interval
 from ident.hybrid.target import QIAN2014_TARGET
 from ident.stability.judgement import UNSTABLE, Judgement
 from ident.words.number import plain, trimmed
@@ -13,6 +14,7 @@ from schemas.hybrid_result import ControllerView
 
 Rows = tuple[tuple[str, str, str], ...]
 _NO_LIMIT = "no limit"
+_MARGINS = {"gain": "Gain margin", "phase": "Phase margin", "sensitivity_peak": "Sensitivity peak"}
 
 
 @dataclass(frozen=True)
@@ -114,6 +116,10 @@ def _rows(design: Mapping[str, Any]) -> Iterator[tuple[str, str, str]]:
         of = "nominal" if design["structure"] == "feedback" else "reference"
         yield "Sampled models that stay stable", f"{judged['stable']} of {judged['draws']}", ""
         yield f"and within ± 1 dB, ± 10° of {of} to 25 Hz", f"{judged['within']} of {judged['draws']}", ""
+        if judged["margins"]:
+            yield "Sampled from", judged["spread"], ""
+        for name, one in judged["margins"].items():
+            yield f"{_MARGINS[name]} of 90 % of them", Interval(**one).ends, one["unit"].removesuffix("1")
 
 
 def _limit(value: float | None, factor: float = 1.0) -> str:

@@ -73,6 +73,7 @@ class Simulated:
     stable: bool
     verdict: str
     stability: tuple[str, ...]
+    spread: tuple[str, ...]
     scores: tuple[tuple[str, str, str, str], ...]
     facts: tuple[tuple[str, str], ...]
     notes: tuple[str, ...]
@@ -165,6 +166,7 @@ def _simulated(one: HybridView) -> Simulated:
         made=one.created_at,
         stable=one.stable,
         stability=said_of(one.stability),
+        spread=() if one.spread is None else tuple(one.spread.sentences()),
         verdict=_verdict(found),
         scores=tuple(_scores(found)),
         facts=tuple(_facts(found)),

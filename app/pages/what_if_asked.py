@@ -25,6 +25,7 @@ def asked(given: Mapping[str, str]) -> WhatIfRequest:
         "gain": gain,
         "before": _before(stated),
         "choose": _chosen(stated),
+        "spread": _under("spread.", stated) or None,
         **_quantities(_PEAK, stated),
         "axes": _axes(stated, gain),
     }

@@ -94,11 +94,12 @@ class FactorRow:
 
 @dataclass(frozen=True)
 class WhatIfFound:
-    """The answer; `chosen` and `stability` are sentences, `figures` name and title of each."""
+    """The answer; `chosen`, `stability` and `spread` are sentences, `figures` name and title of each."""
 
     chosen: tuple[str, ...]
     unstable: bool
     stability: tuple[str, ...]
+    spread: tuple[str, ...]
     facts: tuple[tuple[str, str], ...]
     parameters: tuple[CarriedRow, ...]
     loops: tuple[LoopRow, ...]
@@ -202,6 +203,7 @@ def what_if_found(fit: FitResult, found: WhatIf) -> WhatIfFound:
         chosen=() if found.chosen is None else tuple(found.chosen.sentences()),
         unstable=found.state == UNSTABLE,
         stability=tuple(said for one in found.stability for said in one.text),
+        spread=tuple(said for one in found.spread for said in one.sentences()),
         facts=tuple(_facts(found)),
         parameters=tuple(_carried(found, named)),
         loops=tuple(map(_loop, found.responses)),

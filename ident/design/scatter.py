@@ -20,7 +20,7 @@ FEWEST = 3
 class Scatter:
     """The relative deviations (n,) of each parameter from its mean over n sets, and what the sets are of, in words."""
 
-    deviations: Mapping[str, Array]
+    deviations: Mapping[str, tuple[float, ...]]
     of: str
 
     @classmethod
@@ -35,7 +35,9 @@ class Scatter:
         shared = set.intersection(*(set(one) for one in sets))
         values = {name: np.array([one[name] for one in sets]) for name in sets[0] if name in shared}
         means = {name: float(found.mean()) for name, found in values.items()}
-        return cls({name: found / means[name] - 1.0 for name, found in values.items() if means[name]}, of)
+        return cls(
+            {name: tuple((found / means[name] - 1.0).tolist()) for name, found in values.items() if means[name]}, of
+        )
 
     @property
     def sets(self) -> int:
@@ -55,4 +57,4 @@ class Scatter:
         n = self.sets
         g = rng.standard_normal((count, n)) * np.sqrt((1 + 1 / n) / rng.chisquare(n - 1, count))[:, None]
         known = {name: off for name, off in self.deviations.items() if name in fit.parameters}
-        return {name: fit.parameters[name].value * (1.0 + g @ off) for name, off in known.items()}
+        return {name: fit.parameters[name].value * (1.0 + g @ np.array(off)) for name, off in known.items()}

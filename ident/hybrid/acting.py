@@ -18,6 +18,7 @@ from ident.hybrid.substructure import reference
 from ident.units.quantity import shown
 from ident.words.nearest import did_you_mean
 
+FEEDFORWARD = "feedforward"
 _LARGEST = 50_000_000  # bytes of a controller's file
 
 
@@ -41,7 +42,7 @@ def _feedforward(fit: FitResult, case: Case) -> Controller:
 
 
 NAMED: Mapping[str, Callable[[FitResult, Case], Controller]] = {
-    "none": _none, "kalman": _kalman, "feedforward": _feedforward,
+    "none": _none, "kalman": _kalman, FEEDFORWARD: _feedforward,
 }  # fmt: skip
 """Controllers by name, each made for one simulation."""
 
@@ -60,6 +61,13 @@ def controller_called(given: str, fit: FitResult, case: Case) -> Controller:
     except (ValueError, RecursionError):
         data = None
     return for_rate(SampledController.from_json(data), case)
+
+
+def linear(controller: Controller, what: str) -> SampledController:
+    """The controller, where machines can run under it side by side for a map or a spread. Raises Unusable."""
+    if not isinstance(controller, SampledController):
+        raise Unusable("bad-option", f"a {what} needs a linear controller", what, "leave it out, or give another")
+    return controller
 
 
 def for_rate(controller: SampledController, case: Case) -> SampledController:

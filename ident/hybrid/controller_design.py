@@ -11,7 +11,7 @@ import numpy as np
 from ident.errors import Unusable
 from ident.fit.result import FitResult
 from ident.hybrid.case import Case
-from ident.hybrid.draws import DRAWS, drawn_parameters
+from ident.hybrid.draws import DRAWS, Covariance, Spread, drawn_parameters
 from ident.hybrid.hybrid_loop import EarlierCase, judge_hybrid
 from ident.hybrid.linear_plant import LinearPlant, linear_plant
 from ident.hybrid.loop_shaping import Design, design
@@ -22,8 +22,8 @@ from ident.hybrid.rig_limits import limits_of
 from ident.hybrid.robustness import (
     Robustness,
     frequencies,
+    held_in,
     robustness,
-    undetermined,
 )
 from ident.hybrid.servo_loop import plant_loop, values_before
 from ident.hybrid.target import QIAN2014_TARGET, Target
@@ -34,6 +34,7 @@ from ident.words.message import message
 from ident.words.number import trimmed
 from ident.words.shown import Listing, Shown
 
+_TITLES = {"gain": "gain margin", "phase": "phase margin", "sensitivity_peak": "sensitivity peak"}
 LITTLE_MARGIN = 2.5
 """The sensitivity peak from which on a design warns: of gain only 4.4 dB, of phase only 23° are then certain."""
 
@@ -73,7 +74,8 @@ class ControllerDesign(Shown):
         }
         if self.robustness is not None:
             counts = {name: getattr(self.robustness, name) for name in ("draws", "stable", "within")}
-            found["robustness"] = {**counts, "held": list(self.robustness.held)}
+            found["robustness"] = {**counts, "held": list(self.robustness.held), "spread": self.robustness.spread,
+                                   "margins": written(self.robustness.margins)}  # fmt: skip
         return {**made.controller.to_json(), "design": found}
 
     def listings(self) -> Iterator[Listing | str]:
@@ -109,6 +111,10 @@ class ControllerDesign(Shown):
             rows += [
                 ("drawn actuators that stay stable", f"{judged.stable} of {judged.draws}", ""),
                 (str(message(within)), f"{judged.within} of {judged.draws}", ""),
+                *(
+                    (f"{_TITLES[name]} of 90 % of them", one.ends, one.unit.removesuffix("1"))
+                    for name, one in judged.margins.items()
+                ),
             ]
         return rows
 
@@ -121,22 +127,24 @@ def design_controller(
     fit: FitResult, specimen: Specimen, *, sample_rate: float, gain: float | None = None,
     piston_area: float | None = None, delay: float = 1.0, target: Target = QIAN2014_TARGET,
     structure: str = "feedback", draws: int = DRAWS, seed: int = 0, before: EarlierCase | None = None,
+    spread: Spread | None = None,
 ) -> ControllerDesign:  # fmt: skip
     """A controller for the actuator of a fit with this specimen, gain Kp and piston area (m²).
 
-    `sample_rate` in Hz, `delay` in samples; `draws` plants are drawn from the fitted covariance with `seed`. Raises
-    Unusable where the fit has no displacement that a command drives, or no stable loop is found. That error names the
-    mode of an unstable servo loop and its remedies, and the cause where the loop is known as it was `before`.
+    `sample_rate` in Hz, `delay` in samples; `draws` plants are drawn with `seed` from a `spread`, without one from the
+    fitted covariance. Raises Unusable where the fit has no displacement that a command drives, or no stable loop is
+    found. That error names the mode of an unstable servo loop and its remedies, and the cause where the loop is known
+    as it was `before`.
     """
     plant = linear_plant(fit, specimen, gain, piston_area)
     _refuse_unstable(plant, before)
     made = design(plant.model, sample_rate, delay, target, structure)
-    drawn = drawn_parameters(fit, draws, seed)
+    drawn = drawn_parameters(fit, draws, seed, spread)
     judged = None
     if drawn:
         wanted = made.loop.response(frequencies()) if structure == "feedback" else None
         plants = plant.drawn({name: np.asarray(values) for name, values in drawn.items()})
-        judged = robustness(made.controller, delay, plants, wanted, undetermined(fit))
+        judged = robustness(made.loop, plants, wanted, held_in(fit, drawn), str(spread or Covariance()))
     found = margins(made.loop)
     return ControllerDesign(made, found, judged, _notes(found, plant.left_out, judged))
 
@@ -183,5 +191,6 @@ def _notes(found: Margins, left_out: tuple[str, ...], judged: Robustness | None)
     if judged is None:
         notes.append("the fit states no standard errors: nothing is known about the robustness over its covariance")
     elif judged.held:
-        notes.append(f"the data do not determine {', '.join(judged.held)}: fixed at the fitted values in every draw")
+        why = "the data do not determine" if judged.spread == str(Covariance()) else "the spread does not state"
+        notes.append(f"{why} {', '.join(judged.held)}: fixed at the fitted values in every draw")
     return tuple(notes)

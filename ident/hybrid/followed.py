@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from ident.fit.result import FitResult
 from ident.hybrid.case import Case
-from ident.hybrid.draws import drawn_parameters
+from ident.hybrid.draws import Covariance, Spread, drawn_parameters
 from ident.hybrid.feedforward import Plant, Tracked, plant_of, tracked
 from ident.hybrid.machine import actuator
 from ident.hybrid.substructure import reference
@@ -31,7 +31,7 @@ class Followed(Shown):
 
     `gain` and `limit`, from which the loop is unstable (None where it is stable at any gain), in V/m. `feedback_rms`
     and `both_rms` are of the machine, `drawn_feedback_rms` and `drawn_both_rms` the medians of the `draws` machines
-    drawn from the fitted covariance, `drawn_ratio` the median of feedback over both; these three are None without
+    drawn from the `spread` in words, `drawn_ratio` the median of feedback over both; these three are None without
     standard errors. Curves over `t` (s): `reference`, both errors, and between what 90 % of the draws lie with the
     feedforward, `low` and `high`.
     """
@@ -50,6 +50,7 @@ class Followed(Shown):
     both: tuple[float, ...]
     low: tuple[float, ...]
     high: tuple[float, ...]
+    spread: str = str(Covariance())
 
     @property
     def gain_said(self) -> Message:
@@ -69,7 +70,7 @@ class Followed(Shown):
         ]
         if self.drawn_both_rms is None or self.drawn_ratio is None:
             return [*lines, "the fit states no standard errors: nothing is known of other machines that it allows"]
-        drawn = f"median of {self.draws} machines drawn from the fit {quantity(self.drawn_both_rms, 'm')}"
+        drawn = f"median of {self.draws} machines drawn from {self.spread} {quantity(self.drawn_both_rms, 'm')}"
         return [*lines, f"{drawn}, 1/{rounded(self.drawn_ratio)} of the feedback's"]
 
     def listings(self) -> list[str]:
@@ -87,7 +88,7 @@ class Followed(Shown):
         return read(cls, data)
 
     @classmethod
-    def of(cls, found: Tracked, draws: int) -> Followed:
+    def of(cls, found: Tracked, draws: int, spread: Spread) -> Followed:
         """Of what was tracked: at most 600 points of each curve."""
         places = np.unique(np.linspace(0, len(found.reference) - 1, _SHOWN).astype(np.intp))
         low, high = found.band()
@@ -99,6 +100,7 @@ class Followed(Shown):
             gain=found.gain,
             limit=found.limit if np.isfinite(found.limit) else None,
             draws=draws,
+            spread=str(spread),
             feedback_rms=float(rms["feedback"]),
             both_rms=float(rms["both"]),
             drawn_feedback_rms=told["drawn_feedback"],
@@ -121,13 +123,14 @@ def plant_in(fit: FitResult, case: Case) -> Plant:
     return replace(plant_of(fit, actuator(case), case.gain), specimen=case.physical)
 
 
-def followed_in(fit: FitResult, case: Case, seed: int = 0) -> Followed:
+def followed_in(fit: FitResult, case: Case, seed: int = 0, spread: Spread | None = None) -> Followed:
     """How the machine of a fit follows the reference solution of a case, and so do 100 drawn machines.
 
-    The feedforward is that of the fitted machine for all of them. Raises Unusable as :func:`plant_in`.
+    They are drawn from a `spread`, without one from the covariance of the fit. The feedforward is that of the fitted
+    machine for all of them. Raises Unusable as :func:`plant_in`.
     """
     every = max(1, int(case.sample_rate // _RATE))
     wanted = reference(case, case.ground.samples(case.sample_rate))[::every]
-    plant, drawn = plant_in(fit, case), drawn_parameters(fit, seed=seed)
+    plant, drawn = plant_in(fit, case), drawn_parameters(fit, seed=seed, spread=spread)
     found = tracked(plant, plant, wanted, case.sample_rate / every, drawn)
-    return Followed.of(found, len(next(iter(drawn.values()), ())))
+    return Followed.of(found, len(next(iter(drawn.values()), ())), spread or Covariance())

@@ -33,6 +33,12 @@ class Interval:
         ends = np.percentile(known, EDGES, method="nearest") if len(known) else (np.nan, np.nan)
         return cls(unit, _finite(value), *map(_finite, ends))
 
+    @property
+    def ends(self) -> str:
+        """ "3.2 to 4.5": between what the drawn ones lie."""
+        lower, upper = ("no limit" if end is None else plain(end, 3) for end in (self.lower, self.upper))
+        return f"{lower} to {upper}" if lower != upper else lower
+
     def __str__(self) -> str:
         if self.value is None:
             return "without limit"

@@ -49,7 +49,7 @@ def loop_figure(
     return np.where(p.real.max(axis=-1) < 0, found, np.nan)
 
 
-def _phase_margin(L: NDArray[np.complex128]) -> Array:
+def phase_margins(L: NDArray[np.complex128]) -> Array:
     """The least 180° + arg L where |L| crosses 1, of L (b, f) → (b,)."""
     size, turned = np.log(np.abs(L)), np.degrees(np.unwrap(np.angle(L), axis=-1))
     turned -= 360.0 * np.round(turned[:, :1] / 360.0)  # at its beginning a loop turns by less than half a turn
@@ -57,7 +57,7 @@ def _phase_margin(L: NDArray[np.complex128]) -> Array:
     return np.asarray(np.min(np.abs(180.0 + at), axis=-1, initial=np.inf, where=np.isfinite(at)))
 
 
-def _gain_margin(L: NDArray[np.complex128]) -> Array:
+def gain_margins(L: NDArray[np.complex128]) -> Array:
     """The least −20 lg |L| where L is real and below 0, of L (b, f) → (b,), dB."""
     real = _between(L.imag, L.real)
     crossed = np.isfinite(real) & (real < 0)
@@ -114,6 +114,6 @@ def _overshoot(model: LinearModel, slowest: Array) -> Array:
 
 
 _OF_LOOP: Mapping[str, Callable[[NDArray[np.complex128]], Array]] = {
-    "phase_margin": _phase_margin, "gain_margin": _gain_margin,
+    "phase_margin": phase_margins, "gain_margin": gain_margins,
 }  # fmt: skip
 _OF_RESPONSE: Mapping[str, Callable[[LinearModel, Array], Array]] = {"bandwidth": _bandwidth, "peak": _peak}

@@ -174,7 +174,7 @@ def simulate_machine(
     acting = controller or no_controller(case.sample_rate)
     ground = case.ground.samples(case.sample_rate)
     wanted = reference(case, ground)
-    _kept, rig = rig_of(of, (case,), acting, ground, RUNAWAY * float(np.abs(wanted).max()))
+    _kept, rig = rig_of((of,), (case,), acting, ground, RUNAWAY * float(np.abs(wanted).max()))
     run(rig, acting, report)
     ended = int(rig.ended[0])
     kept = ended >= len(ground)
@@ -239,16 +239,17 @@ def _under(first: int, last: int, rig: Rig, acting: Compensator) -> bool:
 
 
 def rig_of(
-    of: Machine, cases: tuple[Case, ...], acting: Controller, ground: Array, limit: float
+    machines: tuple[Machine, ...], cases: tuple[Case, ...], acting: Controller, ground: Array, limit: float
 ) -> tuple[Stepper, Rig]:
-    """The rig of up to sixteen cases side by side, which share all but their physical part, at rest.
+    """The rig of up to sixteen machines, each in its case, side by side, at rest.
 
-    The stepper keeps the machine code that the rig calls.
+    The machines share their equations, and the cases all but their physical part. The stepper keeps the machine code
+    that the rig calls.
     """
-    n, count, case = len(ground), len(cases), cases[0]
-    known = [of.at(one) for one in cases]
+    n, count, case, of = len(ground), len(cases), cases[0], machines[0]
+    known = [one.at(its) for one, its in zip(machines, cases, strict=True)]
     values = {name: np.array([entry[name] for entry in known]) for name in of.chain.symbols}
-    steps = max(of.steps(one) for one in cases)
+    steps = max(one.steps(its) for one, its in zip(machines, cases, strict=True))
     built = stepper(of.chain, values, case.sample_rate, steps, (DISPLACEMENT, FORCE))
     parts = [numerical(one) for one in cases]
     linear = acting if isinstance(acting, SampledController) else no_controller(case.sample_rate)

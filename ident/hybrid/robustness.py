@@ -1,15 +1,16 @@
-"""How a controller does on the actuators that the fit leaves possible: draws from the fitted covariance."""
+"""How a controller does on the actuators that the fit, or a stated spread, leaves possible: draws of its parameters."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ident.fit.result import FitResult
-from ident.hybrid.controller import SampledController
+from ident.hybrid.interval import Interval
+from ident.hybrid.loop_figures import gain_margins, phase_margins
 from ident.hybrid.sampled_loop import SampledLoop
 from ident.linear import LinearModel
 
@@ -21,6 +22,8 @@ HIGHEST = 25.0
 SHOWN = 30.0
 """Hz: the end of the curves that are kept to be drawn."""
 _POINTS = 60
+_BAND_OF_MARGINS, _POINTS_OF_MARGINS = (1e-5, 0.4999), 800
+"""Of the sample rate, and how many frequencies of it margins are taken from."""
 
 
 @dataclass(frozen=True)
@@ -29,7 +32,9 @@ class Robustness:
 
     A draw is within them where its response is at most 1 dB and 10° from that of the wanted one, which is 1 where a
     path forward gives it and the nominal response for feedback alone. `frequency` (f,) in Hz; `magnitude` (dB) and
-    `phase` (degrees) are (2, f), the lower and the upper edge.
+    `phase` (degrees) are (2, f), the lower and the upper edge. `spread` says in words what the draws are from,
+    `margins` between what the gain margin (dB), the phase margin (degrees) and the sensitivity peak of 90 % of the
+    stable ones lie, beside those of the controller's own loop. What was `held` is as fitted in every draw.
     """
 
     draws: int
@@ -39,25 +44,31 @@ class Robustness:
     magnitude: Array
     phase: Array
     held: tuple[str, ...]
+    spread: str = ""
+    margins: Mapping[str, Interval] = field(default_factory=dict)
 
 
-def undetermined(fit: FitResult) -> tuple[str, ...]:
-    """Parameters that the data do not determine: they stay as fitted in every draw."""
-    return tuple(name for name, one in fit.parameters.items() if not one.std_error and not one.fixed)
+def held_in(fit: FitResult, drawn: Mapping[str, Array]) -> tuple[str, ...]:
+    """Fitted parameters that stay as fitted in every draw: the data, or the spread, say nothing of them."""
+    return tuple(name for name, one in fit.parameters.items() if name not in drawn and not one.fixed)
 
 
 def robustness(
-    controller: SampledController, delay: float, plants: Sequence[LinearModel], wanted: NDArray[np.complex128] | None,
-    held: tuple[str, ...] = (),
+    own: SampledLoop, plants: Sequence[LinearModel], wanted: NDArray[np.complex128] | None,
+    held: tuple[str, ...] = (), spread: str = "",
 ) -> Robustness:  # fmt: skip
-    """The controller in a loop with each of the plants; `wanted` is the response (f,) at :func:`frequencies`, or 1."""
+    """The controller of its `own` loop in a loop with each of the plants.
+
+    `wanted` is the response (f,) at :func:`frequencies`, or 1.
+    """
     frequency = frequencies()
     target = np.ones(len(frequency), complex) if wanted is None else wanted
-    stable, responses = 0, []
+    stable, responses, loops = 0, [], [own]
     for plant in plants:
-        loop = SampledLoop(plant, controller, delay)
+        loop = SampledLoop(plant, own.controller, own.delay)
         if loop.stable:
             stable += 1
+            loops.append(loop)
             responses.append(loop.response(frequency))
     found = np.array(responses).reshape(-1, len(frequency))
     ratio = found / target
@@ -66,7 +77,21 @@ def robustness(
     good = (np.abs(decibel[:, judged]) <= WITHIN[0]) & (np.abs(degrees[:, judged]) <= WITHIN[1])
     shown = (20 * np.log10(np.abs(found)), np.degrees(np.unwrap(np.angle(found), axis=1)))
     magnitude, phase = (_band(values, len(frequency)) for values in shown)
-    return Robustness(len(plants), stable, int(good.all(axis=1).sum()), frequency, magnitude, phase, held)
+    return Robustness(
+        len(plants), stable, int(good.all(axis=1).sum()), frequency, magnitude, phase, held, spread, _margins(loops)
+    )
+
+
+def _margins(loops: Sequence[SampledLoop]) -> dict[str, Interval]:
+    """The margins of the first loop, and between what those of the others lie."""
+    frequency = np.geomspace(*_BAND_OF_MARGINS, _POINTS_OF_MARGINS) * loops[0].controller.sample_rate
+    L = np.array([loop.open_loop(frequency) for loop in loops])
+    found = {
+        "gain": ("dB", gain_margins(L)),
+        "phase": ("°", phase_margins(L)),
+        "sensitivity_peak": ("1", np.abs(1.0 / (1.0 + L)).max(axis=-1)),
+    }
+    return {name: Interval.of(unit, float(of[0]), of[1:]) for name, (unit, of) in found.items()}
 
 
 def frequencies() -> Array:

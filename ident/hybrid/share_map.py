@@ -114,7 +114,7 @@ def share_map(
 
 def _group(of: Machine, cases: tuple[Case, ...], acting: SampledController, ground: Array, wanted: Array) -> Array:
     """Stable, reference_rms, tracking_rms and critical delay of up to sixteen cases, (count, 4)."""
-    _kept, rig = rig_of(of, cases, acting, ground, RUNAWAY * float(np.abs(wanted).max()))
+    _kept, rig = rig_of((of,) * len(cases), cases, acting, ground, RUNAWAY * float(np.abs(wanted).max()))
     run(rig, acting)
     rows = np.full((len(cases), 4), np.nan)
     for lane, case in enumerate(cases):

@@ -15,6 +15,8 @@ from ident.fit.bulk_modulus import BulkModulus, bulk_modulus
 from ident.fit.result import Estimate, FitResult
 from ident.hybrid.changed_machine import Carried, Change, ChangedMachine, changed_machine
 from ident.hybrid.chosen_gain import ChosenGain, GainTarget, choose_gain
+from ident.hybrid.drawn_loops import DrawnLoops, drawn_loops
+from ident.hybrid.draws import Spread
 from ident.hybrid.fig_19 import said_of_fig_19
 from ident.hybrid.oil_column import PeakSearch, find_peak
 from ident.hybrid.peak_problem import PeakTarget
@@ -76,7 +78,7 @@ class WhatIf(Shown):
     It is None where the machine is stable, or unstable, at all gains that were looked at. `peak` is what was found for
     a peak that was asked for, `with_peak` the responses after the smallest change that puts it there. `stability`
     judges the loop at each gain; `state` is "unstable" where it is at any. `chosen` is the gain for a quantity that was
-    asked for.
+    asked for. `spread` has the loop at each gain over machines drawn from a spread that was stated.
     """
 
     model: str
@@ -94,6 +96,7 @@ class WhatIf(Shown):
     state: str = STABLE
     stability: tuple[Judgement, ...] = ()
     chosen: ChosenGain | None = None
+    spread: tuple[DrawnLoops, ...] = ()
 
     def listings(self) -> Iterator[Listing | str]:
         """Whether the loop is unstable and why, what was changed, the poles and peaks, what is to be said of them."""
@@ -101,6 +104,8 @@ class WhatIf(Shown):
             yield from self.chosen.sentences()
         for one in self.stability:
             yield from one.text
+        for drawn in self.spread:
+            yield from drawn.sentences()
         rows = [
             (name, f"{entry.before:.5g}", f"{entry.after:.5g}", entry.unit, entry.why)
             for name, entry in self.parameters.items()
@@ -132,7 +137,7 @@ def _in_words(of: Response, after: str = "") -> str:
 def what_if(
     fit: FitResult, change: Change, gains: tuple[float, float] | None = None, peak: PeakTarget | None = None,
     seed: int = 0, report: Report = silent, rig: RigLimits | None = None, before: Before | None = None,
-    choose: GainTarget | None = None,
+    choose: GainTarget | None = None, spread: Spread | None = None,
 ) -> WhatIf:  # fmt: skip
     """The machine of a fit after a change, at the two ends of a range of gains Kp; what would put a `peak` there.
 
@@ -140,13 +145,14 @@ def what_if(
     fitted machine, where something of it was changed. Where limits of the `rig`, or of the fit's matrix, are stated,
     the first notes say which command reaches them.
 
-    Where a gain is to be chosen for a quantity, responses without `gains` are those at it.
+    Where a gain is to be chosen for a quantity, responses without `gains` are those at it. Where a `spread` of the
+    parameters is stated, the loop at each gain is judged over machines drawn from it.
 
     Responses are the linearisation of the fitted chain (:meth:`ident.chain.chain.Chain.linearise`). Raises Unusable
     as :func:`ident.hybrid.changed_machine.changed_machine` does, and for gains that are no range above 0.
     """
     machine = changed_machine(fit, change)
-    chosen = None if choose is None else choose_gain(fit, machine, choose, seed)
+    chosen = None if choose is None else choose_gain(fit, machine, choose, seed, spread)
     ends = _gains(machine, (chosen.gain, chosen.gain) if chosen and gains is None else gains)
     band = _band(machine, ends)
     responses = tuple(response(machine, gain, band) for gain in ends)
@@ -163,6 +169,7 @@ def what_if(
         parameters=dict(machine.parameters), responses=responses, locus=_locus(machine, ends, judged, critical),
         critical_gain=critical, bulk_modulus=oil,
         peak=found, with_peak=with_peak, chosen=chosen,
+        spread=tuple(drawn_loops(fit, machine, gain, spread, seed) for gain in ends) if spread else (),
         state=UNSTABLE if any(not one.stable for one in judged) else STABLE, stability=judged,
         notes=(*reached(machine, ends, limits), *_notes(machine, responses, oil), *(found.text if found else ())),
     )  # fmt: skip

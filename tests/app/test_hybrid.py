@@ -169,7 +169,7 @@ def test_other_motions_effects_and_controllers(service, fitted, controller):
     bodies = (
         {"controller": "kalman", "ground": {"kind": "blwn", "duration": "1 s", "seed": 3}},
         {"controller": file, "case": OWN | {"ground": {"kind": "sine", "frequency": "2 Hz", "duration": "1 s"}},
-         "effects": ["coulomb_friction"], "set": {"dead_zone.half_width": "1 um"},
+         "effects": ["coulomb_friction"], "set": {"dead_zone.half_width": "1 um"}, "spread": {"share": "20 %"},
          "before": {"gain": 1, "fit": fitted, "case": OWN}},
     )  # fmt: skip
     found = []
@@ -182,6 +182,9 @@ def test_other_motions_effects_and_controllers(service, fitted, controller):
     assert found[1]["ground"] == "sine of 2 Hz"
     assert found[1]["effects"]["dead_zone.half_width"] == 1e-6
     assert len(found[1]["effects"]) == 2
+    assert found[0]["spread"] is None
+    assert (found[1]["spread"]["spread"], found[1]["spread"]["draws"]) == ("± 20 % of each parameter", 100)
+    assert found[1]["spread"]["quantities"]["tracking_rms"]["lower"] < found[1]["scores"]["tracking_rms"]
     listed = service.get(f"{API}/hybrid-simulations", params={"fit": fitted, "limit": 2}).json()
     assert [one["id"] for one in listed["items"]] == [found[1]["id"], found[0]["id"]]
     assert listed["next"]
@@ -241,6 +244,23 @@ def test_an_unstable_loop_is_said_to_be_so_with_its_cause(service, fitted):
     refused_by_service(service.post(f"{API}/fits/{fitted}/what-if", json={"before": {"gain": 0}}), "bad-gain")
     strange = {"before": {"fit": "nothing"}}
     assert service.post(f"{API}/fits/{fitted}/what-if", json=strange).status_code == 404
+
+
+def test_a_spread_is_stated_by_hand_or_by_sets(service, fitted):
+    """Controller and what-if over ± 20 %; a serial number without three sets, and two ways at once, are not."""
+    body = {"fit": fitted, "case": OWN, "spread": {"share": 0.2, "shares": {"tau": "5 %"}}}
+    made = service.post(f"{API}/controllers", json=body).json()["design"]["robustness"]
+    assert made["spread"] == "± 20 % of each parameter, tau ± 5 %"
+    assert made["margins"]["gain"]["lower"] < made["margins"]["gain"]["value"] < made["margins"]["gain"]["upper"]
+    found = service.post(f"{API}/fits/{fitted}/what-if", json={"gain": 2, "spread": {"share": "20 %"}}).json()
+    assert found["spread"][0]["stable"] == 1.0
+    page = service.get(f"/fits/{fitted}/use?ask=what-if&gain_from=2&spread.share=20+%25").text
+    assert "Over ± 20 % of each parameter 100 % of 100 machines are stable at Kp = 2" in page
+    for spread, code in (({"serial": "NOBODY"}, "too-few"), ({"batch": "x", "share": 0.1}, "bad-request"),
+                         ({"shares": {"tua": 0.1}}, "unknown-parameter"), ({"share": 2}, "bad-value")):  # fmt: skip
+        refused_by_service(service.post(f"{API}/fits/{fitted}/what-if", json={"spread": spread}), code)
+    kalman = {"fit": fitted, "controller": "kalman", "spread": {"share": 0.2}}
+    refused_by_service(service.post(f"{API}/hybrid-simulations", json=kalman), "bad-option")
 
 
 def test_a_loop_that_no_controller_is_designed_for_names_its_cause(service, fitted):

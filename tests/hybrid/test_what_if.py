@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from dataclasses import replace
 
 import numpy as np
@@ -203,6 +204,19 @@ def test_figures_are_drawn_in_both_themes(small):
     for theme, format_ in (("light", "svg"), ("dark", "json")):
         assert b"Kp = 2" in render(what_if_response(small, look(theme)), format_)
         assert b"stability is lost" in render(root_locus(small, look(theme)), format_)
+
+
+def test_the_command_takes_a_spread_by_hand_and_from_a_file(servoident, tmp_path):
+    """As `servoident query --json` writes sets; a file without sets is refused."""
+    fit, sets = tmp_path / "fit.json", tmp_path / "sets.json"
+    fit.write_text(json.dumps(fit_of().to_json()))
+    known = [{"model": "qian2014", "parameters": {"Z0": {"value": value}}} for value in (2.5e-6, 2.6e-6, 2.8e-6)]
+    sets.write_text(json.dumps(known))
+    for given, said in (("10 %", "± 10 % of each parameter"), (sets, "3 parameter sets of sets.json")):
+        done = servoident("whatif", fit, "--gain", "2:3", "--spread", given)
+        assert said in " ".join(done.stdout.split())
+    sets.write_text("{}")
+    assert servoident("whatif", fit, "--gain", "2:3", "--spread", sets).returncode == 2
 
 
 def test_the_command_says_unstable_by_its_status_and_json(servoident, tmp_path):

@@ -86,7 +86,7 @@ async function controller(form) {
     for (const name of ["numerator", "denominator"]) target[name] = target[name]?.map?.(Number) ?? target[name];
     asked.target = target;
   }
-  return withBefore(asked, fields);
+  return withBefore(withSpread(asked, fields), fields);
 }
 
 async function simulation(form) {
@@ -98,7 +98,13 @@ async function simulation(form) {
   asked.effects = effects.filter((name) => !fields.get(`strength.${name}`)?.trim());
   const stated = effects.filter((name) => !asked.effects.includes(name));
   asked.set = Object.fromEntries(stated.map((name) => [name, fields.get(`strength.${name}`).trim()]));
-  return withBefore(asked, fields);
+  return withBefore(withSpread(asked, fields), fields);
+}
+
+// What the parameters may be off, where it is stated.
+function withSpread(asked, fields) {
+  const stated = ["share", "serial", "batch"].map((name) => [name, fields.get(`spread.${name}`).trim()]).filter(([, value]) => value);
+  return stated.length ? { ...asked, spread: Object.fromEntries(stated) } : asked;
 }
 
 // What is said of the loop when it was stable.
