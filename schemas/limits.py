@@ -19,7 +19,7 @@ class Limit(BaseModel):
 class LimitsRequest(BaseModel):
     """All limits of a model: by parameter, or `error.fit` and `error.verify`; for one batch, or, without one, for all.
 
-    They take the place of those before.
+    A quantity of the acceptance sheet is `sheet.` and its name. They take the place of those before.
     """
 
     model_config = ConfigDict(extra="forbid")
@@ -63,6 +63,31 @@ class JudgedView(BaseModel):
     outcome: Literal["inside", "outside", "unknown"]
     uncertain: bool
     reason: str
+
+
+class SheetLine(BaseModel):
+    """A quantity of the acceptance sheet, SI; `outcome` and `reason` are null where it has no limit."""
+
+    name: str
+    meaning: str
+    value: float | None
+    std_error: float | None
+    unit: str
+    lower: float | None
+    upper: float | None
+    outcome: Literal["inside", "outside", "unknown"] | None
+    reason: str | None
+
+
+class SheetView(BaseModel):
+    """The acceptance sheet of a fit of bench records, against the limits by which its actuator is judged."""
+
+    fit: str
+    serial: str
+    model: str
+    batch: str
+    verdict: Literal["pass", "fail", "unknown"] | None
+    lines: list[SheetLine]
 
 
 class LineVerdictView(BaseModel):

@@ -222,6 +222,16 @@ class StepView(BaseModel):
     told: str = ""
 
 
+class SheetQuantityView(BaseModel):
+    """A quantity of the acceptance sheet of bench records, SI, with the limits that its data set states."""
+
+    value: float
+    std_error: float
+    unit: str
+    lower: float | None = None
+    upper: float | None = None
+
+
 class FitResultView(BaseModel):
     """The contract's fit JSON; `evolution` belongs to the parameters `searched`, in that order.
 
@@ -267,3 +277,4 @@ class FitResultView(BaseModel):
     ended_early: bool = False
     left_out: list[str] = Field(default_factory=list)
     preprocessing: list[StepView] = Field(default_factory=list)
+    sheet: dict[str, SheetQuantityView] = Field(default_factory=dict)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from typing import Any
 
 from sqlalchemy import select
@@ -14,6 +14,7 @@ from app.fits.history import read, taken_apart
 from app.storage import Storage
 from app.tables import DiagnosisRow, EvolutionRow, FitRow, JobRow, MatrixRow, SetRow, ValueRow
 from ident.fit.result import FitResult
+from ident.fit.sheet import PREFIX
 from ident.run import USES
 
 
@@ -73,9 +74,16 @@ def _set(matrix: MatrixRow, result: dict[str, Any], who: str) -> SetRow:
     )  # fmt: skip
     row.values = [
         ValueRow(name=name, place=place, value=entry["value"], unit=entry["unit"], std_error=entry["std_error"])
-        for place, (name, entry) in enumerate(result["parameters"].items())
+        for place, (name, entry) in enumerate(_entries(result))
     ]
     return row
+
+
+def _entries(result: dict[str, Any]) -> Iterator[tuple[str, dict[str, Any]]]:
+    """What a set holds by name: the parameters, and the quantities of the acceptance sheet."""
+    yield from result["parameters"].items()
+    for name, entry in result.get("sheet", {}).items():
+        yield PREFIX + name, entry
 
 
 def _errors(fit: FitResult) -> dict[str, Any]:

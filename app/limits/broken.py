@@ -8,6 +8,7 @@ from contextlib import contextmanager
 from sqlalchemy.orm import Session
 
 from app.limits import repository
+from app.limits.holding import bounds_of
 from app.limits.verdict import Judged, judged_by
 from app.tables import LimitRow, SetRow
 from app.webhooks.outbox import announce, is_heard
@@ -38,7 +39,7 @@ def telling_broken(session: Session, model: str, batch: str) -> Iterator[None]:
 
 
 def _broken(row: SetRow, limits: Mapping[str, LimitRow]) -> list[Judged]:
-    return [one for one in judged_by(row, limits) if one.outcome == "outside"]
+    return [one for one in judged_by(row, bounds_of(row, limits)) if one.outcome == "outside"]
 
 
 def _tell(session: Session, row: SetRow, broken: list[Judged]) -> None:

@@ -10,10 +10,13 @@ from app.limits import repository
 from app.limits.broken import telling_broken
 from app.parameters.error import NAMES
 from app.tables import LimitRow
+from ident.bench.acceptance import QUANTITIES
 from ident.custom.definition import preset_with
 from ident.errors import Unusable
+from ident.fit.sheet import PREFIX
 from ident.presets import preset
 from ident.units.quantity import quantity, unit_scale
+from ident.words.nearest import did_you_mean
 from schemas.limits import BatchLimits, Limit, LimitsRequest, LimitsView, LimitView
 
 
@@ -41,11 +44,21 @@ def _row(model: str, batch: str, name: str, limit: Limit, who: str) -> LimitRow:
 
 
 def unit_of(model: str, name: str) -> str:
-    """The SI unit of what has a limit: a parameter of the model or of an effect, or an error. Raises Unusable."""
+    """The SI unit of what has a limit: a parameter, of an effect too, an error, the sheet. Raises Unusable."""
     if name in NAMES:
         return "1"
+    if name.startswith(PREFIX) and preset(model).kind == "bench":
+        return _of_sheet(name.removeprefix(PREFIX))
     effect, dot, _ = name.partition(".")
     return preset_with(model, (effect,) if dot else ()).parameter(name).unit
+
+
+def _of_sheet(name: str) -> str:
+    """The unit of a quantity of the acceptance sheet. Raises Unusable with the nearest where there is none."""
+    if name not in QUANTITIES:
+        near = did_you_mean(name, QUANTITIES, f"give one of {', '.join(QUANTITIES)}")
+        raise Unusable("unknown-quantity", f"the acceptance sheet has no {name!r}", f"limits.{PREFIX}{name}", near)
+    return QUANTITIES[name][0]
 
 
 def of_model(context: Context, model: str) -> LimitsView:

@@ -11,8 +11,9 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Literal
 
+from app.limits.holding import Bound
 from app.parameters.error import USES, error_of
-from app.tables import LimitRow, SetRow
+from app.tables import SetRow
 from ident.words.engineering import quantity
 from ident.words.error import ErrorOf
 from ident.words.message import message
@@ -92,12 +93,12 @@ def verdict(judged: list[Judged]) -> Verdict:
     return "fail" if "outside" in outcomes else "pass" if outcomes == {"inside"} else "unknown"
 
 
-def judged_by(row: SetRow, limits: Mapping[str, LimitRow]) -> list[Judged]:
+def judged_by(row: SetRow, limits: Mapping[str, Bound]) -> list[Judged]:
     """Each value of a set that has a limit, against it."""
     return [_judged(row, limit) for limit in limits.values()]
 
 
-def _judged(row: SetRow, limit: LimitRow) -> Judged:
+def _judged(row: SetRow, limit: Bound) -> Judged:
     for use in USES:
         if limit.name == f"error.{use}":
             said = error_of(row, use)

@@ -5,18 +5,22 @@ from __future__ import annotations
 from app.actuators.repository import find
 from app.approvals.repository import in_force
 from app.context import Context
-from app.errors import missing
+from app.errors import Failure, missing
+from app.fits.service import recorded
 from app.limits import repository
+from app.limits.holding import bounds_of
 from app.limits.verdict import Judged, judged_by, verdict
-from app.tables import SetRow
-from schemas.limits import JudgedView, LineVerdictView
+from app.tables import SetRow, ValueRow
+from ident.bench.acceptance import QUANTITIES
+from ident.fit.sheet import PREFIX
+from schemas.limits import JudgedView, LineVerdictView, SheetLine, SheetView
 
 
 def judge(context: Context, serial: str) -> LineVerdictView:
     """Pass, fail, or unknown with the reasons; raises Failure 404."""
     with context.sessions() as session:
         row = in_force(session, [serial]).get(serial)
-        limits = repository.in_batch(session, row.model, row.batch) if row else {}
+        limits = bounds_of(row, repository.in_batch(session, row.model, row.batch)) if row else {}
         actuator = None if row else find(session, serial)
     if row is None:
         if actuator is None:
@@ -32,6 +36,33 @@ def judge(context: Context, serial: str) -> LineVerdictView:
     return LineVerdictView(
         serial=serial, verdict=found, reasons=reasons, fit=row.fit, model=row.model, batch=row.batch,
         approved_at=row.approved_at, judged=[_view(one) for one in judged],
+    )  # fmt: skip
+
+
+def sheet(context: Context, fit: str) -> SheetView:
+    """The acceptance sheet of a fit; raises Failure 404 where there is no such fit, 409 where it has no sheet."""
+    with context.sessions() as session:
+        row = recorded(session, fit).set
+        bounds = bounds_of(row, repository.in_batch(session, row.model, row.batch))
+        values = {value.name: value for value in row.values if value.name.startswith(PREFIX)}
+        judged = {one.name: one for one in judged_by(row, bounds) if one.name.startswith(PREFIX)}
+    if not values:
+        raise Failure(409, "no-sheet", f"the fit of {row.model} has no acceptance sheet", "fit",
+                      "give a fit of bench records, made with this version")  # fmt: skip
+    names = [PREFIX + name for name in QUANTITIES if PREFIX + name in values.keys() | judged.keys()]
+    return SheetView(
+        fit=fit, serial=row.serial, model=row.model, batch=row.batch,
+        verdict=verdict(list(judged.values())) if judged else None,
+        lines=[_line(name.removeprefix(PREFIX), values.get(name), judged.get(name)) for name in names],
+    )  # fmt: skip
+
+
+def _line(name: str, found: ValueRow | None, judged: Judged | None) -> SheetLine:
+    unit, meaning = QUANTITIES[name]
+    return SheetLine(
+        name=name, meaning=meaning, value=found.value if found else None, std_error=found.std_error if found else None,
+        unit=unit, lower=judged.lower if judged else None, upper=judged.upper if judged else None,
+        outcome=judged.outcome if judged else None, reason=judged.reason if judged else None,
     )  # fmt: skip
 
 

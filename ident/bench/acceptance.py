@@ -14,6 +14,7 @@ from ident.bench.position_error import position_error
 from ident.bench.quantity import Found
 from ident.bench.straightness import of_table
 from ident.errors import Unusable
+from ident.fit.sheet import SheetQuantity
 from ident.readers.strict_yaml import read_yaml
 from ident.units.quantity import quantity
 from ident.words.nearest import did_you_mean
@@ -136,6 +137,17 @@ def sheet(analysis: Analysis, limits: Mapping[str, tuple[float | None, float | N
         elif name in limits:
             out.append(Line(name, meaning, None, None, unit, lower, upper))
     return tuple(out)
+
+
+def sheet_quantities(
+    analysis: Analysis, limits: Mapping[str, tuple[float | None, float | None]]
+) -> dict[str, SheetQuantity]:
+    """The quantities of the sheet that were found, with their limits, by name: the sheet as a fit keeps it."""
+    return {
+        line.quantity: SheetQuantity(line.value, line.deviation or 0.0, line.unit, line.lower, line.upper)
+        for line in sheet(analysis, limits)
+        if line.value is not None
+    }
 
 
 def passed(lines: tuple[Line, ...]) -> bool:

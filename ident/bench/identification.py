@@ -13,6 +13,7 @@ from importlib.metadata import version
 import numpy as np
 from numpy.typing import NDArray
 
+from ident.bench.acceptance import read_limits, sheet_quantities
 from ident.bench.analysis import Analysis, analyse
 from ident.bench.effect_ranking import centred, finely, with_effect
 from ident.bench.least_squares import Solution, solve
@@ -202,6 +203,7 @@ class BenchIdentification:
             settings=self.settings.to_json(), searched=tuple(called[n] for n in self.space.names),
             evolution=evolution(self.space, state), actuator=self.matrix.actuator,
             preprocessing=self.matrix.preprocessing,
+            sheet=sheet_quantities(self.analysis, read_limits(self.matrix.limits_text, self.matrix.limits or "limits")),
         )  # fmt: skip
 
     def _far_bounds(self, error: float | None) -> list[str]:

@@ -8,6 +8,7 @@ from dataclasses import dataclass, field, replace
 from typing import Any
 
 from ident.errors import Unusable
+from ident.fit.sheet import SheetQuantity
 from ident.matrix import Actuator, Matrix, StepOutcome
 from ident.plain import UNWRITTEN, WHERE_KNOWN, Misfit, read, written
 from ident.presets.description import description
@@ -176,8 +177,8 @@ class FitResult(Shown):
     `evolution` belongs to the parameters `searched`, in that order. `actuator` is what was stated of the machine;
     earlier versions did not keep it. The search of one that `ended_early` ran out of its time. Runs that are
     `left_out` were not fitted, and are in no mean over the runs to fit; they stand in `runs`. `preprocessing` has
-    what became of each step of it, which earlier versions did not tell. `matrix` holds the data, where the fit was
-    made here.
+    what became of each step of it, which earlier versions did not tell. `sheet` has the acceptance sheet of bench
+    records by quantity. `matrix` holds the data, where the fit was made here.
     """
 
     model: str
@@ -214,6 +215,7 @@ class FitResult(Shown):
     evolution: tuple[Generation, ...] = field(default=(), repr=False)
     actuator: Actuator | None = field(default=None, metadata=WHERE_KNOWN)
     preprocessing: tuple[StepOutcome, ...] = field(default=(), metadata=WHERE_KNOWN)
+    sheet: Mapping[str, SheetQuantity] = field(default_factory=dict, metadata=WHERE_KNOWN)
     matrix: Matrix | None = field(default=None, compare=False, repr=False, metadata=UNWRITTEN)
 
     def records(self) -> list[dict[str, Any]]:

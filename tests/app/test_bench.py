@@ -64,6 +64,38 @@ def test_every_figure_is_served(service, fit, name):
         assert "acceptance test passed" in drawn.text
 
 
+def test_the_sheet_is_json_judged_by_the_limits_of_the_line(service, fit):
+    """By those of its data set, until the line has its own, which the verdict takes, too; a query finds it by them."""
+    sheet = service.get(f"{API}/fits/{fit}/sheet").json()
+    lines = {line["name"]: line for line in sheet["lines"]}
+    assert {"zero_shift", "dead_space", "gain", "asymmetry", "nonlinearity", "position_error"} <= lines.keys()
+    result = service.get(f"{API}/fits/{fit}").json()["result"]
+    assert lines["T"]["value"] == result["sheet"]["T"]["value"]
+    assert lines["dead_space"]["upper"] is not None  # of limits.yaml
+    assert sheet["verdict"] in ("pass", "unknown")
+    serial, space = sheet["serial"], lines["dead_space"]["value"]
+    service.post(f"{API}/fits/{fit}/approve", json={"why": "a test"})
+    before = service.get(f"{API}/actuators/{serial}/verdict").json()
+    assert {one["name"] for one in before["judged"]} >= {"sheet.dead_space"}
+    limits = {"sheet.dead_space": {"upper": 50 * space, "unit": "%"}, "sheet.asymmetry": {"upper": 1, "unit": "1"}}
+    put = service.put(f"{API}/limits/kononykhin", json={"limits": limits})
+    assert put.status_code == 200, put.text
+    line = next(one for one in service.get(f"{API}/fits/{fit}/sheet").json()["lines"] if one["name"] == "dead_space")
+    assert (line["upper"], line["outcome"]) == (pytest.approx(space / 2), "outside")
+    verdict = service.get(f"{API}/actuators/{serial}/verdict").json()
+    assert verdict["verdict"] == "fail"
+    assert any("sheet.dead_space" in reason for reason in verdict["reasons"])
+    for low, count in ((0.9 * space, 1), (1.1 * space, 0)):
+        asked = {"sheet.dead_space.min": low, "serial": serial, "current": True}
+        assert len(service.get(f"{API}/parameter-sets", params=asked).json()["items"]) == count
+    assert service.get(f"{API}/statistics", params={"parameter": "sheet.gain", "serial": serial}).json()["n"] == 1
+    assert "sheet.dead_space" in service.get("/limits?model=kononykhin").text
+    for name in ("sheet.dead_spice", "dead_space"):
+        wrong = service.put(f"{API}/limits/kononykhin", json={"limits": {name: {"upper": 1, "unit": "%"}}})
+        assert wrong.status_code == 422
+    service.put(f"{API}/limits/kononykhin", json={"limits": {}})
+
+
 def test_a_diagnosis_of_a_sound_set_names_nothing(service, fit):
     """And no run is proposed after it: the reason is in the answer."""
     job = ended(service, service.post(f"{API}/diagnoses", json={"fit": fit}))
