@@ -112,9 +112,9 @@ def draw_study(
 
 def write_figure(subject: object, name: str, out: Path, stem: str = "", **options: Any) -> None:
     """Write one figure to `out`, as files of its name, or of that in `stem`."""
-    from ident.figures import figure, render
+    from ident.figures import figure, renders
 
     out.mkdir(parents=True, exist_ok=True)
     chart = figure(name, subject, **options)
-    for format_ in FORMATS:
-        write_bytes(render(chart, format_), out / f"{stem or name}.{format_}")
+    for format_, drawn in renders(chart, FORMATS).items():
+        write_bytes(drawn, out / f"{stem or name}.{format_}")

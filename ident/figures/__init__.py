@@ -15,7 +15,7 @@ from ident.errors import Unusable
 from ident.figures.drawing import Drawing
 from ident.figures.frame import unchecked
 from ident.figures.look import look
-from ident.figures.render import MEDIA, AltairChart, Chart, render, shown
+from ident.figures.render import MEDIA, AltairChart, Chart, render, renders, shown
 from ident.figures.study import Study
 from ident.figures.subjects import Ladder, Recorded
 from ident.fit.result import FitResult
@@ -27,7 +27,7 @@ from ident.words.titles import title
 
 __all__ = [
     "DRAWINGS", "FIGURES", "MEDIA", "AltairChart", "Chart", "Recorded", "Study", "drawings", "figure", "figures_for",
-    "figures_of", "look", "of_diagnosis", "render", "shown",
+    "figures_of", "look", "of_diagnosis", "render", "renders", "shown",
 ]  # fmt: skip
 
 _FILES = (

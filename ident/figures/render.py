@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
@@ -65,21 +65,29 @@ def render(chart: Chart, format: str, *, live: bool = False) -> bytes:  # noqa: 
 
     A `live` JSON keeps what differs between runs and bands in its parameters, for a page that exchanges only these.
     """
-    if format not in MEDIA:
-        raise Unusable("unknown-format", f"no format {format!r}", "figure", did_you_mean(format, MEDIA))
+    return renders(chart, (format,), live=live)[format]
+
+
+def renders(chart: Chart, formats: Sequence[str], *, live: bool = False) -> dict[str, bytes]:
+    """The same in several formats, by their names: drawn once, as an SVG, of which the others are made."""
+    for format_ in formats:
+        if format_ not in MEDIA:
+            raise Unusable("unknown-format", f"no format {format_!r}", "figure", did_you_mean(format_, MEDIA))
+    text = _text(chart, live=live)
+    svg = vl_convert.vegalite_to_svg(text, allowed_base_urls=[]) if {*formats} - {"json"} else ""
+    return {format_: text.encode() if format_ == "json" else _CONVERT[format_](svg) for format_ in formats}
+
+
+def _text(chart: Chart, *, live: bool) -> str:
+    """The chart in the language of Vega-Lite."""
     if isinstance(chart, Filled):
-        text = chart.to_json(live=live)
-    else:
-        with unchecked():  # Altair turns its checks off for each copy it makes, and then on again for all threads
-            text = chart.to_json(indent=None, validate=False)
-    if format == "json":
-        return text.encode()
-    drawn = _CONVERT[format](text)
-    return drawn.encode() if isinstance(drawn, str) else drawn
+        return chart.to_json(live=live)
+    with unchecked():  # Altair turns its checks off for each copy it makes, and then on again for all threads
+        return chart.to_json(indent=None, validate=False)
 
 
-_CONVERT: Mapping[str, Callable[[str], Any]] = {
-    "svg": lambda text: vl_convert.vegalite_to_svg(text, allowed_base_urls=[]),
-    "png": lambda text: vl_convert.vegalite_to_png(text, scale=2, allowed_base_urls=[]),
-    "pdf": lambda text: vl_convert.vegalite_to_pdf(text, allowed_base_urls=[]),
+_CONVERT: Mapping[str, Callable[[str], bytes]] = {
+    "svg": lambda svg: svg.encode(),
+    "png": lambda svg: vl_convert.svg_to_png(svg, scale=2),
+    "pdf": vl_convert.svg_to_pdf,
 }

@@ -8,7 +8,7 @@ import pytest
 
 from ident.bench.acceptance import sheet
 from ident.errors import Unusable
-from ident.figures import FIGURES, figures_of, render
+from ident.figures import FIGURES, figures_of, render, renders
 from ident.figures import figure as drawn
 from ident.figures.acceptance_sheet import acceptance_sheet
 from ident.fit.settings import Settings
@@ -48,8 +48,9 @@ def test_a_fit_of_the_bench_has_its_own_figures(fitted):
 def test_every_figure_is_drawn(studied, name, theme):
     """As SVG, with the actuator's serial in its title."""
     chart = drawn(name, studied, theme)
-    assert render(chart, "svg").startswith(b"<svg")
-    assert "REFERENCE" in texts(chart)
+    found = renders(chart, ("svg", "json"))
+    assert found["svg"].startswith(b"<svg")
+    assert b"REFERENCE" in found["json"]
 
 
 def test_the_pressure_loop_has_three_colours(fitted):
@@ -76,8 +77,9 @@ def test_the_sheet_names_every_quantity_and_the_verdict(fitted, studied):
     matrix, _ = fitted
     bench, analysis = studied.judged
     lines = sheet(analysis, {"hysteresis": (None, 1e-6), "T": (None, 1.0)})
-    page = texts(acceptance_sheet(matrix, bench, analysis, lines))
+    drawn = renders(acceptance_sheet(matrix, bench, analysis, lines), ("json", "pdf"))
+    page = drawn["json"].decode()
     assert "NOT passed" in page
     assert "FAIL" in page
     assert "dead space" in page
-    assert render(acceptance_sheet(matrix, bench, analysis, lines), "pdf").startswith(b"%PDF")
+    assert drawn["pdf"].startswith(b"%PDF")
