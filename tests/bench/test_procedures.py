@@ -113,7 +113,7 @@ def test_a_delay_does_not_spoil_the_time_constant_silently(delay):
 def test_rest_and_both_movements_are_told_apart():
     """The three groups against the true speed: nine samples in ten, where the speed is not just about to change."""
     truth = reference.scattered(3)
-    records = reference.full_set(truth, 3)
+    records = reference.full_set(truth, 3, short=True)
     bench = as_set(truth, records)
     speed = np.gradient(records[0].true_position) * reference.RATE
     state = groups(bench.records[0])
