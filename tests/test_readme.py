@@ -17,8 +17,8 @@ import pytest
 from tests.running import command, free_port, nursery
 
 ROOT = Path(__file__).resolve().parents[1]
-SLOW = {"compare", "diagnose"}
-"""Commands of the README that take tens of seconds: run in the long form, in the short form only read."""
+SLOW = {"compare", "diagnose", "report"}
+"""Commands of the README that take long: run in the long form, in the short form only read."""
 
 
 def lines() -> list[str]:

@@ -5,8 +5,6 @@ from __future__ import annotations
 import html
 import re
 import shlex
-import subprocess
-import sys
 from pathlib import Path
 from urllib.parse import unquote, urldefrag
 
@@ -15,7 +13,8 @@ import pytest
 
 import ident
 from docs.tutorial import parts, printed, record
-from tests.test_docs import DOCS, ROOT
+from tests.running import nursery
+from tests.test_docs import DOCS
 
 NUMBER = re.compile(r"-?\d+(?:\.\d+)?")
 CLOSE = 0.02  # of a number that the tutorial prints: one in the last place of most
@@ -24,11 +23,14 @@ CLOSE = 0.02  # of a number that the tutorial prints: one in the last place of m
 @pytest.fixture(scope="module")
 def site(tmp_path_factory) -> Path:
     """The folder of the site, built anew as `python3 -m docs` builds it."""
-    out = tmp_path_factory.mktemp("site")
-    command = [sys.executable, "-m", "sphinx", "-q", "-W", "--keep-going", "-b", "html", DOCS, out]
-    done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=False)
-    assert done.returncode == 0, done.stderr
-    assert done.stderr == ""
+    out, said = tmp_path_factory.mktemp("site"), tmp_path_factory.mktemp("said") / "errors"
+    code = "import sys; from docs.build import built; sys.exit(built(sys.argv[1]))"
+    number = nursery().start(
+        said.with_name("output"), str(out), code=code, stderr=said
+    )  # the program is imported there
+    status, errors = nursery().ended(number), said.read_text(encoding="utf-8")
+    assert status == 0, errors
+    assert errors == ""
     return out
 
 

@@ -4,24 +4,26 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Callable, Iterable
+from typing import TYPE_CHECKING
 
 import pytest
-import schemathesis
 from fastapi.testclient import TestClient
 from hypothesis import HealthCheck, assume, given, settings
 from hypothesis import strategies as st
-from schemathesis.checks import not_a_server_error
-from schemathesis.specs.openapi.checks import content_type_conformance, status_code_conformance
 
-CHECKS = [not_a_server_error, status_code_conformance, content_type_conformance]
+if TYPE_CHECKING:
+    from schemathesis import APIOperation
+
 EXAMPLES, MORE = 3, 100  # of each operation by the admin; with --full
 OTHERS, MORE_OTHERS = 1, 60  # by each of the other roles, and by nobody
 Headers = dict[str, str]
 
 
 @pytest.fixture(scope="module")
-def operations(service: TestClient) -> list[schemathesis.APIOperation]:
+def operations(service: TestClient) -> list[APIOperation]:
     """What the document has; requests are drawn for all roles from what is made of each once."""
+    import schemathesis  # here: each worker collects this file, and one makes the requests
+
     schema = schemathesis.openapi.from_dict(service.get("/api/v1/openapi.json").json())
     found = [operation.ok() for operation in schema.get_all_operations()]
     # A stream lasts as long as its job; it has tests of its own.
@@ -29,7 +31,7 @@ def operations(service: TestClient) -> list[schemathesis.APIOperation]:
 
 
 def test_fuzzed_requests_stay_within_the_document(
-    service: TestClient, operations: list[schemathesis.APIOperation], matrix: str, full: bool
+    service: TestClient, operations: list[APIOperation], matrix: str, full: bool
 ) -> None:
     """By the admin, who may do everything."""
     headers = {"Authorization": service.headers["Authorization"]}
@@ -39,7 +41,7 @@ def test_fuzzed_requests_stay_within_the_document(
 
 @pytest.mark.parametrize("role", ["lab", "line", "ci", ""])
 def test_fuzzed_requests_of_each_role_do_too(
-    service: TestClient, operations: list[schemathesis.APIOperation], matrix: str, full: bool, role: str
+    service: TestClient, operations: list[APIOperation], matrix: str, full: bool, role: str
 ) -> None:
     """What a role may not is refused however it is asked; nobody gets anything but whether the service is well."""
     asked = {"name": f"fuzzing {role}", "role": role}
@@ -50,7 +52,7 @@ def test_fuzzed_requests_of_each_role_do_too(
 
 
 def _tried(
-    service: TestClient, operations: list[schemathesis.APIOperation], headers: Headers, matrix: str, examples: int
+    service: TestClient, operations: list[APIOperation], headers: Headers, matrix: str, examples: int
 ) -> Counter[int]:
     """How often each status was answered."""
     statuses: Counter[int] = Counter()
@@ -62,9 +64,14 @@ def _tried(
 
 
 def _attempts(
-    service: TestClient, operation: schemathesis.APIOperation, who: Headers, matrix: str, examples: int,
+    service: TestClient, operation: APIOperation, who: Headers, matrix: str, examples: int,
     statuses: Counter[int],
 ) -> Callable[[], None]:  # fmt: skip
+    from schemathesis.checks import not_a_server_error
+    from schemathesis.specs.openapi.checks import content_type_conformance, status_code_conformance
+
+    checks = [not_a_server_error, status_code_conformance, content_type_conformance]
+
     @settings(max_examples=examples, deadline=None, derandomize=True, database=None,
               suppress_health_check=list(HealthCheck))  # fmt: skip
     @given(st.data())
@@ -79,7 +86,7 @@ def _attempts(
         answer = service.request(**request, headers=headers)
         statuses[answer.status_code] += 1
         answer.request.read()  # it may have been refused before it was read, and the checks show it
-        case.validate_response(answer, checks=CHECKS)
+        case.validate_response(answer, checks=checks)
 
     return attempt
 

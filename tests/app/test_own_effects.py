@@ -208,7 +208,11 @@ def test_the_next_actuator_has_it_by_name(service: TestClient, found: dict[str, 
 
     plain = ended(service, service.post(f"{API}/fits", json={"matrix": stored["id"]}))["fit"]
     ranked = {}
-    for name, most, asked in (("own", 1, {"own": True}), ("named", 1, {"custom": ["hill"]}), ("without", 0, {})):
+    for name, most, asked in (
+        ("own", 1, {"own": True}),
+        ("named", 1, {"custom": ["hill"]}),
+        ("without", 0, {"propose": False}),
+    ):
         job = ended(service, service.post(f"{API}/diagnoses", json={"fit": plain, "max_effects": most, **asked}))
         assert job["state"] == "succeeded", job
         ranked[name] = service.get(f"{API}/diagnoses/{job['diagnosis']}").json()
