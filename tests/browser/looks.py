@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from axe_playwright_python.sync_playwright import Axe
+from axe_playwright_python.base import AXE_SCRIPT
 from playwright.sync_api import Page, ViewportSize, expect
 
 from tests.browser.story import LONG
@@ -59,6 +59,12 @@ def on_a_phone(page: Page, folder: Path | None, name: str) -> None:
 
 def barriers(page: Page, rules: Sequence[str] = ()) -> list[str]:
     """Rule, element and reason of each violation, of all rules or some; the debugger puts axe in, past the policy."""
-    options = {"resultTypes": ["violations"]} | ({"runOnly": {"type": "rule", "values": list(rules)}} if rules else {})
-    found: list[dict[str, Any]] = Axe().run(page, options=options).response["violations"]
+    options: dict[str, Any] = {"resultTypes": ["violations"], "selectors": False}
+    if rules:
+        options |= {"runOnly": {"type": "rule", "values": list(rules)}}
+    if not page.evaluate("'axe' in globalThis"):
+        page.evaluate(AXE_SCRIPT)
+    found: list[dict[str, Any]] = page.evaluate(
+        "options => axe.run(document, options).then(({ violations }) => violations)", options
+    )
     return [f"{rule['id']}: {node['html'][:200]}: {node['failureSummary']}" for rule in found for node in rule["nodes"]]
