@@ -100,6 +100,20 @@ def test_the_three_ways_to_begin():
     assert still.begins == "moving"  # a command that moves meanwhile
 
 
+def test_the_jumps_of_repeated_steps_are_no_noise_that_a_beginning_hides_in():
+    """It stands a fourteenth of its deviation from zero, twenty deviations of the noise; seed 4."""
+    levels = np.tile([1.0, -0.05, -1.0, 0.05], 20)
+    command = 0.027 * np.repeat(levels, np.tile([9, 9, 8, 9], 20))[32:]
+    follows = np.full(len(command), command[0])
+    for k in range(1, len(command)):
+        follows[k] = follows[k - 1] + 0.5 * (command[k - 1] - follows[k - 1])
+    x = follows + 6.5e-5 * np.random.default_rng(4).standard_normal(len(command))
+    run = Run("a", "", RATE, {"command": command, "displacement": x}, {"command": "m"}, gain=1.0, hold="zoh")
+    assert 0.06 < abs(x[0]) / x.std() < 0.08
+    assert run.begins == "moving"
+    assert replace(run, channels={**run.channels, "displacement": x - command[0]}).begins == "at rest"
+
+
 def test_a_motor_that_runs_at_first_is_found_and_its_offset_is_nothing():
     fit = identify(motor(2, 3.0), Settings(model="motor"))
     assert fit.values["Kt"] / fit.values["c0"] == pytest.approx(3.5, rel=0.005)
