@@ -71,6 +71,7 @@ OF_RECORDS = _of_files(
     "normal_force_friction",
     "pressure_friction",
     "arm_gravity",
+    "damping_asymmetry",
     "sensor_curve",
 )
 """Those that only some records can show: what they read is measured, or what they need is there."""

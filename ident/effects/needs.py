@@ -21,6 +21,11 @@ def angle_measured(matrix: Matrix) -> bool:
     return all(run.units.get("displacement") == "rad" and "displacement" in run.channels for run in matrix.runs)
 
 
+def force_answers(matrix: Matrix) -> bool:
+    """Whether every run gives the motion and records the force: what is tested is moved, such as a damper."""
+    return all(run.output == "force" for run in matrix.runs)
+
+
 def one_sided_output(matrix: Matrix) -> bool:
     """Whether the output stays on one side of zero: a curve of even order bends nothing about zero."""
     return all(one_sided(run.measured) for run in matrix.runs)

@@ -115,6 +115,8 @@ CASES = {
     "pressure_friction": Case(
         "drive", {"pressure_friction.area": 5e-3},
         lambda k: mass(lambda t, _x, v: 0.5 * k * at(SQUEEZE, t) * dry(v)), {"load_pressure": 1e2 * SQUEEZE}, 1e-2),
+    "damping_asymmetry": Case(
+        "drive", {"damping_asymmetry.coefficient": 1.5}, lambda k: mass(lambda _t, _x, v: 1.5 * k * abs(v)), {}),
     "arm_gravity": Case(
         "drive", {"arm_gravity.torque": 30.0, "arm_gravity.hanging": 0.5},
         lambda k: mass(lambda _t, x, _v: 30.0 * k * np.sin(x - 0.5)), {}),
