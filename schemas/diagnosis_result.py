@@ -4,7 +4,7 @@ from typing import Literal
 
 from pydantic import BaseModel, ConfigDict, Field
 
-from schemas.result import DefinitionView, ErrorBudget, Errors, Nothing, SettingsView, StepView
+from schemas.result import DefinitionView, ErrorBudget, Errors, Nothing, SettingsView, StepView, TransducerOffsetView
 
 
 class RefittedView(BaseModel):
@@ -26,6 +26,7 @@ class BaselineView(BaseModel):
     offset: float | None
     error_with_mean: Errors = Field(default_factory=dict)
     unstable: dict[str, list[str]] = Field(default_factory=dict)
+    transducer_offset: dict[str, TransducerOffsetView] = Field(default_factory=dict)
 
 
 class CandidateView(BaseModel):
@@ -45,6 +46,7 @@ class CandidateView(BaseModel):
     why: str
     error_with_mean: Errors = Field(default_factory=dict)
     unstable: dict[str, list[str]] = Field(default_factory=dict)
+    transducer_offset: dict[str, TransducerOffsetView] = Field(default_factory=dict)
 
 
 class RungView(BaseModel):
@@ -60,6 +62,7 @@ class RungView(BaseModel):
     parameters: dict[str, RefittedView]
     error_with_mean: Errors = Field(default_factory=dict)
     unstable: dict[str, list[str]] = Field(default_factory=dict)
+    transducer_offset: dict[str, TransducerOffsetView] = Field(default_factory=dict)
 
 
 class LabelErrorsView(BaseModel):

@@ -112,6 +112,7 @@ class TransducerOffsetView(BaseModel):
     value: float
     unit: str
     std_error: float
+    large: bool = False
 
 
 class RunErrorView(BaseModel):

@@ -16,10 +16,11 @@ from ident.diagnosis.cross_validation import OutOfFold, out_of_fold
 from ident.diagnosis.evidence.comparison import Residuals
 from ident.diagnosis.parameter_estimate import ParameterEstimate
 from ident.fit.fitness import Local
-from ident.fit.result import Combination
+from ident.fit.result import Combination, TransducerOffset
 from ident.fit.simulated_fitness import SimulatedFitness
 from ident.fit.slow_answer import slow_lag
 from ident.fit.space import Space
+from ident.fit.summary import told_offsets
 from ident.fit.transducer import Offset, offset_at, offsets_that_count
 from ident.fit.uncertainty import DETERMINED, Covariance, covariance
 from ident.run import Run, over_runs
@@ -173,6 +174,11 @@ class FittedModel:
     def _offsets(self) -> Mapping[str, Offset]:
         """The offsets of transducers that are part of the model."""
         return {} if self.fitness.horizon is not None else offsets_that_count(self.local)
+
+    @property
+    def transducer_offset(self) -> dict[str, TransducerOffset]:
+        """The same as a result keeps them."""
+        return told_offsets(self._offsets, self.fitness.matrix)
 
     @property
     def errors(self) -> dict[str, float | None]:

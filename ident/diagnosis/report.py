@@ -36,7 +36,9 @@ def report(fit: FitResult, models: CandidateModels, selection: Selection, steps:
     return Diagnosis(
         model=fit.model,
         effects=base.effects,
-        baseline=Baseline(dict(ladder[0].error), base.offset, base.errors_with_mean, base.unstable),
+        baseline=Baseline(
+            dict(ladder[0].error), base.offset, base.errors_with_mean, base.unstable, base.transducer_offset
+        ),
         noise_floor=floor,
         horizon=selection.models.horizon,
         memory=selection.models.memory,
@@ -133,6 +135,7 @@ def _ranked(selection: Selection, floor: float | None, verdict: Verdict) -> list
             probability=verdict.probabilities.get(candidate.effect),
             error_with_mean=refit.errors_with_mean if refit else {},
             unstable=refit.unstable if refit else {},
+            transducer_offset=refit.transducer_offset if refit else {},
             evidence={"predicted_fall": candidate.prediction.reduction,
                       **evidence_figures(candidate.evidence, effect, candidate.improves)},
             why=why(candidate, effect, before, floor, i == 0),
@@ -163,4 +166,5 @@ def rung_of(added: str | None, before: FittedModel | None, refit: FittedModel) -
         parameters=refit.parameters,
         error_with_mean=refit.errors_with_mean,
         unstable=refit.unstable,
+        transducer_offset=refit.transducer_offset,
     )

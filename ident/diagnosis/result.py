@@ -10,6 +10,7 @@ from ident.diagnosis.discovery.proposal import Proposal, from_json
 from ident.diagnosis.parameter_estimate import ParameterEstimate
 from ident.diagnosis.verification import Standing
 from ident.errors import Unusable
+from ident.fit.result import TransducerOffset, large_offsets
 from ident.matrix import Matrix, StepOutcome
 from ident.plain import UNWRITTEN, WHERE_KNOWN, Misfit, read, written
 from ident.residuals.budget import Budget
@@ -29,11 +30,13 @@ class Judged:
     error: Errors
     error_with_mean: Errors
     unstable: Mapping[str, tuple[str, ...]]
+    transducer_offset: Mapping[str, TransducerOffset]
 
     def error_of(self, use: str) -> ErrorOf:
         """The error on the runs of a use as a reader reads it: a model that is unstable where it is fitted has none."""
         unstable = self.unstable.get("fit", ()) or self.unstable.get(use, ())
-        return ErrorOf(self.error.get(use), self.error_with_mean.get(use), unstable)
+        offset = large_offsets(self.transducer_offset)
+        return ErrorOf(self.error.get(use), self.error_with_mean.get(use), unstable, offset=offset)
 
 
 @dataclass(frozen=True)
@@ -44,6 +47,7 @@ class Baseline(Judged):
     offset: float | None = None
     error_with_mean: Errors = field(default_factory=dict, metadata=WHERE_KNOWN)
     unstable: Mapping[str, tuple[str, ...]] = field(default_factory=dict, metadata=WHERE_KNOWN)
+    transducer_offset: Mapping[str, TransducerOffset] = field(default_factory=dict, metadata=WHERE_KNOWN)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -65,6 +69,7 @@ class Ranked(Judged):
     why: str = ""
     error_with_mean: Errors = field(default_factory=dict, metadata=WHERE_KNOWN)
     unstable: Mapping[str, tuple[str, ...]] = field(default_factory=dict, metadata=WHERE_KNOWN)
+    transducer_offset: Mapping[str, TransducerOffset] = field(default_factory=dict, metadata=WHERE_KNOWN)
 
     @property
     def strength(self) -> ParameterEstimate | None:
@@ -87,6 +92,7 @@ class Rung(Judged):
     parameters: Mapping[str, ParameterEstimate] = field(default_factory=dict)
     error_with_mean: Errors = field(default_factory=dict, metadata=WHERE_KNOWN)
     unstable: Mapping[str, tuple[str, ...]] = field(default_factory=dict, metadata=WHERE_KNOWN)
+    transducer_offset: Mapping[str, TransducerOffset] = field(default_factory=dict, metadata=WHERE_KNOWN)
 
 
 @dataclass(frozen=True)

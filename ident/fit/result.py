@@ -55,16 +55,20 @@ class Undetermined:
 
 @dataclass(frozen=True)
 class TransducerOffset:
-    """What the transducer of a channel reads above the model, one number for all of its runs, in `unit`."""
+    """What the transducer of a channel reads above the model, one number for all of its runs, in `unit`.
+
+    A `large` one is the larger part of what the model leaves, so that every error is told with it.
+    """
 
     value: float
     unit: str
     std_error: float
+    large: bool = False
 
-    @property
-    def words(self) -> str:
-        """Its size: "3.2 V"."""
-        return quantity(self.value, self.unit)
+
+def large_offsets(offsets: Mapping[str, TransducerOffset]) -> str:
+    """The large ones in words: "3.2 V"."""
+    return " and ".join(quantity(one.value, one.unit) for one in offsets.values() if one.large)
 
 
 @dataclass(frozen=True)
@@ -233,14 +237,7 @@ class FitResult(Shown):
         meant = (run for run in self.runs if run.use == use and run.id not in self.left_out)
         unstable = tuple(run.id for run in meant if run.unstable)
         size_said = quantity(size, self.rmse_unit) if size else ""
-        return ErrorOf(self.error.get(use), with_mean, unstable, size_said, self._offset_of(use))
-
-    def _offset_of(self, use: str) -> str:
-        """The offsets that the error of a use is told after: where they are the larger part of what a model leaves."""
-        error, offset = self.error.get(use), self.offset.get(use)
-        if error is None or offset is None or not ErrorOf(error, math.hypot(error, offset)).mean_counts:
-            return ""
-        return " and ".join(one.words for one in self.transducer_offset.values())
+        return ErrorOf(self.error.get(use), with_mean, unstable, size_said, large_offsets(self.transducer_offset))
 
     @property
     def values(self) -> dict[str, float]:

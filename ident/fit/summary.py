@@ -135,9 +135,7 @@ def summarise(
             (*mean_errors, *verify_errors),
             {"fit": [run.share for run in mean_runs], "verify": [run.share for run in verify_runs]},
         ),
-        transducer_offset={
-            name: TransducerOffset(one.value, _unit_of(name, matrix), one.std_error) for name, one in offsets.items()
-        },
+        transducer_offset=told_offsets(offsets, matrix),
         fit_percent=fit_percent((*mean_errors, *verify_errors), with_mean),
         aic=None
         if window
@@ -337,6 +335,12 @@ def noticed(fit: FitResult, notice: str) -> FitResult:
     """A fit with one more notice of its matrix, the first of them."""
     at = sum(note.startswith(_SAID_FIRST) for note in fit.notes)
     return replace(fit, notes=(*fit.notes[:at], notice, *fit.notes[at:]))
+
+
+def told_offsets(offsets: Mapping[str, Offset], matrix: Matrix) -> dict[str, TransducerOffset]:
+    """The offsets of transducers as a result keeps them."""
+    return {name: TransducerOffset(one.value, _unit_of(name, matrix), one.std_error, one.large)
+            for name, one in offsets.items()}  # fmt: skip
 
 
 def _unit_of(channel: str, matrix: Matrix) -> str:

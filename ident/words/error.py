@@ -79,7 +79,7 @@ class ErrorOf:
     def _said(self, number: Callable[[float | None], str], size: str) -> str:
         if self.is_unstable:
             return unstable_on(self.unstable)
-        told = [f"after an offset of {self.offset}"] if self.offset else []
+        told = [f"after an offset of {self.offset}"] if self.offset and self.error is not None else []
         told += [f"with the mean {number(self.with_mean)}{size}"] if self.mean_counts else []
         return number(self.error) + (f" ({', '.join(told)})" if told else "")
 

@@ -21,7 +21,7 @@ from ident.fit.normal_matrices import output
 from ident.fit.settings import Settings
 from ident.matrix import Actuator, Matrix
 from ident.run import Run
-from ident.workflows import compare, identify
+from ident.workflows import compare, diagnose, identify
 
 RATE, SMALL = 200.0, {"population": 20.0, "generations": 6.0, "elite": 3.0}
 GAIN, TAU = 0.8, 0.05
@@ -66,6 +66,15 @@ def test_an_offset_is_found_shared_with_the_validation_data_and_said_in_the_firs
     assert compared.rmse["verify"] == pytest.approx(found.rmse["verify"], rel=1e-6)
     assert compared.offset["verify"] == pytest.approx(found.offset["verify"], rel=1e-6)
     assert "after an offset of" in compared.headline
+
+
+def test_a_diagnosis_says_the_offset_with_its_errors():
+    matrix = lag(5, 3.0)
+    found = diagnose(matrix, fitted(matrix), most=0, propose=False)
+    assert re.search(r"\(after an offset of [23]\.\d+ m\)", found.headline)
+    rung = found.ladder[0]
+    assert rung.transducer_offset["displacement"].large
+    assert rung.error_with_mean["verify"] < 1.2 * rung.error["verify"]
 
 
 def test_without_an_offset_nothing_is_found_and_the_fit_is_that_of_equation_17():
