@@ -60,8 +60,9 @@ class Window:
                 other.close()
             page.unroute_all(behavior="ignoreErrors")
             page.set_default_timeout(USUAL)
-            visit(page, f"{self._entrance.partition('?')[0]}sign-in")  # on which nothing goes on
-            page.evaluate("localStorage.clear()")
+            visit(page, "about:blank")
+            stored = {"origin": self._entrance.partition("/?")[0], "storageTypes": "local_storage"}
+            page.context.new_cdp_session(page).send("Storage.clearDataForOrigin", stored)
             page.emulate_media(color_scheme="null")
             page.set_viewport_size(SIZE)
 
