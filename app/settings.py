@@ -45,6 +45,8 @@ class Settings:
     webhook_hosts: tuple[str, ...] = ()  # the only ones that webhooks may reach: see app/webhooks/hosts.py
     webhook_key: str = field(default_factory=lambda: os.environ.get("SERVOIDENT_WEBHOOK_KEY", ""), repr=False)
     keep_raw: int | None = None  # days for which raw runs that no set in force needs are kept; for ever where None
+    laboratory: str = ""  # of reports, where neither the data set nor the request names one
+    logo: Path | None = None  # PNG or JPEG at the head of reports
     executor: str = "servoident-1"  # of the job queue; one process an executor
 
     @property

@@ -7,6 +7,7 @@ from typing import Annotated
 import typer
 
 from app.cli.data_options import Blobs, Data, Database, Log, settings
+from app.cli.report_options import Laboratory, Logo, checked
 from app.cli.serving import LOOPBACK, address, run
 from ident.errors import Unusable
 
@@ -54,6 +55,8 @@ def serve(
     rate: Rate = 100.0,
     webhook_host: WebhookHosts = None,
     keep_raw: KeepRaw = None,
+    laboratory: Laboratory = "",
+    logo: Logo = None,
 ) -> None:
     """Run the service: pages, HTTP interface and job queue.
 
@@ -76,6 +79,8 @@ def serve(
         log=log,
         webhook_hosts=tuple(webhook_host or []),
         keep_raw=keep_raw,
+        laboratory=laboratory,
+        logo=checked(logo),
     )
     run(chosen, lambda: print(f"servoident: {address(chosen)}/?token={chosen.token}  (Ctrl-C stops it)", flush=True))
 

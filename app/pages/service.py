@@ -150,7 +150,7 @@ def own_list(context: Context) -> Shown:
 
 def compared(context: Context, wanted: Sequence[str]) -> tuple[str, Shown]:
     """The page of two fits or more, by their ids, one each or with commas between; raises Failure 404, 422."""
-    names = list(dict.fromkeys(name for several in wanted for name in several.split(",") if name))
+    names = [name for several in wanted for name in several.split(",") if name]
     if not 2 <= len(names) <= MOST:
         what, remedy = f"{count(len(names), 'fit')} to compare", f"give 2 to {MOST}: /compare?fits=A,B"
         raise Failure(422, "bad-request", what, "fits", remedy)

@@ -8,6 +8,7 @@ from typing import Literal
 
 from markupsafe import Markup
 
+from app.report.sheet import Logo
 from ident.figures.render import Chart
 
 
@@ -78,13 +79,22 @@ class Figure:
 
 @dataclass(frozen=True)
 class Facts:
-    """Names and what they stand for."""
+    """Names and what they stand for; in two columns where they are not `wide`."""
 
     pairs: tuple[tuple[str, str], ...]
+    wide: bool = True
     kind: str = field(default="facts", init=False)
 
 
-Block = Heading | Text | Table | Tables | Figure | Facts
+@dataclass(frozen=True)
+class Signatures:
+    """Lines to be signed: for what, and who is known to have done it, with the date."""
+
+    lines: tuple[tuple[str, str, str], ...]
+    kind: str = field(default="signatures", init=False)
+
+
+Block = Heading | Text | Table | Tables | Figure | Facts | Signatures
 
 
 @dataclass(frozen=True)
@@ -94,3 +104,4 @@ class Report:
     title: str
     lead: str
     blocks: Sequence[Block]
+    logo: Logo | None = None

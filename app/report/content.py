@@ -5,8 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from app.fits.rows import combination_rows, error_rows, parameter_rows
-from app.report.blocks import Block, Facts, Figure, Formula, Heading, Report, Table, Tables, Text
+from app.report.blocks import Block, Facts, Figure, Formula, Heading, Report, Signatures, Table, Tables, Text
 from app.report.rows import budget_rows, candidate_rows, curve_rows, group_tables, ladder_steps, trend_rows
+from app.report.sheet import NOTHING_STATED, Sheet, facts
 from ident.checks.check import check
 from ident.custom.definition import preset_with
 from ident.diagnosis.recommended import next_command
@@ -28,35 +29,50 @@ from ident.words.titles import with_effects
 from ident.words.uses import data
 from ident.workflows import compare, study
 
+WRITTEN = "……………"
+"""Stands where a data sheet leaves room to write by hand."""
 CAPTIONS = {
     "bode": "Frequency response, measured and model",
     "residual-map": "Error of each run over frequency",
     "residual-curve": "Missing nonlinearity versus internal signals",
     "time": "Time record, part of one run",
+    "step": "Step response of the model",
 }
 
 
-def content(matrix: Matrix, fit: FitResult, diagnosis: Diagnosis | None = None) -> Report:
+def content(
+    matrix: Matrix, fit: FitResult, diagnosis: Diagnosis | None = None, sheet: Sheet = NOTHING_STATED
+) -> Report:  # fmt: skip
     """The report of a fit. Raises Unusable where the fit is of another model's data."""
     found = survey(compare(matrix, fit))
     model = preset_with(fit.model, fit.effects, fit.settings.get("custom", ()))
     title = with_effects(model.title, fit.effects)
     blocks = [
+        Facts(tuple((name, value or WRITTEN) for name, value in facts(sheet, matrix, fit)), wide=False),
         *([Text(_verdict(diagnosis), "verdict")] if diagnosis else ()),
         *_error(fit, found),
         *_parameters(fit),
         Heading("Measurement and model"),
         _drawn("bode", matrix, fit),
         _drawn("time", matrix, fit),
+        _drawn("step", matrix, fit),
         *_failing(matrix, fit, found),
         *(_missing(diagnosis, matrix) if diagnosis else ()),
         *_data(matrix),
         Heading("Provenance"),
         Facts(_provenance(fit, model.citation)),
+        Heading("Signatures"),
+        _signatures(sheet, matrix),
     ]
     lead = f"{fit.method}, seed {fit.seed} · {len(fit.runs)} runs · servoident {fit.version}"
     errors = errors_line({use: fit.error_of(use) for use in USES}, percent_in_print)
-    return Report(f"{matrix.actuator.serial}: {title}", f"Error {errors} · {lead}", blocks)
+    return Report(f"{matrix.actuator.serial}: {title}", f"Error {errors} · {lead}", blocks, sheet.logo)
+
+
+def _signatures(sheet: Sheet, matrix: Matrix) -> Signatures:
+    test, approval = sheet.test.over(matrix.test), sheet.approval
+    approved = ("", "") if approval is None else (approval.who, approval.since[:10])
+    return Signatures((("Tested", test.operator, test.date), ("Checked", "", ""), ("Approved", *approved)))
 
 
 def _error(fit: FitResult, found: Survey) -> Iterator[Block]:

@@ -11,6 +11,7 @@ from typing import Any
 
 from app.report.blocks import Block, Figure, Report, Table, Tables
 from app.report.content import content
+from app.report.sheet import NOTHING_STATED, Sheet
 from ident.diagnosis.result import Diagnosis
 from ident.figures import render
 from ident.fit.result import FitResult
@@ -20,9 +21,9 @@ TEMPLATE = Path(__file__).parent / "templates" / "report.typ"
 _LONG = 24  # characters from which a column of text takes what width is left
 
 
-def paper(matrix: Matrix, fit: FitResult, diagnosis: Diagnosis | None = None) -> bytes:
+def paper(matrix: Matrix, fit: FitResult, diagnosis: Diagnosis | None = None, sheet: Sheet = NOTHING_STATED) -> bytes:
     """The PDF, the same bytes for the same fit. Raises Unusable where the fit is of another model's data."""
-    return typeset(content(matrix, fit, diagnosis))
+    return typeset(content(matrix, fit, diagnosis, sheet))
 
 
 def typeset(report: Report) -> bytes:
@@ -32,7 +33,10 @@ def typeset(report: Report) -> bytes:
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         blocks = [_piece(block, folder) for block in report.blocks]
-        told = {"title": report.title, "lead": report.lead, "blocks": blocks}
+        told = {"title": report.title, "lead": report.lead, "blocks": blocks, "logo": None}
+        if report.logo:
+            told["logo"] = f"logo.{report.logo.ending}"
+            (folder / f"logo.{report.logo.ending}").write_bytes(report.logo.content)
         (folder / "report.json").write_text(json.dumps(told, ensure_ascii=False), encoding="utf-8")
         (folder / "report.typ").write_bytes(TEMPLATE.read_bytes())
         return typst.compile(folder / "report.typ", root=folder, format="pdf", timestamp=0)

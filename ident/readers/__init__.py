@@ -102,7 +102,10 @@ def read_source(source: Source, limits: Limits = LIMITS) -> Matrix:
         profile = source.read(described.profile, limits.description)
         actuator = replace(actuator, rig=rig_in(profile, described.profile))
         digest = hashlib.sha256(digest.encode() + profile).hexdigest()
-    return Matrix(actuator, runs, digest, described.controller, described.limits, stated, notices, described.machine)
+    return Matrix(
+        actuator, runs, digest, described.controller, described.limits, stated, notices, described.machine,
+        test=described.test,
+    )  # fmt: skip
 
 
 def limits_text(source: Source, name: str, limits: Limits) -> str:

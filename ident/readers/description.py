@@ -16,9 +16,11 @@ from ident.readers.rig import rig_of
 from ident.readers.run_description import RunDescription, describe_run
 from ident.readers.source import DESCRIPTION, inside
 from ident.readers.strict_yaml import read_yaml
+from ident.readers.test_description import describe_test
+from ident.rig.test_record import UNSTATED, TestRecord
 from ident.units.quantity import shown
 
-TOP = ("actuator", "runs", "controller", "machine", "limits", "rig")
+TOP = ("actuator", "runs", "controller", "machine", "limits", "rig", "test")
 ACTUATOR = ("serial", "name", "batch", "piston_area", "stroke", "volume", "supply_pressure", "servo_valve", "notes")
 
 
@@ -32,6 +34,7 @@ class Description:
     limits: str | None
     machine: str
     profile: str = ""
+    test: TestRecord = UNSTATED
 
 
 def describe(text: bytes, limits: Limits) -> Description:
@@ -58,7 +61,8 @@ def _described(data: Any, limits: Limits) -> Description:
         profile = inside(top.text("rig"), top.place("rig"))
     elif rig is not None:
         actuator = replace(actuator, rig=rig_of(rig))
-    return Description(actuator, runs, controller, bounds, machine, profile)
+    test = describe_test(top.data["test"]) if "test" in top else UNSTATED
+    return Description(actuator, runs, controller, bounds, machine, profile, test)
 
 
 def describe_actuator(data: Any) -> Actuator:

@@ -60,10 +60,10 @@ def test_nothing_is_loaded_and_nothing_runs(told):
 
 
 def test_every_figure_is_drawn_and_no_two_share_a_name(told):
-    """Bode, time, map, curves and ladder as SVG, each clipped by its own paths."""
+    """Bode, time, step, map, curves and ladder as SVG, each clipped by its own paths."""
     found = Elements()
     found.feed(told)
-    assert found.tags.count("svg") == 5
+    assert found.tags.count("svg") == 6
     assert len(found.names) == len(set(found.names))
     assert set(re.findall(r"url\(#([^)]+)\)", told)) <= set(found.names)
 
