@@ -7,6 +7,8 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from ident.noise.resolution import resolution
+
 Samples = NDArray[np.float64]
 Beginning = Literal["at rest", "standing", "moving"]
 ROUNDING = 1e-9  # of a command's largest value: it is held but for rounding
@@ -14,6 +16,7 @@ SLOW = 0.05  # of the typical speed: slower is standing still
 AT_ZERO = 0.02  # of the record's standard deviation: nearer is at zero, and as near is the same place
 ERRORS = 4.0  # standard errors within which a value or a speed is nothing, too
 MOST_NOISE = 0.03  # of the record's standard deviation: what is taken for noise, however rough the record
+COARSEST = 0.1  # of the record's standard deviation: a coarser step is one of the signal, not of its reading
 DRIVEN = 0.05  # of the command's standard deviation: a first value beyond it is a step at the first sample
 STEP_ANSWER = 0.05  # of the record's standard deviation: what a record of a single step may begin at
 LEAST_HELD = 16  # samples that a command is held
@@ -30,7 +33,8 @@ def beginning(x: Samples, command: Samples | None, sample_rate: float, stepped: 
     A line is fitted to the first millisecond (at least 4 samples): a servo-hydraulic machine needs longer than
     that to follow a jump of its command; of few samples a second two say it. A command is `stepped` that is held from
     the first sample to the last. Still: speed below 5 % of the typical speed; at zero: value below 2 % of the
-    record's deviation; or either within 4 standard errors of zero. About one moving record in a thousand passes.
+    record's deviation; or either within 4 standard errors of zero, or a reading in steps at the first step from zero.
+    About one moving record in a thousand passes.
     """
     n = _first(x, sample_rate)
     size, speed = float(np.std(x)), float(np.std(x[n:] - x[:-n])) / n
@@ -42,8 +46,9 @@ def beginning(x: Samples, command: Samples | None, sample_rate: float, stepped: 
             return "at rest"  # the step comes with the first sample, and what follows it is its answer
     slope_error = noise * np.sqrt(12.0 / (n * (n**2 - 1)))
     value_error = np.hypot(noise / np.sqrt(n), slope_error * (n - 1) / 2)
+    step = found if (found := resolution(x)) <= COARSEST * size else 0.0
     still = abs(slope) <= max(SLOW * speed, ERRORS * slope_error)
-    if still and abs(value) <= max(AT_ZERO * size, ERRORS * value_error):
+    if still and abs(value) <= max(AT_ZERO * size, ERRORS * value_error, 1.5 * step):
         return "at rest"
     return "standing" if still and standing_for(x, command, sample_rate) else "moving"
 

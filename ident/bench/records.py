@@ -12,6 +12,7 @@ from ident.bench.sine_fit import dominant
 from ident.cached import cached_property
 from ident.errors import Unusable
 from ident.matrix import Matrix
+from ident.noise.resolution import resolution
 from ident.run import BENCH, Run
 from ident.words.run_name import run_name
 
@@ -183,12 +184,3 @@ def step_of(records: Sequence[Record]) -> float:
 def _in_steps(position: Array, step: float) -> bool:
     off = (position - position[0]) / step
     return bool(np.max(np.abs(off - np.round(off))) < _OFF_GRID)
-
-
-def resolution(position: Array) -> float:
-    """The smallest step of a reading, m: of a converter its last bit; 0 where the reading is not in steps."""
-    changes = np.abs(np.diff(position))
-    changes = changes[changes > 1e-9 * np.max(np.abs(position))]  # below it is the rounding of the values themselves
-    if not len(changes) or len(changes) > 0.9 * len(position):
-        return 0.0
-    return float(np.min(changes))

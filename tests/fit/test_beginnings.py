@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
+from ident.beginning import beginning
 from ident.diagnosis.candidate_models import CandidateModels
 from ident.fit.identification import Identification, completed
 from ident.fit.normal_matrices import NormalMatrices
@@ -310,3 +311,11 @@ def test_where_a_specimen_stands_is_not_told_by_a_force_of_nothing():
     for channels, begins in ((recorded, "moving"), (recorded | {"displacement": motion}, "at rest")):
         run = Run("r", "", 100.0, channels, output="force").driven_by("velocity")
         assert run.begins == begins
+
+
+@pytest.mark.parametrize(("counts", "begins"), [(1, "at rest"), (5, "moving")])
+def test_a_reading_that_stands_at_a_count_of_its_encoder_is_at_rest(counts, begins):
+    """The first count of an encoder is as near to zero as it can tell; five of its counts are another place."""
+    time = np.arange(2000) / 500.0
+    encoder = np.round(40.0 * np.sin(2 * np.pi * np.maximum(time - 0.1, 0.0))) + counts
+    assert beginning(encoder, np.sin(2 * np.pi * time), 500.0) == begins
