@@ -7,7 +7,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from ident.noise.resolution import resolution
+from ident.resolution import resolution
 
 Samples = NDArray[np.float64]
 Beginning = Literal["at rest", "standing", "moving"]

@@ -12,7 +12,7 @@ from ident.bench.sine_fit import dominant
 from ident.cached import cached_property
 from ident.errors import Unusable
 from ident.matrix import Matrix
-from ident.noise.resolution import resolution
+from ident.resolution import resolution
 from ident.run import BENCH, Run
 from ident.words.run_name import run_name
 

@@ -11,7 +11,7 @@ from ident.bench.motion import groups
 from ident.bench.observed import Observed
 from ident.bench.records import Record, bench_set
 from ident.bench.speed import _constant
-from ident.noise.resolution import resolution
+from ident.resolution import resolution
 from tests.bench.sets import as_matrix
 from tests.reference import kononykhin_reference as reference
 from tests.rounding import moved, perturbed
