@@ -93,8 +93,8 @@ class Strikes:
 
     def _asked(self, path: str) -> dict[str, object]:
         try:
-            answer = httpx.get(
-                f"{self.world.address}/api/v1{path}", headers={"Authorization": f"Bearer {TOKEN}"}, timeout=10
+            answer = self.world.http.get(
+                f"{self.world.address}/api/v1{path}", headers={"Authorization": f"Bearer {TOKEN}"}
             )
             return dict(answer.json()) if answer.status_code == 200 else {}
         except (httpx.HTTPError, ValueError):

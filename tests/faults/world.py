@@ -36,6 +36,7 @@ class World:
         self.clock.write_text("0", encoding="utf-8")
         self.shim = built(folder)
         self.names = ("servoident-1", "one", "two") if server else ("servoident-1",)
+        self.http = httpx.Client(timeout=10)  # one: the certificates, which nothing here shows, are read for each
         self.nursery = Nursery(self.environment())
         self.processes: dict[str, int] = {}
 
@@ -86,7 +87,7 @@ class World:
         deadline = time.monotonic() + PATIENCE
         while time.monotonic() < deadline:
             try:
-                if httpx.get(f"{self.address}/api/v1/ready", timeout=10).status_code == 200:
+                if self.http.get(f"{self.address}/api/v1/ready").status_code == 200:
                     return
             except httpx.TransportError:
                 pass
@@ -130,4 +131,5 @@ def world(folder: Path, database: str, *, in_s3: bool, on_disks: bool) -> Iterat
             for name in made.processes:
                 made.kill(name)
             made.nursery.close()
+            made.http.close()
             made.kept()
