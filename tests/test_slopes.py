@@ -153,3 +153,28 @@ def test_what_a_motion_covers_between_two_samples_is_known_where_it_brakes_there
 
 def test_of_noise_no_mean_is_beyond_that_of_the_samples():
     assert not np.any(bends(np.random.default_rng(1).standard_normal(2000)))
+
+
+def noisy_sine(period: float, noise: float, seed: int = 5) -> tuple[np.ndarray, np.ndarray]:
+    """A sine that is read with white noise, and its slope per sample."""
+    angle = 2.0 * np.pi * np.arange(6000) / period + 0.3
+    read = np.sin(angle) + noise * np.random.default_rng(seed).standard_normal(len(angle))
+    return read, 2.0 * np.pi / period * np.cos(angle)
+
+
+@pytest.mark.parametrize(("period", "noise", "times"), [(250, 1e-3, 5.0), (1000, 1e-3, 20.0), (60, 3e-3, 1.5)])
+def test_a_slope_of_a_noisy_position_is_nearer_to_the_speed(period, noise, times):
+    """Than a difference over two samples by so many times, the ends included; without noise it is that difference."""
+    read, slope = noisy_sine(period, noise)
+    found, central = slopes(read, 2), np.gradient(read)
+    assert np.std(central - slope) > times * np.std(found - slope)
+    assert np.abs((found - slope)[:40]).max() < np.abs((central - slope)[:40]).max()
+    clean, _ = noisy_sine(period, 0.0)
+    assert np.array_equal(slopes(clean, 2)[1:-1], np.gradient(clean)[1:-1])
+
+
+@pytest.mark.parametrize("noise", [1e-3, 1e-2])
+def test_a_slope_is_smoothed_no_wider_than_it_bends(noise):
+    """Twenty samples a period hold no line of five: what is left of the slope is its noise, and not its bend."""
+    read, slope = noisy_sine(20, noise)
+    assert np.std(slopes(read, 2) - slope) <= 1.05 * np.std(np.gradient(read) - slope)

@@ -15,7 +15,7 @@ def show_diagnosis(found: Diagnosis, file: str = "D.json") -> None:
 
     `file` is where its JSON was written.
     """
-    from ident.diagnosis.recommended import next_command
+    from ident.diagnosis.recommended import next_command, next_run_command
 
     show(found.listings())
     console = output()
@@ -25,4 +25,6 @@ def show_diagnosis(found: Diagnosis, file: str = "D.json") -> None:
         console.print(proposed_text(found.proposals), markup=False)
     if command := next_command(found, file):
         console.print(command, markup=False)
+    if run := next_run_command(found, file):
+        console.print(run, markup=False)
     console.print(f"seed {found.seed}: {found.seconds:.2f} s")

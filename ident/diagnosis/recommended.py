@@ -88,6 +88,11 @@ def next_command(found: Diagnosis, file: str = "D.json") -> str:
     return said([command, *([message("recommended.terms")] if proposals else [])])
 
 
+def next_run_command(found: Diagnosis, file: str = "D.json") -> str:
+    """The command that writes the proposed run, in a sentence; "" where none is proposed."""
+    return "" if found.next_experiment is None else str(message("recommended.run", file=file))
+
+
 def end_with(found: Diagnosis, effects: Sequence[str]) -> End | None:
     """The refit of the model with just these effects and terms added to the fitted one; None where there was none."""
     wanted = {*found.effects, *effects}

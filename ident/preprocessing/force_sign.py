@@ -20,14 +20,14 @@ GIVES_BACK = Threshold(
 
 
 def work(run: Run) -> float | None:
-    """mean(F v) over the product of the sizes, −1 … 1; None where the run has no force and speed of its own.
+    """mean(F v) over the product of the sizes, −1 … 1; None where the run has no force and motion of its own.
 
     The larger of that as recorded and that without the means: a force that is not zeroed does work only where the
     motion goes one way, and a specimen that is moved one way takes its work by the means.
     """
-    if run.output != "force" or not {"force", "velocity"} <= run.channels.keys():
+    if run.output != "force" or "force" not in run.channels or run.channels.keys().isdisjoint(MOTIONS):
         return None
-    recorded = run.channels["force"], run.channels["velocity"]
+    recorded = run.channels["force"], run.driven_by("velocity").command
     return max(_product(*recorded), _product(*(samples - samples.mean() for samples in recorded)))
 
 

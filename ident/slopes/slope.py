@@ -28,6 +28,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ident.slopes.brakes import SAME, brakes
+from ident.slopes.smoothing import smoothed_slope
 
 Array = NDArray[np.float64]
 _JUMPS = (
@@ -41,9 +42,13 @@ _NEAR_END = 5  # samples from which the slope at an end is told
 def slopes(signal: Array, order: int) -> Array:
     """The slope per sample of a signal (n,) that is smooth but for jumps of its derivative of an `order`, 1 or 2.
 
+    Where the noise of a signal matters to its slope, lines through more samples serve: :mod:`ident.slopes.smoothing`.
+
     Of order 1, a speed whose rate jumps, lines through two samples of a side serve; of order 2, a position whose second
     rate jumps, parabolas through three.
     """
+    if (smoothed := smoothed_slope(signal)) is not None:
+        return smoothed
     central = np.gradient(signal)
     differences = np.abs(np.diff(signal, order + 1))
     if len(differences) < order + 1:

@@ -233,6 +233,7 @@ SEARCH: Mapping[str, str] = {
     "recommended":
         "`servoident fit MATRIX --start {file}` makes the recommended fit, with {effects:titles}. It begins where the "
         "diagnosis ended, at an error of {error:percent}.",
+    "recommended.run": "`servoident next MATRIX --diagnosis {file} --out DIR` writes the proposed run.",
     "recommended.terms": "--terms N takes the first N of the proposed terms, 0 none.",
     "run.next": "Run a {conditions}.",
     "run.separates": "After a refit, {models:all} differ by {separation:.3g} standard deviations of the noise.",

@@ -12,8 +12,8 @@ import numpy as np
 import pytest
 
 from ident.custom.definition import read_effect
-from ident.diagnosis.recommended import End, next_command, recommended, settings_after
-from ident.diagnosis.result import Diagnosis, Rung
+from ident.diagnosis.recommended import End, next_command, next_run_command, recommended, settings_after
+from ident.diagnosis.result import Diagnosis, NextRun, Rung
 from ident.errors import Unusable
 from ident.fit.result import FitResult
 from ident.fit.settings import Settings
@@ -155,6 +155,10 @@ def test_the_command_that_comes_next_names_the_model_its_error_and_the_file():
     told = next_command(found, "found.json")
     assert told.startswith("`servoident fit MATRIX --start found.json` makes the recommended fit, with ")
     assert "--terms N" in told
+    assert next_run_command(replace(found, next_experiment=None)) == ""
+    proposed = NextRun(amplitude=1e-3, signal="blwn", frequency=10.0, seconds=5.0, sample_rate=1000.0)
+    run = next_run_command(replace(found, next_experiment=proposed), "found.json")
+    assert run == "`servoident next MATRIX --diagnosis found.json --out DIR` writes the proposed run."
     nothing = replace(found, proposals=(), ladder=found.ladder[:1])
     assert next_command(nothing) == ""
     earlier = replace(found, proposals=(), ladder=tuple(replace(rung, parameters={}) for rung in found.ladder))

@@ -35,3 +35,11 @@ def test_a_specimen_that_is_moved_one_way_takes_its_work_by_the_means() -> None:
 def test_the_sign_of_a_force_is_found_whatever_its_zero_is(offset: float) -> None:
     assert gives_work_back(recorded(TO_AND_FRO, -friction(TO_AND_FRO) + offset))
     assert not gives_work_back(recorded(TO_AND_FRO, friction(TO_AND_FRO) + offset))
+
+
+def test_of_a_position_the_sign_is_found_by_its_rate() -> None:
+    position = 0.3 * np.sin(2.0 * np.pi * TIME)
+    for sign in (1.0, -1.0):
+        force = sign * friction(0.6 * np.pi * np.cos(2.0 * np.pi * TIME)) + 8.0 * position
+        channels, units = {"displacement": position, "force": force}, {"displacement": "m", "force": "N"}
+        assert gives_work_back(Run("r", "", 200.0, channels, units, output="force")) is (sign < 0)
