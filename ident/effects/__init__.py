@@ -73,6 +73,7 @@ OF_RECORDS = _of_files(
     "arm_gravity",
     "damping_asymmetry",
     "sensor_curve",
+    "rectified_sensor",
 )
 """Those that only some records can show: what they read is measured, or what they need is there."""
 CATALOGUE = (*EFFECTS, *OF_RECORDS, *OF_BENCH)

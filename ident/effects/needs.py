@@ -26,14 +26,24 @@ def force_answers(matrix: Matrix) -> bool:
     return all(run.output == "force" for run in matrix.runs)
 
 
-def one_sided_output(matrix: Matrix) -> bool:
-    """Whether the output stays on one side of zero: a curve of even order bends nothing about zero."""
-    return all(one_sided(run.measured) for run in matrix.runs)
+def one_sided_position(matrix: Matrix) -> bool:
+    """Whether a measured position, such as a level, stays on one side of zero: about zero a curve bends nothing."""
+    return all(run.output == "displacement" and one_sided(run.measured) for run in matrix.runs)
 
 
 def one_sided_command(matrix: Matrix) -> bool:
     """Whether the command stays on one side of zero: what drives then pushes and lets go, and never pulls."""
     return all("command" in run.channels and one_sided(run.command) for run in matrix.runs)
+
+
+def rectified(matrix: Matrix) -> bool:
+    """Whether a speed stays on one side of zero although its command does not."""
+    speeds = all(run.output == "velocity" and "command" in run.channels for run in matrix.runs)
+    return (
+        speeds
+        and all(one_sided(run.measured) for run in matrix.runs)
+        and not any(one_sided(run.command) for run in matrix.runs)
+    )
 
 
 def one_sided(samples: NDArray[np.float64]) -> bool:

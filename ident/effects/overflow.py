@@ -1,7 +1,7 @@
 """What is stored runs over an edge."""
 
 from ident.effects.effect import Effect
-from ident.effects.needs import one_sided_output
+from ident.effects.needs import one_sided_position
 from ident.parameter import Parameter, Starts
 
 OVERFLOW = Effect(
@@ -20,5 +20,5 @@ OVERFLOW = Effect(
     looks="flat tops at one level, however large the command is",
     source="weir, made linear in the small height above its edge",
     steps=2,
-    needs=one_sided_output,
+    needs=one_sided_position,
 )  # fmt: skip

@@ -1,7 +1,7 @@
 """What is stored runs out with the square root of its level."""
 
 from ident.effects.effect import Effect
-from ident.effects.needs import one_sided_output
+from ident.effects.needs import one_sided_position
 from ident.parameter import Parameter
 
 ROOT_OUTFLOW = Effect(
@@ -14,6 +14,6 @@ ROOT_OUTFLOW = Effect(
     shape=(Parameter("level", "xr", "m", 1e-3, 1e2, 1.0, "level at which root and straight line meet", relative=1.0),),
     looks="a time constant and a gain that grow with the level",
     source="Torricelli 1643, outflow a sqrt(2 g x); Schoukens and Noël 2017",
-    needs=one_sided_output,
+    needs=one_sided_position,
     unless="hr",
 )

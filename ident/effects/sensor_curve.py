@@ -1,7 +1,7 @@
 """The transducer's curve bends to one side."""
 
 from ident.effects.effect import Effect
-from ident.effects.needs import one_sided_output
+from ident.effects.needs import one_sided_position
 from ident.parameter import Parameter
 
 SENSOR_CURVE = Effect(
@@ -15,5 +15,5 @@ SENSOR_CURVE = Effect(
     units={"y": "m"},
     looks="a gain that changes with the level, in open loop without a change of dynamics",
     source="terminal-based linearity of a level or pressure gauge, its second-order term",
-    needs=one_sided_output,
+    needs=one_sided_position,
 )

@@ -1,7 +1,7 @@
 """The upper of two tanks runs over an edge."""
 
 from ident.effects.effect import Effect
-from ident.effects.needs import one_sided_output
+from ident.effects.needs import one_sided_position
 from ident.parameter import Parameter
 
 UPPER_OVERFLOW = Effect(
@@ -17,5 +17,5 @@ UPPER_OVERFLOW = Effect(
     looks="a large command moves the level no more than a smaller one that lasts as long",
     source="weir, made linear in the small height above its edge; Schoukens and Noël 2017",
     steps=2,
-    needs=one_sided_output,
+    needs=one_sided_position,
 )

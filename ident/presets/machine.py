@@ -138,7 +138,7 @@ def _given(of: Description) -> dict[str, str]:
     """The signal that shows each channel that the machine has."""
     given = {"load_pressure": "P"} if of.hydraulic else {}
     if of["load"] != "none" or of["flow"] == "to_speed":
-        given |= {"displacement": "X", "velocity": "v"}
+        given |= {"displacement": "X", "velocity": "vy"}
     if of["flow"] != "to_speed" and of["load"] != "measured_force":
         given |= {"force": "F"}
     return given

@@ -127,7 +127,8 @@ def _allows(model: Preset, run: Described) -> bool:
 
 def _one_sided(run: Described) -> bool:
     """Whether a run that was read shows a command and an output that stay on one side of zero."""
-    return isinstance(run, Run) and "command" in run.channels and one_sided(run.command) and one_sided(run.measured)
+    recorded = isinstance(run, Run) and {"command", run.output} <= {*run.channels}
+    return recorded and one_sided(run.channels["command"]) and one_sided(run.channels[run.output])
 
 
 def _rank(model: Preset, runs: Sequence[Described]) -> int:

@@ -12,10 +12,12 @@ IDEAL_SENSOR = stage(
         Quantity("y_fb", "m", "reading of the transducer, input of the controller"),
         Quantity("v_fb", "m/s", "rate of the reading"),
         Quantity("y", "m", "position that is recorded"),
+        Quantity("vy", "m/s", "speed that is recorded"),
     ),
     ("y_fb = X", "ideal displacement transducer in the loop"),
     ("v_fb = v", "it follows the rod at once"),
     ("y = y_fb", "the record shows the reading of the transducer"),
+    ("vy = v", "a transducer of the speed reads it as it is"),
 )
 
 

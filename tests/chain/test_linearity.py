@@ -23,8 +23,12 @@ def with_stage(old, new) -> Chain:
     return replace(QIAN, stages=tuple(new if one is old else one for one in QIAN.stages))
 
 
-def test_the_cores_are_linear_but_kononykhins_and_the_one_with_overlap_and_friction():
-    assert {name for name, known in PRESETS.items() if not known.chain.is_linear} == {"kononykhin", "strano"}
+def test_the_cores_are_linear_but_kononykhins_tanks_and_the_one_with_overlap_and_friction():
+    assert {name for name, known in PRESETS.items() if not known.chain.is_linear} == {
+        "kononykhin",
+        "strano",
+        "two_tanks",
+    }
 
 
 def test_a_square_root_and_a_measured_force_are_not():

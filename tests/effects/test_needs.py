@@ -76,6 +76,12 @@ def tanks(edge: float) -> np.ndarray:
     return solved(rates, 2)[1]
 
 
+def counted(share: float) -> np.ndarray:
+    """The speed of a motor that a command drives, some of it without its sign."""
+    speed = solved(lambda t, s: [(at(FORCE, t) - DAMPING * s[0]) / MASS], 1)[0]
+    return speed + share * (np.abs(speed) - speed)
+
+
 def dry(v: float) -> float:
     """The direction of sliding; so steep that what creeps is far below what is compared."""
     return float(np.tanh(v / 1e-4))
@@ -90,6 +96,7 @@ class Case:
     machine: Callable[[float], np.ndarray]
     channels: dict[str, np.ndarray]
     close: float = 2e-3  # of the output's deviation
+    output: str = "displacement"
 
 
 def bent(curvature: float) -> np.ndarray:
@@ -120,6 +127,8 @@ CASES = {
     "arm_gravity": Case(
         "drive", {"arm_gravity.torque": 30.0, "arm_gravity.hanging": 0.5},
         lambda k: mass(lambda _t, x, _v: 30.0 * k * np.sin(x - 0.5)), {}),
+    "rectified_sensor": Case(
+        "motor", {"rectified_sensor.share": 0.8}, lambda k: counted(0.8 * k), {}, output="velocity"),
 }  # fmt: skip
 
 
@@ -130,10 +139,10 @@ def test_each_of_them_has_a_machine_here():
 def ours(case: Case, factor: float) -> np.ndarray:
     (name,) = {value.partition(".")[0] for value in case.values}
     model = preset(case.model, (name,))
-    drive = FORCE if case.model == "drive" else LEVEL
-    channels = {"command": drive, "displacement": np.zeros_like(drive), **case.channels}
+    drive = FORCE if case.model in ("drive", "motor") else LEVEL
+    channels = {"command": drive, case.output: np.zeros_like(drive), **case.channels}
     units = {"vertical_load": "N", "load_pressure": "Pa"}
-    run = Run("r", "", RATE, channels, units, assumed_beginning="at rest")
+    run = Run("r", "", RATE, channels, units, assumed_beginning="at rest", output=case.output)
     model, matrix = model.for_matrix(Matrix(Actuator("A"), (run,)))
     known = {p.in_equations: p.value for p in model.parameters} | conditions(run, matrix.actuator)
     own = {
@@ -142,6 +151,7 @@ def ours(case: Case, factor: float) -> np.ndarray:
         "tau1": TAU,
         "tau2": TAU,
         "hr": TURBULENT,
+        "Kt": 1.0,
         "m0": MASS,
         "c0": DAMPING,
         "k0": STIFFNESS,
@@ -164,7 +174,8 @@ def test_the_kernel_agrees_with_the_physics_and_a_strength_that_is_off_by_a_tent
 
 
 def candidates(model: str, units: dict[str, str], **channels: np.ndarray) -> set[str]:
-    run = Run("r", "", RATE, channels, units, output="displacement")
+    output = "velocity" if "velocity" in channels else "displacement"
+    run = Run("r", "", RATE, channels, units, output=output)
     return set(CandidateModels.of(Matrix(Actuator("A"), (run,)), Settings(model=model)).effects)
 
 
@@ -185,6 +196,10 @@ def test_an_effect_is_looked_for_only_where_the_record_could_show_it():
     assert not of_records & candidates("drive", driven, **recorded)
     found = candidates("drive", driven, vertical_load=SQUEEZE, load_pressure=SQUEEZE, **recorded)
     assert of_records & found == {"normal_force_friction", "pressure_friction"}
+    speed, volts = np.cos(T), {"command": "V", "velocity": "rad/s"}
+    assert not of_records & candidates("motor", volts, command=FORCE, velocity=speed)
+    assert of_records & candidates("motor", volts, command=FORCE, velocity=np.abs(speed)) == {"rectified_sensor"}
+    assert "rectified_sensor" not in candidates("motor", volts, command=LEVEL, velocity=np.abs(speed))
     turning = {"command": "N*m", "displacement": "rad"}
     assert of_records & candidates("drive", turning, **recorded) == {"arm_gravity"}
 

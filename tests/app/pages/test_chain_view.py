@@ -12,16 +12,16 @@ from ident.fit.settings import Settings
 from ident.presets import PRESETS, preset
 
 TAKEN = {
-    "qian2014": 45,
-    "first_order": 17,
-    "two_tanks": 18,
-    "drive": 20,
-    "open_valve": 42,
-    "motor": 29,
+    "qian2014": 46,
+    "first_order": 18,
+    "two_tanks": 19,
+    "drive": 21,
+    "open_valve": 43,
+    "motor": 30,
     "specimen": 13,
-    "force_loop": 45,
+    "force_loop": 46,
     "kononykhin": 8,
-    "strano": 42,
+    "strano": 43,
 }
 LOOPS = {
     "qian2014": {"v", "y"}, "first_order": set(), "drive": set(), "open_valve": {"v"}, "motor": set(),
