@@ -20,7 +20,11 @@ class StreamNoise(BaseModel):
 
 
 class StreamStart(BaseModel):
-    """The first message: sample rate, Hz, what r does between samples, and where the filter starts: τ, s, and k."""
+    """The first message: sample rate, Hz, what r does between samples, and where the filter starts: τ, s, and k.
+
+    With `alarms` the loop is watched: that it stays of first order, and within `rig`, the limits of stroke and speed
+    with their units.
+    """
 
     model_config = ConfigDict(extra="forbid")
 
@@ -29,6 +33,8 @@ class StreamStart(BaseModel):
     tau0: float = Field(default=0.02, gt=0, le=_LARGEST, allow_inf_nan=False)
     gain0: Finite = 1.0
     noise: StreamNoise = StreamNoise()
+    alarms: bool = False
+    rig: dict[str, Annotated[str, Field(max_length=200)]] | None = Field(default=None, max_length=6)
 
 
 class StreamSamples(BaseModel):
@@ -40,8 +46,26 @@ class StreamSamples(BaseModel):
     y: list[Finite | None] = Field(max_length=MOST_ROWS)
 
 
+class StreamAlarm(BaseModel):
+    """An alarm that begins or ends `at` s after the first sample: "not first order", or the name of a limit."""
+
+    kind: str
+    begins: bool
+    at: float
+    text: str
+
+
+class StreamAlarms(BaseModel):
+    """What follows the answer to a binary message where an alarm began or ended in it."""
+
+    alarms: list[StreamAlarm]
+
+
 class StreamEstimates(BaseModel):
-    """The answer to samples, a value a sample: τ, s, k, y, m, their variances, the normalised innovation squared."""
+    """The answer to samples, a value a sample: τ, s, k, y, m, their variances, the normalised innovation squared.
+
+    `alarms` are there where they were asked for.
+    """
 
     tau: list[float]
     gain: list[float]
@@ -49,3 +73,4 @@ class StreamEstimates(BaseModel):
     var_tau: list[float]
     var_gain: list[float]
     nis: list[float]
+    alarms: list[StreamAlarm] | None = None

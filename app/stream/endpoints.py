@@ -12,7 +12,7 @@ from starlette.websockets import WebSocketDisconnect
 from app.access.roles import READERS
 from app.errors import COMMON, Failure
 from app.stream import service
-from schemas.stream import StreamEstimates, StreamSamples, StreamStart
+from schemas.stream import StreamAlarms, StreamEstimates, StreamSamples, StreamStart
 
 router = APIRouter(tags=["stream"], responses=COMMON)
 _CLOSED = {408: 1001, 413: 1009, 503: 1013}
@@ -21,6 +21,7 @@ _MESSAGES = {
     "first": StreamStart.model_json_schema(),
     "samples": StreamSamples.model_json_schema(),
     "estimates": StreamEstimates.model_json_schema(),
+    "alarms": StreamAlarms.model_json_schema(),
 }
 
 
@@ -36,7 +37,9 @@ def describe_stream() -> None:
     {"measurement": 1.2e-4, "tau": 5e-5, "gain": 3e-4}}`: Hz; linear or zoh; s; 1; m, s/√s, 1/√s. Only sample_rate must
     be given. It has no answer. Each message after it is of samples, `{"r": […], "y": […]}` in m, or binary, rows of
     little-endian float64 (r, y), and is answered in its own form: an object with the lists tau, gain, y, var_tau,
-    var_gain and nis, or rows of these six. A message has at most 65,536 samples. What cannot be used is answered by a
+    var_gain and nis, or rows of these six. With `"alarms": true` in the first message the loop is watched: the object
+    has the list alarms, and rows are followed by `{"alarms": […]}` where one began or ended. `"rig": {"stroke": "150
+    mm", "speed": "0.5 m/s"}` states limits. A message has at most 65,536 samples. What cannot be used is answered by a
     problem document, and the stream is closed; it is closed, too, after 60 s without a message.
     """
     raise service.no_socket()
@@ -67,8 +70,9 @@ async def _answered(socket: WebSocket, tracked: service.Stream) -> None:
         if message["type"] == "websocket.disconnect":
             return
         short = len(message.get("text") or message.get("bytes") or "") <= service.SHORT
-        answer = tracked.answer(message) if short else await run_in_threadpool(tracked.answer, message)
-        if isinstance(answer, str):
-            await socket.send_text(answer)
-        elif answer is not None:
-            await socket.send_bytes(answer)
+        answers = tracked.answer(message) if short else await run_in_threadpool(tracked.answer, message)
+        for answer in answers:
+            if isinstance(answer, str):
+                await socket.send_text(answer)
+            else:
+                await socket.send_bytes(answer)

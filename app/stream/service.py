@@ -8,11 +8,15 @@ from contextlib import contextmanager
 from typing import Any, TypeVar
 
 import numpy as np
+from numpy.typing import NDArray
 from pydantic import BaseModel, ValidationError
 
 from app.errors import Failure, refusal
 from ident.errors import Unusable
 from ident.hybrid.tracking import COLUMNS, Noise, Tracker
+from ident.hybrid.watch import Watch
+from ident.plain import written
+from ident.readers.rig import rig_of
 from schemas.stream import MOST_ROWS, StreamNoise, StreamSamples, StreamStart
 
 IDLE = 60.0
@@ -24,6 +28,7 @@ LARGEST_MESSAGE = 4 << 20
 SHORT = 64 << 10
 """Bytes of a message that is answered at once; a longer one is handed to another thread."""
 Model = TypeVar("Model", bound=BaseModel)
+Array = NDArray[np.float64]
 _ROW = np.dtype("<f8")
 _LARGEST = 1e9
 
@@ -32,20 +37,34 @@ class Stream:
     """The filter behind one connection. Raises Failure for a message that cannot be used."""
 
     def __init__(self) -> None:
-        self.tracker: Tracker | None = None
+        self.watch: Watch | None = None
+        self.alarms = False
 
-    def answer(self, message: Mapping[str, Any]) -> str | bytes | None:
-        """The answer to a message, in its own form; none to the first, which starts the filter."""
+    def answer(self, message: Mapping[str, Any]) -> list[str | bytes]:
+        """The answers to a message, the first in its own form; none to the first message, which starts the filter."""
         text, binary = message.get("text"), message.get("bytes")
         try:
             if len(text or binary or "") > LARGEST_MESSAGE:
                 raise _too_large()
-            if self.tracker is None:
-                self.tracker = _started(text)
-                return None
-            return _of_text(self.tracker, text) if text is not None else _of_rows(self.tracker, binary or b"")
+            if self.watch is None:
+                start = _start(text)
+                self.watch, self.alarms = _started(start), start.alarms
+                return []
+            return self._of_text(self.watch, text) if text is not None else self._of_rows(self.watch, binary or b"")
         except Unusable as error:
             raise Failure(422, error.code, error.what, error.where, error.remedy) from None
+
+    def _of_text(self, watch: Watch, text: str) -> list[str | bytes]:
+        samples = _read(StreamSamples, text, "samples")
+        rows, alarms = watch.block(samples.r, np.array(samples.y, dtype=np.float64))
+        told: dict[str, Any] = dict(zip(COLUMNS, rows.T.tolist(), strict=True))
+        return [json.dumps(told | ({"alarms": written(alarms)} if self.alarms else {}), allow_nan=False)]
+
+    def _of_rows(self, watch: Watch, binary: bytes) -> list[str | bytes]:
+        samples = _samples(binary)
+        rows, alarms = watch.block(samples[:, 0], samples[:, 1])
+        told = [json.dumps({"alarms": written(alarms)}, allow_nan=False)] if self.alarms and alarms else []
+        return [rows.astype(_ROW, copy=False).tobytes(), *told]
 
 
 _open: set[Stream] = set()
@@ -84,12 +103,18 @@ def warm() -> None:
     Tracker(1.0).block(np.zeros(2), np.zeros(2))
 
 
-def _started(text: str | None) -> Tracker:
+def _start(text: str | None) -> StreamStart:
     if text is None:
         raise Failure(422, "bad-message", "the first message is not JSON", "message 1",
                       "send sample_rate, hold, tau0, gain0 and noise as JSON first")  # fmt: skip
-    start = _read(StreamStart, text, "message 1")
-    return Tracker(start.sample_rate, start.hold, start.tau0, start.gain0, _noise(start.sample_rate, start.noise))
+    return _read(StreamStart, text, "message 1")
+
+
+def _started(start: StreamStart) -> Watch:
+    """The filter, and what is watched. Raises Unusable."""
+    noise = _noise(start.sample_rate, start.noise)
+    tracker = Tracker(start.sample_rate, start.hold, start.tau0, start.gain0, noise)
+    return Watch(tracker, rig_of(start.rig) if start.rig else None)
 
 
 def _noise(sample_rate: float, given: StreamNoise) -> Noise:
@@ -99,13 +124,8 @@ def _noise(sample_rate: float, given: StreamNoise) -> Noise:
     return Noise(**{**vars(Noise.of_sensor(sample_rate, **sensor)), **stated})
 
 
-def _of_text(tracker: Tracker, text: str) -> str:
-    samples = _read(StreamSamples, text, "samples")
-    rows = tracker.block(samples.r, np.array(samples.y, dtype=np.float64))
-    return json.dumps(dict(zip(COLUMNS, rows.T.tolist(), strict=True)), allow_nan=False)
-
-
-def _of_rows(tracker: Tracker, binary: bytes) -> bytes:
+def _samples(binary: bytes) -> Array:
+    """The rows (n, 2) of r and y in a binary message. Raises Failure."""
     if len(binary) % (2 * _ROW.itemsize):
         raise Failure(422, "bad-message", f"{len(binary)} bytes are no rows of two float64", "samples",
                       "send r and y of each sample, little-endian, 16 bytes a row")  # fmt: skip
@@ -114,7 +134,7 @@ def _of_rows(tracker: Tracker, binary: bytes) -> bytes:
         raise _too_large()
     if np.any(np.abs(rows) > _LARGEST):
         raise Failure(422, "bad-message", f"a sample is beyond {_LARGEST:g}", "samples", "send r and y in m")
-    return tracker.block(rows[:, 0], rows[:, 1]).astype(_ROW, copy=False).tobytes()
+    return rows
 
 
 def _too_large() -> Failure:

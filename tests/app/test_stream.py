@@ -3,8 +3,13 @@
 from __future__ import annotations
 
 import json
+import re
 from collections.abc import Iterator
 from contextlib import contextmanager
+from pathlib import Path
+from socket import socketpair as socket_pair
+from threading import Thread
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -53,6 +58,47 @@ def test_samples_are_answered_in_their_own_form_with_what_the_library_finds(serv
     np.testing.assert_allclose(np.column_stack(list(told.values())), whole[:100])
     np.testing.assert_allclose(rows, whole[100:])
     assert rows[-1, :2] == pytest.approx(drawn.loop[:2], rel=0.02)
+
+
+def test_alarms_are_told_in_the_form_of_the_message(service: TestClient) -> None:
+    """A sine of 50 mm on a stroke of 80 mm: in the object of a JSON message, as a message of its own after rows."""
+    drawn = reference.trial(4, 1.0)
+    first = {**START, "alarms": True, "rig": {"stroke": "80 mm"}}
+    with connected(service, first) as socket:
+        socket.send_json({"r": drawn.r.tolist(), "y": drawn.y.tolist()})
+        told = socket.receive_json()["alarms"]
+        assert {one["kind"] for one in told} == {"stroke"}
+        assert told[0]["begins"]
+        assert told[0]["text"].startswith("beyond the rig: displacement from the middle")
+    with connected(service, first) as socket:
+        socket.send_bytes(np.column_stack([drawn.r, drawn.y]).astype("<f8").tobytes())
+        assert len(socket.receive_bytes()) == 6 * 8 * len(drawn.r)
+        assert socket.receive_json()["alarms"] == told
+    with connected(service, {**START, "rig": {"strike": "80 mm"}}) as socket:
+        assert "stroke" in refused(socket)[0]["remedy"]
+
+
+def test_the_client_of_the_documentation_follows_a_simulated_source(service: TestClient, tmp_path: Path) -> None:
+    """A file that is replayed, and a socket: estimates, alarms, and a recording that is the source to the last bit."""
+    text = (Path(__file__).parents[2] / "docs" / "hybrid.md").read_text(encoding="utf-8")
+    code = next(block for block in re.findall(r"```python\n(.*?)```", text, re.DOTALL) if "def follow(" in block)
+    assert len(code.splitlines()) <= 60
+    client: dict[str, Any] = {"__name__": "client"}
+    exec(compile(code, "client", "exec"), client)
+    drawn = reference.trial(4, 1.0)
+    rows = [f"{r!r},{y!r}" for r, y in zip(drawn.r.tolist(), drawn.y.tolist(), strict=True)]
+    source = tmp_path / "run.csv"
+    source.write_text("\n".join(["command (m),displacement (m)", *rows]))
+    ours, theirs = socket_pair()
+    Thread(target=lambda: (ours.sendall("\n".join(rows).encode()), ours.close()), daemon=True).start()
+    for samples in (client["replay"](source), client["listen"](theirs)):
+        with connected(service, {**START, "alarms": True, "rig": {"stroke": "80 mm"}}) as socket:
+            stream = SimpleNamespace(send=socket.send_text, recv=socket.receive_text)
+            told = list(client["follow"](stream, samples, tmp_path / "recorded.csv"))
+        assert told[-1][1:3] == pytest.approx(drawn.loop[:2], rel=0.05)
+        assert any(alarm["kind"] == "stroke" for *_, alarms in told for alarm in alarms)
+        assert np.array_equal(np.loadtxt(tmp_path / "recorded.csv", delimiter=",", skiprows=1),
+                              np.column_stack([drawn.r, drawn.y]))  # fmt: skip
 
 
 def test_only_the_sample_rate_must_be_given(service: TestClient) -> None:
@@ -136,4 +182,4 @@ def test_who_asks_without_a_socket_is_told_what_it_is(service: TestClient) -> No
     answer = service.get(PATH)
     assert (answer.status_code, answer.json()["code"]) == (426, "upgrade-needed")
     told = service.get("/api/v1/openapi.json").json()["paths"][PATH]["get"]
-    assert set(told["x-messages"]) == {"first", "samples", "estimates"}
+    assert set(told["x-messages"]) == {"first", "samples", "estimates", "alarms"}
