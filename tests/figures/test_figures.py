@@ -15,12 +15,14 @@ from ident.comparison.compare import Comparison
 from ident.errors import Unusable
 from ident.figures import FIGURES, MEDIA, figure, render, renders
 from ident.figures.look import LOOKS
+from ident.figures.study import Study
 from ident.fit.result import Starts
 from ident.workflows import study
 from tests.figures.conftest import make_comparison
 
 OF_CHAINS = tuple(name for name, drawing in FIGURES.items() if drawing.kind == "chain")
 DRAWN: dict[tuple[object, ...], bytes] = {}
+STUDIED: list[Study] = []
 
 
 @pytest.fixture(autouse=True)
@@ -37,8 +39,16 @@ def drawn(name, matrix, fit, theme="light", **options):
     """A figure of the one matrix and fit of these tests, drawn once for all that look at it."""
     key = (name, theme, *sorted(options.items()))
     if key not in DRAWN:
-        DRAWN[key] = render(figure(name, study(matrix, fit), theme, **options), "json")
+        DRAWN[key] = render(figure(name, studied(matrix, fit), theme, **options), "json")
     return json.loads(DRAWN[key])
+
+
+def studied(matrix, fit):
+    """What figures take from the data of these tests, worked out once for all of them, as a page does."""
+    if not STUDIED:
+        STUDIED.append(study(matrix, fit))
+    assert STUDIED[0].fit is fit
+    return STUDIED[0]
 
 
 def every(spec, key):
