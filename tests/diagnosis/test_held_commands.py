@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 import numpy as np
 import pytest
 
@@ -10,6 +12,7 @@ from ident.fit.settings import Settings
 from ident.matrix import Actuator, Matrix
 from ident.run import Run
 from ident.workflows import diagnose
+from tests.conftest import of_few_effects
 
 RATE, HELD, LAG = 100.0, 50, 4.0
 
@@ -29,6 +32,13 @@ def late(delay: int, noise: float = 0.01) -> Matrix:
     return Matrix(Actuator("LATE"), tuple(runs))
 
 
+@pytest.fixture
+def with_delay(full: bool) -> Iterator[None]:
+    """In the short form the delay is ranked among few effects."""
+    with of_few_effects(full, "command_delay"):
+        yield
+
+
 def test_a_command_is_held_between_its_changes():
     (run, _) = late(1).runs
     assert run.dwell == HELD / RATE
@@ -37,6 +47,7 @@ def test_a_command_is_held_between_its_changes():
     assert moved.driven_by("displacement").part(0, 2).dwell == 0.0
 
 
+@pytest.mark.usefixtures("with_delay")
 def test_a_delay_of_a_part_of_a_step_is_found():
     """Three times the inverse of the highest frequency of a step's power, which falls by 1/f² alone, were less."""
     found = diagnose(late(5), settings=Settings(model="motor"), most=1, propose=False)
@@ -47,6 +58,7 @@ def test_a_delay_of_a_part_of_a_step_is_found():
     assert found.ladder[-1].error["fit"] == pytest.approx(0.01, rel=0.05)
 
 
+@pytest.mark.usefixtures("with_delay")
 def test_a_delay_of_more_than_half_a_step_is_searched_beyond_the_range_of_its_search():
     """The usual range ends at half of the time for which a command is held: 0.25 s."""
     matrix = late(27, noise=0.3)

@@ -16,6 +16,7 @@ from ident.fit.settings import Settings
 from ident.run import Run
 from ident.words.percent import percent
 from ident.workflows import diagnose
+from tests.conftest import of_few_effects
 from tests.presets.test_machines import motor
 
 
@@ -73,11 +74,12 @@ def test_chance_contradicts_seldom():
 
 
 @pytest.fixture(scope="module")
-def other():
+def other(full):
     """A motor with a dead zone is fitted; the runs to verify are of one without."""
     fitted, whole = motor(8, half_width=1.5), motor(9)
     runs = (fitted.of_use("fit")[0], whole.of_use("verify")[0])
-    return diagnose(replace(fitted, runs=runs), settings=Settings(model="motor"), most=1)
+    with of_few_effects(full):
+        return diagnose(replace(fitted, runs=runs), settings=Settings(model="motor"), most=1)
 
 
 def test_what_the_runs_to_verify_speak_against_is_contradicted_and_said_first(other):
@@ -88,6 +90,7 @@ def test_what_the_runs_to_verify_speak_against_is_contradicted_and_said_first(ot
     assert "The model lacks" not in other.verdict.text
 
 
+@pytest.mark.usefixtures("few_effects")
 def test_verify_changes_nothing_that_was_found(other):
     matrix = motor(8, half_width=1.5)
     alone = diagnose(replace(matrix, runs=matrix.of_use("fit")), settings=Settings(model="motor"), most=1)
@@ -105,6 +108,7 @@ def test_the_standing_is_read_back_and_an_unknown_one_is_refused(other):
         Diagnosis.from_json({**written, "verdict": {**written["verdict"], "standing": "sure"}})
 
 
+@pytest.mark.usefixtures("few_effects")
 def test_with_nothing_missing_nothing_stands():
     found = diagnose(motor(10), settings=Settings(model="motor"), most=1)
     assert (found.verdict.effects, found.verdict.standing) == ((), "nothing")

@@ -43,6 +43,7 @@ def test_a_lag_much_slower_than_the_power_of_a_step_is_within_its_bounds():
     assert fit.values["Kv"] == pytest.approx(GAIN, rel=0.005)
 
 
+@pytest.mark.usefixtures("few_effects")
 @pytest.mark.parametrize("seed", [2, 3, 4])
 def test_a_dead_zone_shows_in_steps_of_different_height_with_an_honest_error(seed):
     found = diagnose(steps(seed, DEAD), settings=Settings(model="motor"), most=1)
