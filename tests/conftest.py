@@ -168,6 +168,24 @@ def few_effects(full: bool) -> Iterator[None]:
         yield
 
 
+@contextlib.contextmanager
+def short_searches(full: bool) -> Iterator[None]:
+    """In the short form a search has a third of its members and generations, and two of them are polished, not five.
+
+    For what is said of a fit, and not of how it is found: along a flat direction each polish goes on for as long as it
+    may. The usual searches are in tests/acceptance and tests/fit.
+    """
+    with pytest.MonkeyPatch.context() as own:
+        if not full:
+            from ident.fit import genetic, identification
+
+            own.setattr(identification, "CANDIDATES", 2)
+            for options in (genetic.DEFAULT, genetic.WITH_EFFECTS):
+                for name in ("population", "generations", "elite"):
+                    own.setitem(options, name, float(round(options[name] / 3)))
+        yield
+
+
 @pytest.fixture(scope="session")
 def measured_data() -> Path:
     """The folder of measured data beside the checkout; tests that need it are skipped where it is absent."""

@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 import shutil
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
 import yaml
+
+from tests.conftest import short_searches
 
 
 @pytest.fixture(scope="session")
@@ -36,3 +39,10 @@ def fit_file(servoident, few, tmp_path_factory) -> Path:
     done = servoident("fit", few, "--json", file, "--bounds", "tau=1 ms:6 ms", "--set", "m0=4.25")
     assert done.returncode == 0, done.stderr
     return file
+
+
+@pytest.fixture(scope="module", autouse=True)
+def _short_searches(full: bool) -> Iterator[None]:
+    """What is tested is said of fits, and not of how they are found."""
+    with short_searches(full):
+        yield

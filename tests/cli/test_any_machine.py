@@ -18,7 +18,7 @@ def folder(tmp_path_factory) -> Path:
     """A machine that integrates its voltage, three runs as text files beside a plain description."""
     place = tmp_path_factory.mktemp("machine")
     entries = []
-    for run in lag("displacement", integrates=True, levels=20).runs:
+    for run in lag("displacement", integrates=True, levels=15).runs:
         table = np.column_stack([run.channels["command"], 1e3 * run.channels["displacement"]])
         np.savetxt(place / f"{run.id}.csv", table, delimiter=",", header="u,x", comments="")
         channels = {"command": {"column": "u", "unit": "V"}, "displacement": {"column": "x", "unit": "mm"}}
@@ -31,8 +31,7 @@ def folder(tmp_path_factory) -> Path:
 def test_the_model_is_chosen_and_what_cannot_be_drawn_is_named(servoident, folder, tmp_path, monkeypatch):
     """It integrates: no frequency response of its own, no curves of what is missing, but the record in time."""
     monkeypatch.setattr(figure_files, "FORMATS", ("svg",))  # the others: tests/cli/test_commands.py
-    few = ("--option", "population=16", "--option", "generations=4", "--option", "elite=3")
-    done = servoident("fit", folder, *few, "--json", tmp_path / "fit.json")
+    done = servoident("fit", folder, "--json", tmp_path / "fit.json")
     assert done.returncode == 0, done.stderr
     fit = json.loads((tmp_path / "fit.json").read_text())
     assert (fit["model"], fit["structures"][0]["machine"]) == ("open_valve", "open_valve")

@@ -23,10 +23,10 @@ def test_check_describes_the_matrix_and_finds_no_fault(servoident, matrix):
     assert "0 errors" in done.stdout
 
 
-def test_check_ends_with_1_where_the_matrix_has_a_fault(servoident, matrix, tmp_path):
+def test_check_ends_with_1_where_the_matrix_has_a_fault(servoident, few, tmp_path):
     """A record that is both fitted and used to verify is a fault, named with its run."""
     copy = tmp_path / "copy"
-    shutil.copytree(matrix, copy)
+    shutil.copytree(few, copy)
     description = yaml.safe_load((copy / "matrix.yaml").read_text())
     fitted, *_, verifying = description["runs"]
     verifying["file"] = fitted["file"]
@@ -56,18 +56,18 @@ def test_bounds_with_units_are_the_same_as_in_si(fit_file):
     assert (tau["lower"], tau["upper"]) == (0.001, 0.006)
 
 
-def test_the_printed_unit_of_z0_is_converted_with_a_notice(servoident, matrix):
+def test_the_printed_unit_of_z0_is_converted_with_a_notice(servoident, few):
     """1.48e-5 as printed is 2.592e-6 m⁴/s, and the user is told."""
     held = [f"--set={text}" for text in ("tau=3.6 ms", "Cl=1e-11", "c0=3200", "m0=4.25", "Ka=1.39e-13")]
-    done = servoident("fit", matrix, "--set", "Z0=1.48e-5 m^3/(s*kPa) as printed", *held, "--json", "-")
+    done = servoident("fit", few, "--set", "Z0=1.48e-5 m^3/(s*kPa) as printed", *held, "--json", "-")
     assert done.returncode == 0, done.stderr
     assert "notice: Z0" in done.stderr
     assert json.loads(done.stdout)["parameters"]["Z0"]["value"] == pytest.approx(2.592e-6, rel=1e-4)
 
 
-def test_fit_tells_a_reader_parameters_and_errors(servoident, matrix):
+def test_fit_tells_a_reader_parameters_and_errors(servoident, few):
     """The table names each parameter with its unit, and the error on the verify runs in per cent."""
-    done = servoident("fit", matrix, "--set", "tau=3.6 ms", "--set", "m0=4.25 kg", "--seed", 1)
+    done = servoident("fit", few, "--set", "tau=3.6 ms", "--set", "m0=4.25 kg", "--seed", 1)
     assert done.returncode == 0, done.stderr
     assert "m^3/(s*Pa)" in done.stdout
     assert "fixed" in done.stdout

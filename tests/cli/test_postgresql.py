@@ -96,7 +96,8 @@ def test_a_service_and_a_worker_share_the_queue(servoident, database, few, tmp_p
         stored = servoident("upload", few, *service.options)
         assert stored.returncode == 0, stored.stderr
         identity = stored.stdout.split()[1]
-        jobs = [service.fit(identity, seed=seed) for seed in (1, 2)]
+        short = {"population": 40, "generations": 6, "elite": 4}
+        jobs = [service.fit(identity, seed=seed, options=short) for seed in (1, 2)]
         ended = [service.ended(job) for job in jobs]
         assert [job["state"] for job in ended] == ["succeeded", "succeeded"]
         assert servoident("approve", ended[0]["fit"], *service.options).returncode == 0

@@ -44,8 +44,9 @@ def stored(service, servoident, matrix) -> dict:
 
 @pytest.fixture(scope="module")
 def fitted(service, stored) -> str:
-    """The id of a finished fit of it."""
-    job = service.ended(service.fit(stored["id"], set={"m0": "4.25 kg"}))
+    """The id of a finished fit of it; a short search, which each recheck makes again."""
+    short = {"population": 40, "generations": 6, "elite": 4}
+    job = service.ended(service.fit(stored["id"], set={"m0": "4.25 kg"}, options=short))
     assert job["state"] == "succeeded", job
     return job["fit"]
 
