@@ -82,7 +82,12 @@ def strength(effect: Effect) -> float:
 @cache
 def expected(name: str, symbol: str, value: float, number: int, hold: str) -> np.ndarray:
     """The reference's displacement."""
-    hidden = reference.named({f"{name}.{symbol}": value})
+    return answered(reference.named({f"{name}.{symbol}": value}), number, hold)
+
+
+@cache
+def answered(hidden: reference.Effects, number: int, hold: str) -> np.ndarray:
+    """The same by all that is hidden: with no strength every effect is the one machine without."""
     return reference.respond(PLANT, hidden, CELLS[number], command(number), hold).displacement
 
 
