@@ -35,6 +35,7 @@ from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.special import chdtri  # the quantile of χ², without scipy.stats, which takes half a second to load
 
 from ident.cached import cached_property
 from ident.diagnosis.criteria import TINY
@@ -277,10 +278,17 @@ def gain(before: Residuals, after: Residuals, disturbance: Disturbance) -> float
 
 
 def most(before: Residuals, disturbance: Disturbance) -> float:
-    """The gain of a model that leaves nothing but the noise, and no mean that matters."""
-    levels = before.level_squares
-    of_levels = _level_gain(levels, np.zeros(len(levels)), disturbance.bands.criteria)
+    """The gain of a model that leaves nothing but the noise, as far as that is known for sure."""
+    bands, levels = disturbance.bands, before.level_squares
+    noise = _level_noise(disturbance.floors / bands.lengths, bands.criteria)
+    of_levels = _level_gain(levels, noise if noise.sum() < levels.sum() else levels, bands.criteria)
     return disturbance.most(before.energies.sum(axis=0)) + of_levels
+
+
+def _level_noise(expected: Array, criteria: EvidenceCriteria) -> Array:
+    """The squares of the means, (runs,), that noise of the `expected` ones leaves, but for chance: χ² of runs − 1."""
+    others = len(expected) - 1
+    return expected * float(chdtri(others, criteria.chance)) / others if others else expected
 
 
 def _level_gain(before: Array, after: Array, criteria: EvidenceCriteria) -> float:
