@@ -116,7 +116,7 @@ def of_diagnosis(
 def figures_of(fit: FitResult) -> tuple[str, ...]:
     """Names of the figures that a fit has: those of its model, of a search as far as it kept them."""
     model = preset_with(fit.model)
-    kept = {"evolution": model.kind == "chain" or fit.evolution, "starts": fit.starts and fit.starts.errors}
+    kept = {"evolution": model.kind == "chain" or fit.evolution, "starts": fit.starts and len(fit.starts.errors) > 1}
     return tuple(name for name in figures_for(model) if kept.get(name, True))
 
 

@@ -56,7 +56,8 @@ def evolution(
         words.headline(actuator, "how the search converged"),
         subtitle=[
             words.verdict(fit),
-            f"Method {fit.method}, seed {fit.seed}, {fit.evaluations:,} evaluations · cross: the final estimate",
+            f"Method {fit.method}, seed {fit.seed}, {fit.evaluations:,} evaluations",
+            "cross: the final estimate, after the refinement (Levenberg-Marquardt) that begins where the search ended",
         ],
     )
     chart: Chart = (

@@ -37,6 +37,13 @@ def test_three_fits_are_ticked_and_drawn_over_each_other(page, site, matrix, fit
         if screenshots:
             page.screenshot(path=screenshots / f"overlay-{name}.png", full_page=True)
     expect(page.locator("table", has_text="Click a run").locator("tbody tr").first).to_contain_text("points")
+    runs = page.locator("section", has=page.get_by_role("heading", name="Runs", exact=True))
+    with page.expect_download() as saved:
+        runs.get_by_role("button", name="Download the table as a CSV file").click()
+    lines = saved.value.path().read_text(encoding="utf-8-sig").splitlines()
+    assert saved.value.suggested_filename == "runs.csv"
+    assert lines[0].startswith('"Run","Use","A","B","C"')
+    assert len(lines) == 1 + runs.locator("tbody tr").count()
     page.locator("#tab-bode").click()
     everywhere(page, screenshots, "overlay")
     on_a_phone(page, screenshots, "overlay")

@@ -101,6 +101,15 @@ def test_a_running_fit_is_told_to_everybody(page, site, running, screenshots):
     everywhere(page, screenshots, "running")
 
 
+def test_the_title_of_the_tab_tells_how_far_a_job_is_and_how_it_ended(page, site, running):
+    page.goto(f"{site.address}/fits/{running}")
+    expect(page).to_have_title(re.compile(r"^\d+ % · "))
+    page.get_by_role("button", name="Cancel").click()
+    expect(page).to_have_title(re.compile(r"^cancelled · "), timeout=60_000)
+    page.keyboard.press("Tab")
+    expect(page).not_to_have_title(re.compile(r"^cancelled · "))
+
+
 def test_the_verdict_of_the_catalogue_is_told_while_terms_are_searched_for(page, site, running):
     """By the events that tell how far the job is; before there is one nothing is shown."""
     job = site.client.get(f"/jobs/{running}").json()

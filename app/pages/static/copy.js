@@ -1,4 +1,4 @@
-// Copies: a value with its unit as the program reads it, a table as text with tabs that a spreadsheet takes.
+// Copies: a value with its unit as the program reads it, a table as text with tabs that a spreadsheet takes, or a file.
 
 const said = document.createElement("p");
 said.className = "unseen";
@@ -46,10 +46,34 @@ for (const cell of document.querySelectorAll("[data-plain]")) {
 for (const table of document.querySelectorAll("table[data-copy]")) {
   const place = table.caption ?? table.createCaption();
   place.append(button("Copy the table, tab-separated", "Copy table", (made) => copy(text(table), made, "The table")));
+  place.append(button("Download the table as a CSV file", "CSV", () => save(csv(table), `${fileName(table)}.csv`)));
 }
 
 function text(table) {
-  return [...table.rows].map((row) => [...row.cells].map(words).join("\t")).join("\n");
+  return cells(table).map((row) => row.join("\t")).join("\n");
+}
+
+function cells(table) {
+  return [...table.rows].map((row) => [...row.cells].map(words));
+}
+
+// With the mark by which a spreadsheet knows UTF-8; text that it would take for a formula begins with an apostrophe.
+function csv(table) {
+  const field = (cell) => `"${cell.replace(/^(?=[=@+]|-(?!\d))/, "'").replaceAll('"', '""')}"`;
+  return `\ufeff${cells(table).map((row) => row.map(field).join(",")).join("\r\n")}\r\n`;
+}
+
+function fileName(table) {
+  const title = table.closest("section")?.querySelector("h2")?.textContent ?? "table";
+  return title.trim().toLowerCase().replace(/[^a-z0-9]+/g, "-");
+}
+
+function save(content, name) {
+  const link = document.createElement("a");
+  link.href = URL.createObjectURL(new Blob([content], { type: "text/csv" }));
+  link.download = name;
+  link.click();
+  setTimeout(() => URL.revokeObjectURL(link.href), 1000);
 }
 
 // What a cell says, without what only its buttons say; formulas as their text.

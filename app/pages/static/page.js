@@ -25,6 +25,15 @@ for (const time of document.querySelectorAll("time[datetime]")) {
   }
 }
 
+// The title of the tab tells how a job ended that the page followed, until the reader is there.
+const ended = sessionStorage.getItem("ended");
+if (ended) {
+  sessionStorage.removeItem("ended");
+  const plain = document.title;
+  document.title = `${{ succeeded: "✓ done", failed: "✗ failed", cancelled: "cancelled" }[ended] ?? ended} · ${plain}`;
+  for (const act of ["pointermove", "keydown", "focus"]) addEventListener(act, () => (document.title = plain), { once: true });
+}
+
 // Whatever scrolls within the page can be reached, and then moved with the arrow keys.
 const scrolling = new ResizeObserver((entries) => {
   for (const { target } of entries) {

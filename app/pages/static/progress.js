@@ -4,6 +4,7 @@ import { guarded, send } from "./api.js";
 import { errorWords } from "./words.js";
 
 const ENDED = ["succeeded", "failed", "cancelled"];
+const title = document.title;
 
 function follow(live) {
   const bar = live.querySelector("progress");
@@ -24,6 +25,7 @@ function follow(live) {
       bar.value = progress.done;
       step.textContent = `${progress.done} of ${progress.total}`;
       step.closest("span").hidden = progress.total < 2;
+      if (progress.total > 1) document.title = `${Math.floor((100 * progress.done) / progress.total)} % · ${title}`;
     }
     if (typeof progress.error === "number" && progress.error > 0) {
       error.textContent = errorWords(progress.error);
@@ -51,6 +53,7 @@ function follow(live) {
     report(job.progress);
     if (!ENDED.includes(job.state)) return;
     events.close();
+    sessionStorage.setItem("ended", job.state);
     location.reload();
   }
 
