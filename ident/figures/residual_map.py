@@ -29,7 +29,8 @@ MOST = 100  # rows
 _ROWS = ((30, 15, 11), (60, 12, 10), (MOST, 10, 9))  # up to so many rows: pixels a row, and the size of its label
 
 
-_MULTIPLES = "colour: residual over the noise of the run, which is spread evenly over frequency; 1 is noise alone"
+_MULTIPLES = "colour: residual over the white noise of the run; 1 is noise alone"
+_WIDEST = 10.0  # multiples: the scale of colours reaches so far at least, so that noise alone looks like it
 _PERCENT = "colour: error, for the noise of a run is not known"
 
 
@@ -56,7 +57,9 @@ def residual_map(
     noise = known if len(known) == len(order) else {}
     row, size = next((row, size) for most, row, size in _ROWS if len(order) <= most)
     height = max(60, row * len(order))
-    panels = [_bands(order, ends, unit, look, height, size, bool(noise)), _totals(order, look, height, size)]
+    cells = _cells(found, runs, ends, noise)
+    top = max([_WIDEST, *(cell["m"] for cell in cells if "m" in cell)]) if noise else None
+    panels = [_bands(order, ends, unit, look, height, size, top), _totals(order, look, height, size)]
     title = alt.TitleParams(
         words.headline(actuator, "where the error is, by run and frequency"),
         subtitle=[
@@ -66,7 +69,7 @@ def residual_map(
             f"last column: all above {found.edges[-2]:.3g} {unit}",
         ],
     )
-    data = {"map": _cells(found, runs, ends, noise), "totals": _errors(found, runs)}
+    data = {"map": cells, "totals": _errors(found, runs)}
     chart: Chart = (
         alt.hconcat(*panels, spacing=10, bounds="flush", datasets=datasets(data), title=title)
         .add_params(alt.param(name=RUN, value=run), *band_params(band))
@@ -126,8 +129,9 @@ def _rows(order: Sequence[str], labels: bool, size: int) -> alt.Y:
 
 def _bands(
     order: Sequence[str], ends: Sequence[tuple[float, float]], unit: str, look: Look, height: int, size: int,
-    in_noise: bool,
+    top: float | None,
 ) -> Panel:  # fmt: skip
+    in_noise = top is not None  # up to which multiple of it colours reach
     lower, upper = ends[0][0], ends[-1][1]
     axis = alt.Axis(
         title=f"Frequency ({unit})", values=decade_ticks(lower, ends[-1][0]), format="~r", grid=False, labelOverlap=True
@@ -135,7 +139,7 @@ def _bands(
     field, title = ("m", "Residual over noise (–)") if in_noise else ("e", "Error in the band (%)")
     colour = alt.Color(
         f"{field}:Q",
-        scale=alt.Scale(type="log", range=list(look.ramp), nice=False, domainMin=1 if in_noise else alt.Undefined),
+        scale=alt.Scale(type="log", range=list(look.ramp), nice=False, domain=[1, top] if in_noise else alt.Undefined),
         legend=alt.Legend(title=title, orient="top", format="~g", gradientLength=260, tickCount=4),
     )
     x = alt.X("f:Q", scale=alt.Scale(type="log", domain=[lower, upper], nice=False), axis=axis)

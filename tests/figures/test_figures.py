@@ -15,6 +15,7 @@ from ident.comparison.compare import Comparison
 from ident.errors import Unusable
 from ident.figures import FIGURES, MEDIA, figure, render, renders
 from ident.figures.look import LOOKS
+from ident.figures.residual_map import residual_map
 from ident.figures.study import Study
 from ident.fit.result import Starts
 from ident.workflows import study
@@ -292,3 +293,34 @@ def test_a_machine_that_is_moved_has_no_sensitivity_to_a_command_and_says_so(mat
     with pytest.raises(Unusable, match="moved by what was recorded") as told:
         figure("sensitivity", moved)
     assert told.value.code == "unstable-model"
+
+
+def test_the_map_is_in_multiples_of_the_noise_on_one_scale_of_colours(matrix, fit):
+    """From noise alone, 1, to ten times at least; where the noise of a run is not known, in per cent."""
+    spec = drawn("residual-map", matrix, fit)
+    (scale,) = [one["scale"] for one in every(spec, "color") if isinstance(one, dict) and one.get("field") == "m"]
+    assert scale["domain"][0] == 1
+    assert scale["domain"][1] >= 10
+    assert min(row["m"] for row in spec["datasets"]["map"]) >= 1
+    compared = Comparison(matrix, fit, tuple(map(make_comparison, matrix.runs)))
+    unknown = residual_map(compared, matrix.actuator, fit, LOOKS["light"], floors={})
+    assert "the noise of a run is not known" in unknown.to_json(ensure_ascii=False)
+
+
+def test_other_fits_are_drawn_over_the_first_in_a_colour_each(matrix, fit):
+    """Up to eight in all; what was measured is drawn once."""
+    held = replace(fit, parameters={**fit.parameters, "tau": replace(fit.parameters["tau"], fixed=True)})
+    spec = drawn_anew("bode", matrix, fit, other=[held, fit])
+    names = ["A: qian2014, 0.500 %", "B: qian2014, tau held, 0.500 %", "C: qian2014, 0.500 %"]
+    assert {row["s"] for row in spec["datasets"]["lines0"]} == set(names)
+    assert {row["s"] for row in spec["datasets"]["gain0"]} == {"measured"}
+    spec = drawn_anew("time", matrix, fit, other=[held])
+    assert {row["s"] for row in spec["datasets"]["residual"]} == set(names[:2])
+    with pytest.raises(Unusable, match="give 7 others at most"):
+        figure("step", study(matrix, fit), other=[fit] * 8)
+    with pytest.raises(Unusable, match="give one fit or several"):
+        figure("residual-spectrum", study(matrix, fit), other=["a"])
+
+
+def drawn_anew(name, matrix, fit, **options):
+    return json.loads(render(figure(name, study(matrix, fit), **options), "json"))

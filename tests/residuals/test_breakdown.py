@@ -9,7 +9,7 @@ import pytest
 
 from ident.comparison.compare import compare
 from ident.matrix import Matrix
-from ident.residuals.breakdown import breakdown
+from ident.residuals.breakdown import breakdown, in_bands, noise_in_bands
 from ident.residuals.budget import budget
 from ident.residuals.survey import survey
 from tests.residuals.conftest import compared
@@ -21,6 +21,19 @@ def test_the_bands_of_a_run_add_up_to_its_error():
     for run in found.runs:
         assert len(run.bands) == len(found.edges) - 1
         assert np.sqrt(sum(band**2 for band in run.bands if band)) == pytest.approx(run.error, rel=1e-3)
+
+
+def test_white_noise_is_once_the_noise_in_every_band():
+    """A residual of white noise alone, over the share of its floor that each band has; the shares add up as squares."""
+    base = compared("dead_zone", 0.0)
+    edges, floor, random = (0.0, 5.0, 50.0, 500.0, 2048.0), 0.02, np.random.default_rng(3)
+    one = base.runs[0]
+    measured = one.modelled + floor * np.std(one.modelled) * random.standard_normal(one.run.length)
+    noisy = replace(one, run=replace(one.run, channels={**one.run.channels, "displacement": measured}))
+    shares = noise_in_bands(noisy.run, floor, edges)
+    assert np.hypot.reduce(shares) == pytest.approx(floor, rel=1e-9)
+    ratios = np.divide(in_bands(noisy, edges), shares)
+    assert ratios[1:] == pytest.approx([1.0, 1.0, 1.0], abs=0.15)
 
 
 def test_a_dead_zone_shows_at_small_amplitudes():
