@@ -153,8 +153,8 @@ def _predicted(given: _Sensitivities, base: FittedModel, names: Sequence[str]) -
     for promise in promises:
         trial, after, _ = promise
         of_shape, shape = best[trial.effect], tuple(trial.shape.values())
-        known = of_shape.get(shape, nothing[trial.effect])[1].score
-        if after.score < (1.0 - CRITERIA.screening.score_tolerance) * known:
+        least = of_shape.get(shape, nothing[trial.effect])[1].score
+        if after.score < (1.0 - CRITERIA.screening.score_tolerance) * least:
             of_shape[shape] = promise
     few = slice(CRITERIA.screening.elsewhere)
 
@@ -176,7 +176,7 @@ def _predicted(given: _Sensitivities, base: FittedModel, names: Sequence[str]) -
 
 
 def _beyond(
-    models: CandidateModels, fitness: SimulatedFitness, known: Mapping[str, float], promises: Iterable[_Promise]
+    models: CandidateModels, fitness: SimulatedFitness, values: Mapping[str, float], promises: Iterable[_Promise]
 ) -> list[_Trial]:  # fmt: skip
     """Strengths beyond the end of a range, of effects that promise most there, and more the stronger they are.
 
@@ -186,7 +186,7 @@ def _beyond(
     for promise in promises:
         effect = promise[0].effect
         best[effect] = min(best.get(effect, promise), promise, key=_score)
-    bounds, most = fitness.space.bounds(known), (1.0 - EPSILON) * CRITERIA.screening.max_scaling
+    bounds, most = fitness.space.bounds(values), (1.0 - EPSILON) * CRITERIA.screening.max_scaling
     found = []
     for trial, _, step in best.values():
         lower, upper = bounds[models.strength(trial.effect)]

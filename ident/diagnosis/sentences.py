@@ -10,7 +10,7 @@ from ident.diagnosis.candidate import Candidate
 from ident.diagnosis.discovery.proposal import Proposal
 from ident.diagnosis.evidence.comparison import HALVES, Evidence, generalises, losing_part, matters
 from ident.diagnosis.evidence.criteria import EVIDENCE_CRITERIA
-from ident.diagnosis.evidence.probability import is_doubtful
+from ident.diagnosis.evidence.probability import is_improbable
 from ident.diagnosis.result import Explanation, Suspect
 from ident.diagnosis.total_delay import TotalDelay
 from ident.diagnosis.verification import Contradiction
@@ -98,8 +98,8 @@ def verdict_text(
     if added:
         of_groups = dict(zip(map(tuple, groups), group_probabilities, strict=False))
         effects = [_lacking(name, added, of_groups, probabilities, named) for name in added]
-        doubtful = any(is_doubtful(one.values.get("probability"), probabilities) for one in effects)
-        key = "verdict.partly" if against or unexplained else "verdict.may_lack" if doubtful else "verdict.lacks"
+        improbable = any(is_improbable(effect.values.get("probability"), probabilities) for effect in effects)
+        key = "verdict.partly" if against or unexplained else "verdict.may_lack" if improbable else "verdict.lacks"
         found.append(message(key, effects=effects, change=_change(before, errors, fewer, unstable)))
     elif not complete:
         found.append(message("verdict.unconfirmed", before=before))

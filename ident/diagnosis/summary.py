@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from ident.diagnosis.evidence.probability import is_doubtful
+from ident.diagnosis.evidence.probability import is_improbable
 from ident.diagnosis.result import Diagnosis, Suspect
 from ident.words.message import Message, message
 from ident.words.shown import in_brief
@@ -45,8 +45,8 @@ def _missing(found: Diagnosis) -> Message:
 
 def _missing_and_helping(found: Diagnosis, named: Sequence[Message]) -> Message:
     """What is missing, and apart from it what helps though it is less probable than not."""
-    known = found.verdict.probabilities
-    improbable = [is_doubtful(_probability(found, name), known) for name in found.verdict.effects]
+    of_all = found.verdict.probabilities
+    improbable = [is_improbable(_probability(found, name), of_all) for name in found.verdict.effects]
     missing = [effect for effect, doubted in zip(named, improbable, strict=True) if not doubted]
     helping = [effect for effect, doubted in zip(named, improbable, strict=True) if doubted]
     if not helping:
@@ -58,10 +58,10 @@ def _missing_and_helping(found: Diagnosis, named: Sequence[Message]) -> Message:
 
 
 def _by_chance(found: Diagnosis) -> bool:
-    """Whether all that is named is doubtful, and most probably nothing is missing."""
-    verdict, known = found.verdict, found.verdict.probabilities
-    doubtful = all(is_doubtful(_probability(found, name), known) for name in verdict.effects)
-    return bool(verdict.effects) and doubtful and known.get("nothing", 0.0) > known.get("unlisted", 0.0)
+    """Whether all that is named is improbable, and most probably nothing is missing."""
+    verdict, of_all = found.verdict, found.verdict.probabilities
+    improbable = all(is_improbable(_probability(found, name), of_all) for name in verdict.effects)
+    return bool(verdict.effects) and improbable and of_all.get("nothing", 0.0) > of_all.get("unlisted", 0.0)
 
 
 def _probability(found: Diagnosis, name: str) -> float | None:

@@ -127,8 +127,9 @@ def _allows(model: Preset, run: Described) -> bool:
 
 def _one_sided(run: Described) -> bool:
     """Whether a run that was read shows a command and an output that stay on one side of zero."""
-    recorded = isinstance(run, Run) and {"command", run.output} <= {*run.channels}
-    return recorded and one_sided(run.channels["command"]) and one_sided(run.channels[run.output])
+    if not isinstance(run, Run) or not {"command", run.output} <= {*run.channels}:
+        return False
+    return one_sided(run.command) and one_sided(run.measured)
 
 
 def _rank(model: Preset, runs: Sequence[Described]) -> int:

@@ -88,7 +88,7 @@ def probabilities(sets: SetGains, criteria: EvidenceCriteria = EVIDENCE_CRITERIA
     return Probabilities(*(dict(zip(sets.gains, of.tolist(), strict=True)) for of in weights))
 
 
-def is_doubtful(probability: float | None, of_all: Mapping[str, float]) -> bool:
+def is_improbable(probability: float | None, of_all: Mapping[str, float]) -> bool:
     """Whether an effect, with all of its group, is less probable than not, and what speaks against it is more probable.
 
     That is something unlisted, more probable than not, or that nothing is missing. The median model leaves it out
