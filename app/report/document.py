@@ -8,7 +8,7 @@ from functools import lru_cache
 from pathlib import Path
 
 from jinja2 import Environment, FileSystemLoader, StrictUndefined, Template
-from markupsafe import Markup
+from markupsafe import Markup, escape
 
 from app.report.blocks import Figure
 from app.report.content import content
@@ -36,11 +36,16 @@ def _picture(logo: Logo) -> str:
 
 
 def _inline(figure: Figure) -> Markup | str:
-    """A chart as SVG inside the page; its inner names get a prefix, so that no two figures share one."""
+    """A chart as SVG inside the page, one picture with its caption as its name.
+
+    Its inner names get a prefix, so that no two figures share one. Its marks have no names of their own to be read out.
+    """
     if isinstance(figure.chart, str):
         return figure.chart
     drawn = render(figure.chart, "svg").decode()
-    return Markup(re.sub(r'( id="|url\(#|href="#)', rf"\g<1>{figure.name}-", drawn))
+    named = re.sub(r'( id="|url\(#|href="#)', rf"\g<1>{figure.name}-", drawn)
+    silent = re.sub(r"<[^>]*>", lambda tag: re.sub(r' (?:role|aria-[a-z]+)="[^"]*"', "", tag[0]), named)
+    return Markup(silent.replace("<svg", f'<svg role="img" aria-label="{escape(figure.caption)}"', 1))
 
 
 @lru_cache
