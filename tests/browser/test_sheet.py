@@ -1,4 +1,4 @@
-"""A data sheet from the page of a fit: what is filled in stands on it, what is approved is said, and it can be signed."""
+"""A data sheet from the page of a fit: what is filled in stands on it, the approval is said, and it can be signed."""
 
 from __future__ import annotations
 
