@@ -312,7 +312,10 @@ class _JudgedStructure:
         return bool(self.best.at_bounds)
 
     def helped(self, report: Report) -> _JudgedStructure:
-        """The same with the effect of the catalogue that helps it most, as it is where none does."""
+        """The same with the effect of the catalogue that helps it most, as it is where none does.
+
+        One that no simulation confirms helps nothing: it would make a sound model look worse than any other.
+        """
         if not self.refit.finite:
             return self
 
@@ -320,7 +323,7 @@ class _JudgedStructure:
             report(replace(progress, stage="models with an effect", expected=()))
 
         ranking = rank(self.models, self.refit, list(self.models.effects), told, thorough=False)
-        refits = [one.refit for one in ranking if one.refit is not None and one.improves]
+        refits = [one.refit for one in ranking if one.refit is not None and one.improves and one.refit.finite]
         return replace(self, with_effect=min(refits, key=_held_out, default=None))
 
     def structure(self, over: float | None, more: Message | None, probability: float | None) -> Structure:
