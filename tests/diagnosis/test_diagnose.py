@@ -26,8 +26,8 @@ PLANT = linear.Plant()
 NOISE = 0.01
 
 
-def measured(seconds: float = 0.5, **hidden: float) -> Matrix:
-    """Nine of the 36 runs of the small matrix, half a second each, of every amplitude."""
+def measured(seconds: float = 0.3, **hidden: float) -> Matrix:
+    """Nine of the 36 runs of the small matrix, 0.3 s each, of every amplitude."""
     return Machine(PLANT, hidden, NOISE, small=True, seed=20).measured(seconds, every=4)
 
 

@@ -144,9 +144,9 @@ def arm(size: float, sign: float, use: str) -> Run:
     x, v, out = -0.9 * sign, 0.0, np.zeros(n)
     for k in range(n):
         out[k] = x
-        drive = np.sign(u[k]) * max(abs(u[k]) - 0.36, 0.0)
+        drive = float(np.sign(u[k])) * max(float(abs(u[k])) - 0.36, 0.0)
         for _ in range(20):
-            beyond = x - np.clip(x, -1.0, 1.0)
+            beyond = x - min(max(x, -1.0), 1.0)
             v += 1e-3 * (3.3 * (drive - v) - 2e3 * beyond - (30.0 * v if beyond else 0.0))
             x += 1e-3 * v
     out += 2e-3 * np.random.default_rng([5, int(10 * size)]).standard_normal(n)

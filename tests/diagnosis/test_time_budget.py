@@ -7,6 +7,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from functools import cache
 from itertools import islice
+from typing import Any
 
 import numpy as np
 import pytest
@@ -16,6 +17,7 @@ from ident.diagnosis.discovery.search import TermSearch
 from ident.diagnosis.discovery.term_library import TermLibrary
 from ident.diagnosis.result import Diagnosis
 from ident.errors import TimeIsUp
+from ident.fit.result import FitResult
 from ident.fit.simulated_runs import every_run
 from ident.matrix import Matrix
 from ident.parallel import each
@@ -23,7 +25,7 @@ from ident.presets import preset
 from ident.progress import Progress
 from ident.simulation import recursion, simulate
 from ident.time_budget import TimeBudget
-from ident.workflows import diagnose
+from ident.workflows import diagnose, identify
 from tests.blind.machines import Machine
 from tests.diagnosis.vary import vary
 from tests.reference import qian_reference as linear
@@ -64,10 +66,39 @@ class Events:
         return TimeBudget(LIMIT, lambda: self.now)
 
 
+class Counted:
+    """Work on one core, whose batches are counted where the compiled code is called."""
+
+    def __init__(self) -> None:
+        self.events = Events()
+
+    def telling(self, function: Callable[..., Any]) -> Callable[..., Any]:
+        """The function, which tells of each batch before it begins."""
+
+        def called(*given: Any) -> Any:
+            self.events.begun()
+            return function(*given)
+
+        return called
+
+    def fit(self) -> tuple[FitResult, int]:
+        """A fit, and the number of its batches."""
+        self.events = Events()
+        return identify(matrix()), len(self.events.stages)
+
+    def diagnosis(
+        self, last: int | None = None, propose: bool = True, fit: FitResult | None = None
+    ) -> tuple[Diagnosis, Events]:  # fmt: skip
+        """A diagnosis whose time is over at the `last` batch, and its batches."""
+        self.events = events = Events(last)
+        found = diagnose(matrix(), fit, most=1, propose=propose, report=events.report, budget=events.budget)
+        return found, events
+
+
 @pytest.fixture
-def counted(monkeypatch) -> Callable[..., tuple[Diagnosis, Events]]:
-    """A diagnosis on one core, whose batches are counted where the compiled code is called."""
-    here: list[Events] = []
+def counted(monkeypatch: pytest.MonkeyPatch) -> Counted:
+    """Diagnoses of few effects, and few terms."""
+    work = Counted()
     monkeypatch.setattr("ident.parallel._idle", lambda: threading.Semaphore(0))
     monkeypatch.setattr(
         candidate_models, "CATALOGUE", tuple(one for one in candidate_models.CATALOGUE if one.name in FEW)
@@ -79,23 +110,10 @@ def counted(monkeypatch) -> Callable[..., tuple[Diagnosis, Events]]:
     vary(monkeypatch, "discovery", classes=1, pairs=0)
     monkeypatch.setattr(TermSearch, "_drawn", lambda *_: None)
 
-    def telling(function):
-        def called(*given):
-            here[-1].begun()
-            return function(*given)
-
-        return called
-
     kernels = recursion.advance
-    monkeypatch.setattr(simulate, "advance_groups", telling(simulate.advance_groups))
-    monkeypatch.setattr(recursion, "advance", lambda *of: telling(kernels(*of)))
-
-    def diagnosed(last: int | None = None, propose: bool = True) -> tuple[Diagnosis, Events]:
-        here.append(events := Events(last))
-        found = diagnose(matrix(), most=1, propose=propose, report=events.report, budget=events.budget)
-        return found, events
-
-    return diagnosed
+    monkeypatch.setattr(simulate, "advance_groups", work.telling(simulate.advance_groups))
+    monkeypatch.setattr(recursion, "advance", lambda *of: work.telling(kernels(*of)))
+    return work
 
 
 def ends(stages: list[str], each_stage: int) -> list[int]:
@@ -110,9 +128,10 @@ def ends(stages: list[str], each_stage: int) -> list[int]:
 def test_after_the_limit_no_simulation_begins_in_any_stage(counted, full):
     """The fit, the ranking, the labels, lags and delays, the error budget, the next run and the terms.
 
-    In the short form the time is over once in each, in the full one twelve times.
+    In the short form the time is over once in each, in the full one twelve times. A fit that was made before is given
+    to what comes after it.
     """
-    whole, events = counted(propose=full)
+    whole, events = counted.diagnosis(propose=full)
     assert whole.complete
     assert whole.not_looked_at == ()
     assert events.late == 0
@@ -121,10 +140,12 @@ def test_after_the_limit_no_simulation_begins_in_any_stage(counted, full):
     cuts = ends(events.stages, 12 if full else 1)
     if not full:  # the way to the terms is the same
         cuts.append(len(events.stages) + 20)
+    fit, of_fit = counted.fit()
     for last in cuts:
-        found, cut = counted(last)
+        first = of_fit if last > of_fit else 0
+        found, cut = counted.diagnosis(last - first, fit=fit if first else None)
         assert cut.late == 0, (last, cut.stage)
-        assert len(cut.stages) == last
+        assert len(cut.stages) == last - first
         assert not found.complete
         assert found.not_looked_at
         assert f"Not looked at: {', '.join(found.not_looked_at)}." in found.verdict.text
