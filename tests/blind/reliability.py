@@ -19,7 +19,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from tests.blind.table import interval
+from tests.blind.interval import interval
 
 Array = NDArray[np.float64]
 BINS = (0.0, 0.2, 0.5, 0.8, 0.95, 0.99, 1.0)

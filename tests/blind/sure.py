@@ -8,11 +8,12 @@ from ident.diagnosis.result import Diagnosis
 
 
 def sure(found: Diagnosis) -> dict[str, Any]:
-    """The probability of the verdict, of each name, and every set of effects that was refitted."""
+    """The probability of the verdict, of each name, every set of effects that was refitted, and each step's error."""
     verdict = found.verdict
     return {
         "probability": verdict.probability,
         "probabilities": {name: float(f"{p:.4g}") for name, p in verdict.probabilities.items()},
         "effect_sets": [[list(one.effects), float(f"{one.nats:.5g}")] for one in found.effect_sets],
         "most_nats": found.most_nats,
+        "steps": [[rung.added, rung.error.get("fit")] for rung in found.ladder],
     }

@@ -9,9 +9,10 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from scipy.stats import beta
 
 from tests.blind.campaign import OUT, rows
+from tests.blind.fresh_table import FRESH, fresh
+from tests.blind.interval import interval
 from tests.blind.noises import NOISES
 
 PAGE = OUT.with_suffix(".md")
@@ -25,13 +26,6 @@ _WORDS = {
     "outside": "an effect that is not listed", "own": "the same, written as an equation",
     "label": "a wrong label on one run",
 }  # fmt: skip
-
-
-def interval(hits: int, trials: int) -> tuple[float, float]:
-    """The exact 95 % interval of a rate (Clopper and Pearson 1934)."""
-    lower = float(beta.ppf(0.025, hits, trials - hits + 1)) if hits else 0.0
-    upper = float(beta.ppf(0.975, hits + 1, trials - hits)) if hits < trials else 1.0
-    return lower, upper
 
 
 def rate(found: Sequence[Row]) -> str:
@@ -178,7 +172,8 @@ def page(everything: Sequence[Row]) -> str:
     """The whole page."""
     tried = [row for row in everything if row.get("reachable", True) and not row.get("void")]
     parts: list[tuple[str, Callable[[Sequence[Row]], Iterable[str]], Sequence[Row]]] = [
-        ("Rates", summary, tried), ("One effect, by noise and size", levels, tried),
+        ("Fresh seeds of every kind", fresh, rows(FRESH)), ("Rates", summary, tried),
+        ("One effect, by noise and size", levels, tried),
         ("Noise of other kinds", noises, tried), ("One strong effect among weak ones", cluttered, tried),
         ("What was named", confusion, tried),
         ("Unreachable", unreachable, everything), ("Machines that nobody described", labs, rows(LABS)),
@@ -198,7 +193,8 @@ def page(everything: Sequence[Row]) -> str:
         "effect that leaves d² ≤ 20, the sum of squares over the variance of the noise. A test counts as hidden where "
         "the base alone leaves d² ≥ 60 and 1.1 floors and the class holds at most three, as nothing where the base "
         "is in the class; others are dropped. A verdict is right where every name is in the class, or in a group that "
-        "lies in the class and holds the truth.\n"
+        "lies in the class and holds the truth. Fresh seeds of every kind are tried one of each in turn by `python -m "
+        "tests.blind.fresh`; their rows stand in blind-fresh.jsonl. The rates that follow them are older.\n"
     )
     return head + "\n".join(f"\n## {title}\n\n" + "\n".join(make(of)) + "\n" for title, make, of in parts)
 

@@ -96,15 +96,15 @@ class EvidenceCriteria:
     three standard deviations apart where |f − g|² = 36 σ²: half of |f − g| over σ is the deviation of the
     likelihood ratio, taken from either side.
     Test: test_evidence.py::test_two_models_whose_outputs_the_noise_hides_are_indistinguishable"""
-    learning_rate: float = 0.41
+    learning_rate: float = 0.39
     """[1] Factor of a gain in the logarithm of a model's weight. Why: fitted to the training seeds of
     docs/decisions/evidence.md and frozen.
     Test: test_evidence.py::test_probabilities_are_frozen"""
-    effect_prior: float = 4.5
+    effect_prior: float = 6.2
     """[1] By how much the logarithm of a model's weight falls with each effect. Why: fitted to the training seeds
     of docs/decisions/evidence.md and frozen.
     Test: test_evidence.py::test_probabilities_are_frozen"""
-    unlisted_share: float = 0.9
+    unlisted_share: float = 0.87
     """[1] Share of what is left to be gained that something unlisted is credited with. Why: a listed effect explains
     in detail what it explains, something unlisted only that there is something; single effects do not tell it, and
     with a larger share several effects that leave nothing but noise would lose to it.
@@ -114,7 +114,7 @@ class EvidenceCriteria:
     harmonics a random phase is often met by some candidate, and the bar comes near to all that can be gained; what
     gains half of that, in the logarithm, leaves little to anything else.
     Test: test_evidence.py::test_what_reaches_the_noise_passes_where_one_harmonic_is_all_there_is"""
-    unlisted_prior: float = 5.15
+    unlisted_prior: float = 6.7
     """[1] By how much the logarithm of a model's weight falls with something unlisted. Why: fitted to the training
     seeds of docs/decisions/evidence.md, with the true effects taken off the list.
     Test: test_evidence.py::test_probabilities_are_frozen"""

@@ -1,0 +1,42 @@
+"""What is said of the trials that are kept: an effect that is named takes a share that matters of what could be."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from itertools import pairwise
+from typing import Any
+
+from ident.diagnosis.criteria import CRITERIA
+from tests.blind.campaign import OUT, rows
+from tests.blind.fresh_table import FRESH
+from tests.blind.machines import OFFSET
+from tests.blind.table import PAGE, PERIODIC, page
+
+Row = dict[str, Any]
+
+
+def steps(row: Row) -> Iterator[tuple[str, float, float, float]]:
+    """Each step of a trial: what was added, the error before and after, and the noise floor, in one unit."""
+    if row.get("steps"):
+        floor = row.get("floor") if "found" in row else (row.get("floor") or 1.0) * row["noise"]
+        for (_, before), (added, after) in pairwise(row["steps"]):
+            if added not in OFFSET and before and after:
+                yield added, before, after, floor or 0.0
+    elif "periods" in row and len(row.get("named", [])) == 1:
+        yield row["named"][0], row["linear"], row["errors"]["fit"], row["floor"] or 0.0
+
+
+def test_no_effect_is_named_that_takes_less_than_a_hundredth_of_what_could_be_explained():
+    """Where no floor is known all of the error is to be explained."""
+    seen = 0
+    for row in (*rows(PERIODIC), *rows(FRESH)):
+        for added, before, after, floor in steps(row):
+            explainable = before**2 - min(floor, after) ** 2
+            share = (before**2 - after**2) / explainable
+            assert share > CRITERIA.evidence.share, (row["seed"], added, share)
+            seen += 1
+    assert seen > 100
+
+
+def test_the_page_is_made_of_the_rows_that_are_kept():
+    assert PAGE.read_text() == page(rows(OUT))
