@@ -111,7 +111,7 @@ def better_with_fewer(steps: Rungs) -> tuple[float, tuple[str, ...]] | None:
 def group_of(effect: str, verdict: Verdict) -> tuple[str, ...]:
     """The group of the verdict that an effect belongs to; none where there is no other, or where it holds two lags.
 
-    Effects that tie at the first step may be told apart at the last: what the verdict tells apart is no group.
+    Effects that tie at the first step may differ at the last: what the verdict distinguishes is no group.
     """
     groups = (group for group in verdict.indistinguishable if len({*group} & {*verdict.effects}) < 2)
     return next((group for group in groups if effect in group), ())
