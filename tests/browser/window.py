@@ -16,7 +16,8 @@ from tests.running import Service
 SIZE: ViewportSize = {"width": 1280, "height": 720}
 CLIPBOARD = ["clipboard-read", "clipboard-write"]  # which a browser with a window lets a person's click write
 USUAL = 30_000.0  # ms, for what a page is to show
-LOADED = 5000.0  # ms for a page: one that an earlier click keeps from loading is asked for again
+LOADED = 5000.0  # ms for a page: one that an earlier click keeps from loading is asked for again, with twice as much
+TRIES = 5
 SETTLED = 40.0  # ms in which an answer to an action may come
 LONGEST = 8.0  # s for what takes milliseconds, on a machine whose cores all have other work
 
@@ -97,11 +98,20 @@ def hearing(page: Page, heard: Mapping[str, Callable[[Any], None]]) -> Iterator[
 
 
 def visit(page: Page, address: str) -> None:
-    """Open a page; once more where an earlier click was on its way to another."""
-    for _ in range(5):
+    """Open a page; once more where an earlier click was on its way to another.
+
+    One that was asked for before and is slow to come may get in the way of itself: then it is waited for.
+    """
+    coming = False
+    for tried in range(TRIES):
+        until = {"wait_until": "domcontentloaded", "timeout": LOADED * 2**tried}
         try:
-            page.goto(address, wait_until="domcontentloaded", timeout=LOADED)
-        except Error:
+            if coming:
+                page.wait_for_url(lambda url: url == address, **until)  # type: ignore[arg-type]
+            else:
+                page.goto(address, **until)  # type: ignore[arg-type]
+        except Error as error:
+            coming = f'by another navigation to "{address}"' in str(error)
             page.wait_for_timeout(SETTLED)
         else:
             return
