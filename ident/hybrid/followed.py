@@ -88,7 +88,7 @@ class Followed(Shown):
         return read(cls, data)
 
     @classmethod
-    def of(cls, found: Tracked, draws: int, spread: Spread) -> Followed:
+    def of(cls, found: Tracked, draws: int, spread: str = str(Covariance())) -> Followed:
         """Of what was tracked: at most 600 points of each curve."""
         places = np.unique(np.linspace(0, len(found.reference) - 1, _SHOWN).astype(np.intp))
         low, high = found.band()
@@ -100,7 +100,7 @@ class Followed(Shown):
             gain=found.gain,
             limit=found.limit if np.isfinite(found.limit) else None,
             draws=draws,
-            spread=str(spread),
+            spread=spread,
             feedback_rms=float(rms["feedback"]),
             both_rms=float(rms["both"]),
             drawn_feedback_rms=told["drawn_feedback"],
@@ -133,4 +133,4 @@ def followed_in(fit: FitResult, case: Case, seed: int = 0, spread: Spread | None
     wanted = reference(case, case.ground.samples(case.sample_rate))[::every]
     plant, drawn = plant_in(fit, case), drawn_parameters(fit, seed=seed, spread=spread)
     found = tracked(plant, plant, wanted, case.sample_rate / every, drawn)
-    return Followed.of(found, len(next(iter(drawn.values()), ())), spread or Covariance())
+    return Followed.of(found, len(next(iter(drawn.values()), ())), str(spread or Covariance()))

@@ -6,10 +6,17 @@ import numpy as np
 import pytest
 
 from ident.errors import Unusable
+from ident.fit.result import FitResult
+from ident.fit.settings import Settings
 from ident.hybrid.changed_machine import Change, changed_machine
 from ident.hybrid.chosen_gain import GainTarget, choose_gain
+from ident.workflows import identify
+from tests.acceptance.matrices import NOISE, as_matrix
+from tests.reference import qian_reference
 from tests.stability import servo_reference as reference
-from tests.stability.test_judgement import fit_of
+from tests.stability.test_judgement import UNITS, fit_of
+
+GAIN = 5.0
 
 OMEGA = np.geomspace(0.05, 5e3, 20_000)
 TARGETS = {"phase_margin": (50.0, 2.0), "bandwidth": (8.0, 0.24), "peak": (2.0, 0.2)}
@@ -39,6 +46,27 @@ def test_the_true_machine_has_what_is_wanted(quantity, full):
         assert measured(of, chosen.gain)[quantity] == pytest.approx(wanted, abs=tolerance)
         spread = chosen.quantities[quantity]
         assert spread.lower < spread.value < spread.upper
+
+
+def fitted_to(of, seed) -> FitResult:
+    """The fit to records of a machine, 1 s of each specimen and amplitude at Kp = 5, with 0.5 % noise."""
+    plant = qian_reference.Plant(**{name: of[name] for name in UNITS})
+    trials = [trial for trial in qian_reference.trials() if trial.cell.gain == GAIN]
+    records = qian_reference.measure_all(plant, trials, seconds=1.0, noise=NOISE, seed=seed, hold="linear")
+    return identify(as_matrix(records, "linear"), Settings(seed=1))
+
+
+@pytest.mark.parametrize("number", range(3))
+def test_a_gain_from_a_fit_gives_the_true_machine_what_is_wanted(number, full):
+    """Seeds 560 to 562: machines within 30 % of Table 4, each target from one fit; 34 of them in the long form."""
+    for draw in range(34 if full else 1):
+        rng = np.random.default_rng([560 + number, draw])
+        of = {name: value * rng.uniform(0.7, 1.3) for name, value in reference.TABLE_4.items()} | {"T": 0.0}
+        fit = fitted_to(of, draw)
+        for quantity, (wanted, tolerance) in TARGETS.items():
+            chosen = choose_gain(fit, changed_machine(fit, Change()), GainTarget(quantity, wanted))
+            assert chosen.reached
+            assert measured(of, chosen.gain)[quantity] == pytest.approx(wanted, abs=tolerance), (draw, quantity)
 
 
 def test_a_gain_margin_is_met_and_what_follows_is_said():
