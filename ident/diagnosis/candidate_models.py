@@ -376,9 +376,10 @@ class CandidateModels:
     ) -> FittedModel:
         """The optimum near `start`, on shortened records where `samples` is given."""
         fitness = self.fitness(effects, samples)
-        known = {p.in_equations: p.value for p in fitness.preset.parameters} | dict(start) | dict(fitness.space.fixed)
-        fitness = self.reaching(effects, fitness, [known])
-        point = fitness.space.point(known)
+        usual = {p.in_equations: p.value for p in fitness.preset.parameters}
+        values = {**usual, **start, **fitness.space.fixed}
+        fitness = self.reaching(effects, fitness, [values])
+        point = fitness.space.point(values)
         way = way or (CRITERIA.estimation.trial if samples else CRITERIA.estimation.full)
         found = self._optimum(effects, fitness, point, way, samples)
         for _ in range(ROUNDS):
