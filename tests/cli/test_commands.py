@@ -136,7 +136,9 @@ def test_compare_writes_every_figure_in_every_format(servoident, few, fit_file, 
         "residual-map",
         "residual-curve",
         "residual-correlation",
-        "starts",
+        "residual-spectrum",
+        "step",
+        "pole-zero",
     ):
         for kind, start in starts.items():
             assert (tmp_path / "figures" / f"{name}.{kind}").read_bytes().startswith(start)
