@@ -22,7 +22,7 @@ MEASURED = np.sin(np.arange(1000) / 50.0)
 
 def refit(begins: str, left: float, promised: float = 0.1) -> FittedModel:
     """A refit that promises an error on one run, and whose simulation leaves another."""
-    run = SimpleNamespace(id="a", begins=begins, measured=MEASURED, share=1.0)
+    run = SimpleNamespace(id="a", begins=begins, measured=MEASURED, share=1.0, output="displacement")
     fitness = SimpleNamespace(
         runs=(run,),
         matrix=SimpleNamespace(of_use=lambda _use: (run,)),
@@ -31,7 +31,8 @@ def refit(begins: str, left: float, promised: float = 0.1) -> FittedModel:
         horizon=None,
     )
     fitness.fresh = lambda _runs: fitness
-    here = SimpleNamespace(error=promised, runs=(SimpleNamespace(error=promised, offset=0.0, share=1.0),))
+    found = SimpleNamespace(error=promised, offset=0.0, share=1.0, transducer="")
+    here = SimpleNamespace(error=promised, runs=(found,), curvature=np.zeros((1, 1)))
     return FittedModel((), {}, None, np.zeros(1), here, fitness, None)
 
 
