@@ -22,6 +22,7 @@ import numpy as np
 from tests.blind import any_trial, clutter, left_out, periodic_trial, trial, unlisted
 from tests.blind.campaign import add, rows
 from tests.blind.fresh_table import FRESH, counts, fresh
+from tests.blind.machines import OFFSET
 from tests.blind.noises import NOISES
 from tests.reference.unlisted_reference import NAMES as UNLISTED
 
@@ -57,7 +58,7 @@ def left_out_one(seed: int) -> Row:
     """An effect of the catalogue that the program does not have: whether an equation of the same class comes back."""
     rng = _drawn(seed, 2)
     while True:
-        name = str(rng.choice([name for name in trial.NAMES if name not in left_out.OFFSET]))
+        name = str(rng.choice([name for name in trial.NAMES if name not in OFFSET]))
         row = left_out.trial(name, seed, 3.0)
         if row["reachable"] and row["told"]:
             return row | {"right": bool(row["equivalent"])}

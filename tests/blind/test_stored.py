@@ -26,7 +26,7 @@ def steps(row: Row) -> Iterator[tuple[str, float, float, float]]:
         yield row["named"][0], row["linear"], row["errors"]["fit"], row["floor"] or 0.0
 
 
-def test_no_effect_is_named_that_takes_less_than_a_hundredth_of_what_could_be_explained():
+def test_no_effect_is_named_that_takes_less_than_a_hundredth_of_what_could_be_explained() -> None:
     """Where no floor is known all of the error is to be explained."""
     seen = 0
     for row in (*rows(PERIODIC), *rows(FRESH)):
@@ -38,5 +38,5 @@ def test_no_effect_is_named_that_takes_less_than_a_hundredth_of_what_could_be_ex
     assert seen > 100
 
 
-def test_the_page_is_made_of_the_rows_that_are_kept():
+def test_the_page_is_made_of_the_rows_that_are_kept() -> None:
     assert PAGE.read_text() == page(rows(OUT))
