@@ -15,7 +15,7 @@ import pytest
 
 from app.pages import next_view
 from ident.bench import acceptance, time_constant
-from ident.comparison import compare, profile
+from ident.comparison import frequency_response, profile
 from ident.diagnosis.criteria import CRITERIA
 from ident.effects import EFFECTS
 from ident.figures import bode, residual_curve, sensitivity, time
@@ -208,7 +208,7 @@ def of_figures() -> Iterator[Tie]:
     yield F, "of a first-order loop over time in their {} % bands", (per_cent(within(tracking_figure.BAND)),)
     yield F, "shows the validation runs, at most {} of them", (word(bode._ALONE),)
     yield F, "with several gains at most {} columns of {} runs", (word(bode.FACETS), word(bode._EACH))
-    yield F, "H1 estimate with windows of {:g} s", (compare._WINDOW,)
+    yield F, "H1 estimate with windows of {:g} s", (frequency_response._WINDOW,)
     yield F, "smallest and largest sample of each of {} parts", (time.BINS,)
 
 

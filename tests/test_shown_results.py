@@ -13,6 +13,7 @@ import pytest
 
 import ident
 from ident.bench.analysis import Analysis
+from ident.bench.position_loop import AmplitudeMargin, PositionLoop, Regulator
 from ident.comparison.profile import Profile
 from ident.comparison.side_by_side import of_fits
 from ident.design.experiment import Experiment
@@ -57,6 +58,8 @@ def results() -> dict[str, Shown]:
         Followed(gain=20.0, limit=40.0, draws=0, feedback_rms=1e-3, both_rms=1e-4, drawn_feedback_rms=None,
                  drawn_both_rms=None, drawn_ratio=None, t=curve, reference=curve, feedback=curve, both=curve,
                  low=curve, high=curve),
+        PositionLoop("kononykhin", Regulator(100.0), 0.003, (AmplitudeMargin(0.05, 0.1, -5.0, False, text="at 5 %"),),
+                     None, None, "stable"),
         Analysis(notes=("a note",)), ident.plan({"gains": [5.0], "amplitudes": ["1 mm"]}),
     )  # fmt: skip
     return {type(one).__name__: one for one in many if one is not None}

@@ -16,6 +16,7 @@ from ident.figures.options import RUN
 from ident.figures.render import Chart, datasets
 from ident.figures.study import Study
 from ident.hybrid.poles_and_zeros import Root, poles_and_zeros
+from ident.words.message import message
 from ident.words.number import plain
 
 _CROSS = "M-1,-1L1,1M-1,1L1,-1"
@@ -46,7 +47,7 @@ def pole_zero(roots: Sequence[Root], told: Sequence[str], headline: str, look: L
     edge = alt.Chart(alt.InlineData(values=[{"x": 0.0}])).mark_rule(color=look.ink, strokeDash=[5, 3]).encode(x="x:Q")
     chart: Chart = alt.layer(
         *_rays(reach, look), edge, marks, width=look.across(520), height=400,
-        title=alt.TitleParams(headline, subtitle=list(told)), datasets=datasets({"roots": rows}),
+        title=alt.TitleParams(headline, subtitle=words.wrapped(told, look)), datasets=datasets({"roots": rows}),
     ).configure(**look.config())  # fmt: skip
     return chart
 
@@ -73,9 +74,7 @@ def _drawn(study: Study, look: Look, options: Options) -> Chart:
     found = poles_and_zeros(study.fit, run, study.matrix.actuator)
     told = [words.verdict(study.fit), f"linearised under the conditions of {words.describe(run)}"]
     if found.left_out:
-        told.append(
-            f"without {', '.join(found.left_out)}, which {'acts' if len(found.left_out) == 1 else 'act'} by amplitude"
-        )
+        told.append(str(message("poles.left_out", names=found.left_out)))
     told.append(f"slowest: {'; '.join(root.words for root in found.slowest(_FIRST))}")
     headline = words.headline(study.matrix.actuator, "poles and zeros of the model")
     return pole_zero(found.roots, told, headline, look)

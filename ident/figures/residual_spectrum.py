@@ -19,6 +19,7 @@ from ident.figures.render import Chart, datasets
 from ident.figures.study import Study
 from ident.figures.thin import decade_ticks
 from ident.residuals.breakdown import band_edges, in_bands, noise_in_bands
+from ident.words.run_name import run_name
 
 _NOISE = "noise, spread evenly over frequency"
 
@@ -54,7 +55,7 @@ def residual_spectrum(
         tooltip=[alt.Tooltip("s:N", title="Model"), alt.Tooltip("f:Q", title=f"From ({unit})", format=".3g"),
                  alt.Tooltip("e:Q", title="Residual (%)", format=".3g")],
     )  # fmt: skip
-    subtitle = [*told, f"last band: all above {edges[-2]:.3g} {unit}"]
+    subtitle = words.wrapped([*told, f"last band: all above {edges[-2]:.3g} {unit}"], look)
     chart: Chart = alt.layer(
         lines, width=look.across(640), height=300, title=alt.TitleParams(headline, subtitle=subtitle),
         datasets=datasets({"bands": rows}),
@@ -73,7 +74,7 @@ def _drawn(study: Study, look: Look, options: Options) -> Chart:
     run, others = one(study.matrix, options) or typical(study.matrix, study.fit), others_of(options)
     compared = [each.compared((run,)).runs[0] for each in (study, *map(study.beside, others))]
     if all(each.unstable for each in compared):
-        raise Unusable("unstable-model", f"the model is unstable on run {run.id}", "fit", "choose another run")
+        raise Unusable("unstable-model", f"the model is unstable on {run_name(run.id)}", "fit", "choose another run")
     names = titles_of((study.fit, *others), compared) if others else ("model",)
     stable = {name: each for name, each in zip(names, compared, strict=True) if not each.unstable}
     if others:

@@ -55,7 +55,7 @@ def step(run: Run, found: Mapping[str, StepResponse], told: Sequence[str], headl
     band = alt.Chart(alt.InlineData(values=[{"low": ends[0]["y"], "high": ends[1]["y"]}])).mark_rect(
         color=look.faint, opacity=0.15
     ).encode(y="low:Q", y2="high:Q")  # fmt: skip
-    heading = alt.TitleParams(headline, subtitle=[*told, *_read(found)])
+    heading = alt.TitleParams(headline, subtitle=words.wrapped([*told, *_read(found)], look))
     chart: Chart = alt.layer(
         band, lines, width=look.across(640), height=300, title=heading, datasets=datasets({"step": rows})
     ).configure(**look.config())  # fmt: skip

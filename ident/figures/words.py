@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+import textwrap
+from collections.abc import Iterable, Sequence
 
 from ident.comparison.compare import RunComparison
+from ident.figures.look import Look
 from ident.fit.result import FitResult
 from ident.matrix import Actuator
 from ident.run import USES, Run, Specimen
@@ -15,6 +17,8 @@ from ident.words.percent import percent as in_percent
 from ident.words.run_name import run_name
 from ident.words.uses import DATA
 
+_ACROSS = 105
+"""[letters] Of a caption that a figure of the usual width has room for. Test: tests/browser/test_pages.py."""
 _SIGNS = "²³"  # raised: a 4 or a minus is missing from too many fonts
 
 
@@ -61,6 +65,11 @@ def gain(of: float | None) -> str:
 def headline(actuator: Actuator, what: str) -> str:
     """A figure's title."""
     return f"{actuator.serial} · {what}"
+
+
+def wrapped(lines: Sequence[str], look: Look) -> list[str]:
+    """Lines of a caption, each broken where a figure of the usual width ends."""
+    return [part for line in lines for part in textwrap.wrap(line, look.across(_ACROSS))]
 
 
 def verdict(fit: FitResult) -> str:

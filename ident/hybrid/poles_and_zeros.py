@@ -44,7 +44,8 @@ class Root:
     def words(self) -> str:
         """ "12.3 Hz, ζ 0.42", of a real one "3.1 Hz"."""
         real = abs(self.imaginary) < 1e-9 * self.frequency
-        return f"{plain(self.frequency, 3)} Hz" + ("" if real else f", ζ {plain(self.damping, 3)}")
+        damping = "" if real else f", ζ {plain(self.damping, 3)}"
+        return f"{plain(self.frequency, 3)} Hz{damping}"
 
 
 @dataclass(frozen=True)

@@ -94,4 +94,5 @@ def _said(found: Sequence[Readouts], names: Sequence[tuple[str, str, str]]) -> I
         if known and len(known) == len(found):
             least, most = plain(min(known), 3), plain(max(known), 3)
             space = "" if unit == "°" else " "
-            yield f"{text} {least if least == most else f'{least} to {most}'}{space}{unit}"
+            size = least if least == most else f"{least} to {most}"
+            yield f"{text} {size}{space}{unit}"

@@ -10,7 +10,6 @@ their noise (Lepski 1991). A signal without noise keeps m = 1.
 from __future__ import annotations
 
 import numpy as np
-import scipy
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
@@ -49,7 +48,7 @@ def smoothed_slope(signal: Array) -> Array | None:
     tried: list[tuple[float, Array]] = []
     for m in WIDTHS:
         j = np.arange(-m, m + 1)
-        slope = scipy.ndimage.correlate1d(signal, j / np.sum(j**2), mode="nearest")
+        slope = np.convolve(np.pad(signal, m, "edge"), -j / np.sum(j**2), "valid")
         inside = slice(WIDTHS[-1], -WIDTHS[-1])
         if any(np.sqrt(np.mean((slope - narrower)[inside] ** 2)) > AGREES * noise for noise, narrower in tried):
             break

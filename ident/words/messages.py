@@ -39,6 +39,7 @@ FIGURES: Mapping[str, str] = {
     "rig.ran_away": "unstable: ran away after {after:quantity}",
     "peak": "a peak at {frequency} ± {tolerance} Hz",
     "peak.inside": "a peak at {frequency} ± {tolerance} Hz inside the axes",
+    "poles.left_out": "without what acts by amplitude: {names:listed}",
     "loop.stands":
         "At {amplitude:percent} of the rated current the actuator stands: the amplitude is within its dead space.",
     "loop.no_gain":

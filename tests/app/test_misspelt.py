@@ -66,6 +66,11 @@ MISSPELT: dict[tuple[str, str], list[tuple[tuple[str, ...], str]]] = {
     ("plan", "--spread"): [(("--program", "qian", "--fit", "FIT", "--spread", "tua=0.1", "--out", "OUT"), "tau")],
     ("control", "--case"): [(("FIT", "--case", "qain", "--out", "OUT"), "qian")],
     ("control", "--structure"): [(("FIT", "--case", "qian", "--structure", "feedbak", "--out", "OUT"), "feedback")],
+    ("control", "--spread"): [(("FIT", "--case", "qian", "--spread", "tua=0.1", "--out", "OUT"), "tau")],
+    ("hybrid", "--spread"): [(("FIT", "--case", "qian", "--spread", "tua=0.1"), "tau")],
+    ("whatif", "--spread"): [(("FIT", "--choose", "phase_margin=50", "--spread", "tua=0.1"), "tau")],
+    ("control", "--before-case"): [(("FIT", "--case", "qian", "--before-case", "qain", "--out", "OUT"), "qian")],
+    ("hybrid", "--before-case"): [(("FIT", "--case", "qian", "--before-case", "qain"), "qian")],
     ("hybrid", "--case"): [(("FIT", "--case", "benchmark202"), "benchmark2020")],
     ("hybrid", "--controller"): [(("FIT", "--case", "qian", "--controller", "kalmann"), "kalman")],
     ("hybrid", "--ground"): [(("FIT", "--case", "qian", "--ground", "blnw"), "blwn")],
@@ -101,7 +106,8 @@ MISSPELT: dict[tuple[str, str], list[tuple[tuple[str, ...], str]]] = {
 
 ADDRESSES = {"--server", "--token", "--data", "--database", "--blobs", "--host", "--allow-host", "--proxy",
              "--webhook-host", "url"}  # fmt: skip
-MADE_UP = {"--executor", "--why", "--name", "--expires", "--approved-after", "--confirm"}
+MADE_UP = {"--executor", "--why", "--name", "--expires", "--approved-after", "--confirm", "--laboratory",
+           "--customer", "--order", "--operator", "--date", "--oil-temperature"}  # fmt: skip
 QUANTITIES = {"--rate", "--area", "--gain", "--noise", "--peak", "--amplitude", "--tolerance", "--axes", "--up-to",
               "--sample-rate", "--before-gain"}  # fmt: skip
 DRAWN = {"fit", "matrix", "webhook", "token", "--by", "--object"}

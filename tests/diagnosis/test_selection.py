@@ -10,7 +10,6 @@ from typing import Any
 import pytest
 
 from ident.diagnosis import candidate, moves
-from ident.diagnosis import selection as selecting
 from ident.diagnosis.moves import Moves
 from ident.diagnosis.selection import Selection
 from ident.diagnosis.selection_loop import add_and_exchange, select
@@ -161,7 +160,7 @@ class Judged:
         """For what a search asks of real refits."""
         asked = ("rank", "rank_each", "deepened", "improves", "better", "with_free_widths", "with_free_shapes")
         equal = ("indistinguishable", "dominated")
-        for module, names in ((moves, asked), (selecting, equal[:1]), (candidate, equal)):
+        for module, names in ((moves, asked), (candidate, equal)):
             for name in names:
                 monkeypatch.setattr(module, name, getattr(self, name))
 

@@ -106,6 +106,7 @@ def test_what_is_joined_from_parts_is_seen(source):
 
 KEPT = {
     "ident/export/fmu.py": "names of a platform",
+    "app/report/workbook.py": "XML",
     "app/pages/manual.py": "HTML",
     "ident/words/arguments.py": "a type in words, of its parts",
     "ident/design/experiment.py": "the unit of a time",

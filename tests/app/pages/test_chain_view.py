@@ -12,16 +12,16 @@ from ident.fit.settings import Settings
 from ident.presets import PRESETS, preset
 
 TAKEN = {
-    "qian2014": 46,
+    "qian2014": 47,
     "first_order": 18,
     "two_tanks": 19,
-    "drive": 21,
-    "open_valve": 43,
-    "motor": 30,
-    "specimen": 13,
-    "force_loop": 46,
+    "drive": 22,
+    "open_valve": 44,
+    "motor": 31,
+    "specimen": 14,
+    "force_loop": 47,
     "kononykhin": 8,
-    "strano": 43,
+    "strano": 44,
 }
 LOOPS = {
     "qian2014": {"v", "y"}, "first_order": set(), "drive": set(), "open_valve": {"v"}, "motor": set(),
