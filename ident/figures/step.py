@@ -99,4 +99,4 @@ def _drawn(study: Study, look: Look, options: Options) -> Chart:
     return step(run, found, told, words.headline(actuator, "step response of the model"), look)
 
 
-STEP = Drawing("step", "Step response", Study, _drawn, (RUN, Option("seconds", "Length (s)"), OTHER), share=0.84)
+STEP = Drawing("step", "Step response", Study, _drawn, (RUN, Option("seconds", "Length (s)"), OTHER), share=0.81)
