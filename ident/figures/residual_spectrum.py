@@ -85,4 +85,4 @@ def _drawn(study: Study, look: Look, options: Options) -> Chart:
     return residual_spectrum(stable, study.floors.by_run[run.id], told, headline, look)
 
 
-RESIDUAL_SPECTRUM = Drawing("residual-spectrum", "Residual over frequency", Study, _drawn, (RUN, OTHER), share=0.84)
+RESIDUAL_SPECTRUM = Drawing("residual-spectrum", "Residual over frequency", Study, _drawn, (RUN, OTHER), share=0.79)
