@@ -54,11 +54,14 @@ def evolution(
     panels.append(_history(look, wide=bool(panels)))
     title = alt.TitleParams(
         words.headline(actuator, "how the search converged"),
-        subtitle=[
-            words.verdict(fit),
-            f"Method {fit.method}, seed {fit.seed}, {fit.evaluations:,} evaluations",
-            "cross: the final estimate, after the refinement (Levenberg-Marquardt) that begins where the search ended",
-        ],
+        subtitle=words.wrapped(
+            [
+                words.verdict(fit),
+                f"Method {fit.method}, seed {fit.seed}, {fit.evaluations:,} evaluations",
+                "cross: the final estimate, after the refinement (Levenberg-Marquardt) that begins where the search ended",
+            ],
+            look,
+        ),
     )
     chart: Chart = (
         alt.vconcat(*panels, title=title, spacing=24, datasets=datasets(tables))
