@@ -58,7 +58,7 @@ def evolution(
             [
                 words.verdict(fit),
                 f"Method {fit.method}, seed {fit.seed}, {fit.evaluations:,} evaluations",
-                "cross: the final estimate, after the refinement (Levenberg-Marquardt) that begins where the search ended",
+                "cross: the final estimate, after the refinement (Levenberg-Marquardt) that follows the search",
             ],
             look,
         ),
