@@ -76,10 +76,8 @@ def prepared(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
 
 @pytest.mark.usefixtures("prepared")
 @pytest.mark.parametrize("model", MODELS)
-def test_an_effect_is_searched_within_bounds_and_simulated_or_refused_in_one_line(model, full):
+def test_an_effect_is_searched_within_bounds_and_simulated_or_refused_in_one_line(model):
     """Refused are those that the model has no place for, and those that read what the model is to show; no others."""
-    if not full and model in MACHINES[1::2]:
-        pytest.skip("five of the ten machines of stages: run all with --full")
     matrix = records(model, SHORT)
     for effect in CATALOGUE:
         settings = Settings(model=model, effects=(effect.name,))
