@@ -11,6 +11,7 @@ from ident.bench.position_loop import AmplitudeMargin, PositionLoop
 from ident.custom.definition import preset_with
 from ident.figures import drawings
 from ident.stability.judgement import UNSTABLE
+from ident.words.number import plain
 from ident.words.percent import percent
 from schemas.hybrid import PositionLoopRequest
 
@@ -95,4 +96,8 @@ def _row(one: AmplitudeMargin) -> MarginRow:
 
 
 def _cell(value: float | None, unit: str) -> str:
-    return "none" if value is None else f"{value:.4g} {unit}".replace("-", "−")
+    """Three digits, as the sentences have them; a degree stands close to its number."""
+    if value is None:
+        return "none"
+    space = "" if unit == "°" else " "
+    return f"{plain(value, 3)}{space}{unit}".replace("-", "−")
