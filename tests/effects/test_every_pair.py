@@ -18,6 +18,7 @@ from ident.bench import analysis as bench
 from ident.bench import identification as bench_identification
 from ident.bench.records import bench_set
 from ident.effects import CATALOGUE
+from ident.effects import effect as known_effect
 from ident.effects.effect import Effect
 from ident.errors import Unusable
 from ident.fit.settings import Settings
@@ -81,7 +82,7 @@ def test_an_effect_is_searched_within_bounds_and_simulated_or_refused_in_one_lin
     matrix = records(model, SHORT)
     for effect in CATALOGUE:
         settings = Settings(model=model, effects=(effect.name,))
-        if preset(model).takes(effect) and any(matrix.runs[0].output in text for text in effect.texts):
+        if preset(model).takes(effect) and reads_output(effect, matrix):
             with pytest.raises(Unusable, match="no effect can read it"):
                 identification(matrix, settings)
         elif preset(model).takes(effect):
@@ -90,6 +91,11 @@ def test_an_effect_is_searched_within_bounds_and_simulated_or_refused_in_one_lin
             with pytest.raises(Unusable, match=effect.name) as refused:
                 identification(matrix, settings)
             assert "\n" not in str(refused.value)
+
+
+def reads_output(effect: Effect, matrix: Matrix) -> bool:
+    """Whether an effect reads the channel that the model is to show."""
+    return any(matrix.runs[0].output in text for text in effect.texts)
 
 
 def simulated(work: Any, effect: Effect) -> None:
@@ -123,7 +129,7 @@ def test_drawn_pairs_are_fitted_to_the_end(full):
     for number in rng.permutation(len(pairs)):
         model, effect = pairs[number]
         matrix = bench_records() if preset(model).kind == "bench" else own_records(model)
-        if matrix is None:
+        if matrix is None or reads_output(known_effect(effect), matrix):
             continue
         found = identify(matrix, Settings(model=model, effects=(effect,), seed=1))
         assert found.effects == (effect,)
