@@ -10,7 +10,7 @@ from typing import Any, Literal
 from ident.errors import Unusable
 from ident.plain import WHERE_KNOWN
 from ident.rig.limits import RigLimits
-from ident.rig.test_record import UNSTATED, TestRecord
+from ident.rig.provenance import UNSTATED, Provenance
 from ident.run import Run
 from ident.words.shown import Listing, Shown
 
@@ -76,7 +76,7 @@ class Matrix(Shown):
     notices: tuple[str, ...] = ()  # what reading changed or assumed, in words
     machine: str = ""  # the name of the model that the description puts together from stages
     preprocessing: tuple[StepOutcome, ...] = ()  # the steps that it went through, none as it was read
-    test: TestRecord = UNSTATED  # who measured, when, for whom
+    test: Provenance = UNSTATED  # who measured, when, for whom
 
     def __add__(self, other: Matrix) -> Matrix:
         """The runs of both. Raises Unusable where they are of two actuators, or a run's id is in both."""

@@ -20,7 +20,7 @@ from app.tables import FitRow
 from ident.diagnosis.result import Diagnosis
 from ident.fit.result import FitResult
 from ident.matrix import Matrix
-from ident.rig.test_record import TestRecord
+from ident.rig.provenance import Provenance
 from ident.words.nearest import did_you_mean
 
 __all__ = ["POLICY", "as_html", "as_pdf", "as_tables", "table"]
@@ -65,5 +65,5 @@ def _sheet(context: Context, row: FitRow, stated: Mapping[str, str]) -> Sheet:
         fit=row.id, fitted=row.created_at, logo=logo(settings.logo) if settings.logo else None,
         approval=None if approved is None else Approval(approved.who, approved.since, approved.why),
     ).of(stated)  # fmt: skip
-    house = TestRecord(laboratory=settings.laboratory)
+    house = Provenance(laboratory=settings.laboratory)
     return replace(given, test=given.test.over(matrices.load(context, row.matrix).test).over(house))

@@ -11,8 +11,8 @@ import numpy as np
 from ident.errors import Unusable
 from ident.fit.result import FitResult
 from ident.matrix import Matrix
-from ident.readers.test_description import describe_test
-from ident.rig.test_record import UNSTATED, TestRecord
+from ident.readers.provenance_description import describe_test
+from ident.rig.provenance import UNSTATED, Provenance
 from ident.words.engineering import quantity
 from ident.words.number import plain
 
@@ -43,7 +43,7 @@ class Approval:
 class Sheet:
     """`test` stands over what the data set states; `fit` and `fitted` are the id of a stored fit and its date."""
 
-    test: TestRecord = UNSTATED
+    test: Provenance = UNSTATED
     fit: str = ""
     fitted: str = ""
     approval: Approval | None = None
@@ -88,7 +88,7 @@ def _approved(sheet: Sheet) -> str:
     return f"by {sheet.approval.who or 'unknown'} on {sheet.approval.since[:10]}{why}"
 
 
-def temperature(test: TestRecord, matrix: Matrix) -> str:
+def temperature(test: Provenance, matrix: Matrix) -> str:
     """As it is stated, else the range of the means of what the runs recorded, °C."""
     means = [float(np.mean(run.channels["temperature"])) for run in matrix.runs if "temperature" in run.channels]
     known = [test.oil_temperature] if test.oil_temperature is not None else means

@@ -12,12 +12,12 @@ from ident.presets import preset
 from ident.presets.description import described
 from ident.readers.fields import Fields
 from ident.readers.limits import Limits
+from ident.readers.provenance_description import describe_test
 from ident.readers.rig import rig_of
 from ident.readers.run_description import RunDescription, describe_run
 from ident.readers.source import DESCRIPTION, inside
 from ident.readers.strict_yaml import read_yaml
-from ident.readers.test_description import describe_test
-from ident.rig.test_record import UNSTATED, TestRecord
+from ident.rig.provenance import UNSTATED, Provenance
 from ident.units.quantity import shown
 
 TOP = ("actuator", "runs", "controller", "machine", "limits", "rig", "test")
@@ -34,7 +34,7 @@ class Description:
     limits: str | None
     machine: str
     profile: str = ""
-    test: TestRecord = UNSTATED
+    test: Provenance = UNSTATED
 
 
 def describe(text: bytes, limits: Limits) -> Description:

@@ -17,8 +17,8 @@ from app.report.document import document
 from app.report.sheet import Approval, Logo, Sheet, facts, logo
 from ident.diagnosis.result import Diagnosis
 from ident.errors import Unusable
-from ident.readers.test_description import describe_test
-from ident.rig.test_record import TestRecord
+from ident.readers.provenance_description import describe_test
+from ident.rig.provenance import Provenance
 from tests.app.report.test_report import DIAGNOSIS
 from tests.residuals.conftest import compared
 
@@ -30,7 +30,7 @@ LEAST = 0.55  # of a page that is not the last: below, it is half empty
 def base():
     """A fit beside its data, whose data set names laboratory and operator."""
     found = compared("coulomb_friction")
-    matrix = replace(found.matrix, test=TestRecord(laboratory="Hydraulics 2", operator="nobody"))
+    matrix = replace(found.matrix, test=Provenance(laboratory="Hydraulics 2", operator="nobody"))
     return replace(found, matrix=matrix)
 
 

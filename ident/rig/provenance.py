@@ -6,7 +6,7 @@ from dataclasses import dataclass, fields
 
 
 @dataclass(frozen=True)
-class TestRecord:
+class Provenance:
     """What is stated of a test, as text for people; `oil_temperature` is in K. What is not stated is empty or None."""
 
     laboratory: str = ""
@@ -16,13 +16,11 @@ class TestRecord:
     date: str = ""
     oil_temperature: float | None = None
 
-    __test__ = False  # to pytest it looks like a class of tests
-
-    def over(self, other: TestRecord) -> TestRecord:
+    def over(self, other: Provenance) -> Provenance:
         """What this states, and of the rest what the other states."""
-        return TestRecord(**{of.name: getattr(self, of.name) or getattr(other, of.name) for of in fields(TestRecord)})
+        return Provenance(**{of.name: getattr(self, of.name) or getattr(other, of.name) for of in fields(Provenance)})
 
 
-UNSTATED = TestRecord()
+UNSTATED = Provenance()
 TEXTS = ("laboratory", "customer", "order", "operator", "date")
 """Those of its fields that are lines of text."""

@@ -8,11 +8,11 @@ from typing import Any
 
 from ident.errors import Unusable
 from ident.readers.fields import Fields
-from ident.rig.test_record import TEXTS, TestRecord
+from ident.rig.provenance import TEXTS, Provenance
 from ident.units.quantity import shown
 
 
-def describe_test(data: Mapping[str, Any], where: str = "test") -> TestRecord:
+def describe_test(data: Mapping[str, Any], where: str = "test") -> Provenance:
     """Raises Unusable for a key that there is not, a date that is none, a temperature without a unit."""
     fields = Fields(data, where, (*TEXTS, "oil_temperature"))
     day = fields.text("date")
@@ -22,6 +22,6 @@ def describe_test(data: Mapping[str, Any], where: str = "test") -> TestRecord:
         except ValueError:
             what = f"{shown(day)!r} is not a date"
             raise Unusable("not-a-date", what, fields.place("date"), "write year, month, day: 2026-03-31") from None
-    return TestRecord(
+    return Provenance(
         **{name: fields.text(name) for name in TEXTS}, oil_temperature=fields.positive("oil_temperature", "temperature")
     )
