@@ -7,7 +7,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from ident.resolution import resolution
+from ident.resolution import noise_of, resolution
 
 Samples = NDArray[np.float64]
 Beginning = Literal["at rest", "standing", "moving"]
@@ -39,7 +39,7 @@ def beginning(x: Samples, command: Samples | None, sample_rate: float, stepped: 
     n = _first(x, sample_rate)
     size, speed = float(np.std(x)), float(np.std(x[n:] - x[:-n])) / n
     slope, value = np.polyfit(np.arange(n), x[:n], 1)
-    noise = min(_noise(x), MOST_NOISE * size) if len(x) > 8 else 0.0
+    noise = min(noise_of(x), MOST_NOISE * size) if len(x) > 8 else 0.0
     if command is not None and abs(command[0]) > DRIVEN * np.std(command):
         few = abs(x[0]) <= AT_ZERO * size and abs(x[1] - x[0]) <= SLOW * speed
         if few or (stepped and abs(x[0]) <= max(STEP_ANSWER * size, ERRORS * noise)):
@@ -68,15 +68,6 @@ def standing_for(x: Samples, command: Samples | None, sample_rate: float) -> int
     parts = (x[: _first(x, sample_rate)], *np.array_split(x[:count], 4))
     means, errors = [part.mean() for part in parts], [part.std() / np.sqrt(len(part)) for part in parts]
     return count if np.ptp(means) <= AT_ZERO * np.std(x) + ERRORS * max(errors) else 0
-
-
-def _noise(x: Samples) -> float:
-    """The standard deviation of the noise of a record, by the quieter part of its differences of fourth order.
-
-    These leave the noise of a well sampled record (their gain on white noise is √70). Where it jumps, as under repeated
-    steps, they hold the jump: the lower quartile of their sizes, 0.3186 standard deviations of noise, does not see it.
-    """
-    return float(np.quantile(np.abs(np.diff(x, 4)), 0.25)) / 0.3186 / float(np.sqrt(70.0))
 
 
 def _first(x: Samples, sample_rate: float) -> int:

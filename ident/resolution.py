@@ -1,4 +1,4 @@
-"""The resolution of a reading: the last bit of its converter, or the count of its encoder."""
+"""What a reading cannot show: its resolution, the last bit of a converter or the count of an encoder, and its noise."""
 
 from __future__ import annotations
 
@@ -18,3 +18,12 @@ def resolution(samples: NDArray[np.float64]) -> float:
     if not len(changes) or len(changes) > CHANGING * len(samples):
         return 0.0
     return float(np.min(changes))
+
+
+def noise_of(samples: NDArray[np.float64]) -> float:
+    """The standard deviation of the white noise in a reading (n,), by its fourth differences where it bends least.
+
+    These leave the noise of a well sampled record: their gain on white noise is √70. Where it jumps, as under repeated
+    steps, they hold the jump: the lower quartile of their sizes, 0.3186 standard deviations of noise, does not see it.
+    """
+    return float(np.quantile(np.abs(np.diff(samples, 4)), 0.25)) / 0.3186 / float(np.sqrt(70.0))

@@ -12,6 +12,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from ident.resolution import noise_of
+
 Array = NDArray[np.float64]
 WIDTHS = (1, 2, 3, 4, 6, 8, 11, 16, 23, 32)
 """[samples] Half-widths m that are tried: steps of a third, as each takes a third of the noise away."""
@@ -28,14 +30,6 @@ AGREES = 1.15
 """[standard deviations] By which two slopes may differ, of the narrower line's noise. Why: that makes most of it.
 
 Test: tests/test_slopes.py::test_a_slope_is_smoothed_no_wider_than_it_bends"""
-
-
-def noise_of(signal: Array) -> float:
-    """The standard deviation of the white noise in a signal (n,), by its fourth differences where it bends least.
-
-    Their gain on white noise is √70, and the lower quartile of their sizes is 0.3186 standard deviations.
-    """
-    return float(np.quantile(np.abs(np.diff(signal, 4)), 0.25)) / 0.3186 / float(np.sqrt(70.0))
 
 
 def smoothed_slope(signal: Array) -> Array | None:
