@@ -25,6 +25,7 @@ from app.cli.fit_options import (
     settings,
 )
 from app.cli.given import read_fit
+from app.cli.last_diagnosis import LAST, keep
 from app.cli.output import STANDARD_OUTPUT, check_target, write_json
 from app.cli.preprocessing_options import (
     NoCommandOffset,
@@ -117,7 +118,9 @@ def diagnose(
         with shown() as report, budget.running():
             named, choice = modelled(records, model if given is None else given.model, report, off)
     except TimeIsUp:
-        _tell(unfitted(records, replace(Settings(), model="", seed=seed, preprocessing=off), budget.taken), json)
+        _tell(
+            unfitted(records, replace(Settings(), model="", seed=seed, preprocessing=off), budget.taken), matrix, json
+        )
         return
     chosen = settings(named, effect, method, bounds, set_, load, seed, option, preprocessing=off, candidates=True)
     given = choice.made(chosen) if given is None else with_candidates_given(given, chosen.bounds, chosen.fixed)
@@ -133,16 +136,18 @@ def diagnose(
             choice.matrix, given, replace(chosen, custom=defined), most=most, custom=effects, report=report,
             seconds=time, budget=budget, found=follow, propose=propose,
         )  # fmt: skip
-    _tell(found, json)
+    _tell(found, matrix, json)
 
 
-def _tell(found: Diagnosis, target: Path | None) -> None:
+def _tell(found: Diagnosis, matrix: Path, target: Path | None) -> None:
+    """Keep the diagnosis, write it, and show it with the commands that come next."""
+    kept = keep(found)
     if target is not None:
         write_json(found.to_json(), target)
     if target != STANDARD_OUTPUT:
         from app.cli.diagnosis_tables import show_diagnosis
 
-        show_diagnosis(found, *([str(target)] if target is not None else []))
+        show_diagnosis(found, matrix, target or (Path(LAST) if kept else None))
 
 
 @contextmanager

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+from shlex import quote
 from typing import TYPE_CHECKING
 
 from app.cli.tables import output, show
@@ -10,10 +12,10 @@ if TYPE_CHECKING:
     from ident.diagnosis.result import Diagnosis
 
 
-def show_diagnosis(found: Diagnosis, file: str = "D.json") -> None:
-    """Print a diagnosis: errors, ranking, ladder, suspects, verdict, and the command that comes next.
+def show_diagnosis(found: Diagnosis, matrix: Path, file: Path | None) -> None:
+    """Print a diagnosis: errors, ranking, ladder, suspects, verdict, and the commands that come next, as they are run.
 
-    `file` is where its JSON was written.
+    `file` is where its JSON was written, None where it can be read nowhere again.
     """
     from ident.diagnosis.recommended import next_command, next_run_command
 
@@ -23,8 +25,9 @@ def show_diagnosis(found: Diagnosis, file: str = "D.json") -> None:
         from ident.diagnosis.sentences import proposed_text
 
         console.print(proposed_text(found.proposals), markup=False)
-    if command := next_command(found, file):
-        console.print(command, markup=False)
-    if run := next_run_command(found, file):
-        console.print(run, markup=False)
+    if file is not None:
+        given = quote(str(file)), quote(str(matrix))
+        for command in (next_command(found, *given), next_run_command(found, *given)):
+            if command:
+                console.print(command, markup=False)
     console.print(f"seed {found.seed}: {found.seconds:.2f} s")

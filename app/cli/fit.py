@@ -83,19 +83,21 @@ def fit(
         no_run_exclusion=no_run_exclusion, no_force_sign=no_force_sign, no_command_offset=no_command_offset,
         no_stroke_centre=no_stroke_centre, no_initial_state=no_initial_state,
     )  # fmt: skip
-    continued = None
+    begun = None
     if start is not None:
         others = {"--model": model, "--custom": custom, "--bounds": bounds, "--set": set_, "--load": load != "none",
                   **{f"--no-{name.replace('_', '-')}": True for name in off}}  # fmt: skip
         how = Searched(method, seed, tuple(option or ()), budget)
-        continued = StartOptions(start, tuple(effect or ()), terms, search, how, others).settings()
+        begun = StartOptions(start, tuple(effect or ()), terms, search, how, others)
+        begun.check()
     elif search:
         raise Unusable("bad-option", "--search needs --start, which is not given", "--search", "give --start FILE.json")
 
     def fitted(path: Path, report: Report) -> FitResult:
-        if continued is not None:
-            return identify(read_matrix(path), continued, report)
-        named, choice = modelled(read_matrix(path), model, report, off)
+        records = read_matrix(path)
+        if begun is not None:
+            return identify(records, begun.settings(records), report)
+        named, choice = modelled(records, model, report, off)
         chosen = settings(named, effect, method, bounds, set_, load, seed, option, custom, budget, terms, off)
         result = choice.made(chosen) or identify(choice.matrix, chosen, report)
         return replace(result, structures=choice.structures)

@@ -54,8 +54,9 @@ StartFile = Annotated[
     Path | None,
     typer.Option(
         "--start",
-        metavar="FILE.json",
-        help="Start from the result of a fit or a diagnosis, with its model, effects, terms, windows and runs. "
+        metavar="FILE.json|last",
+        help="Start from the result of a fit or a diagnosis, with its model, effects, terms, windows and runs; last is "
+        "the latest diagnosis of these data. "
         "--effect selects another candidate of a diagnosis.",
     ),
 ]

@@ -8,13 +8,17 @@ from typing import Annotated
 import typer
 
 from app.cli.given import read_diagnosis
+from app.cli.last_diagnosis import found_file
 from app.cli.output import STANDARD_OUTPUT, check_target, write_json
 from app.cli.rig_option import RigFile, on_rig
 
 
 def next_(
     matrix: Annotated[Path, typer.Argument(metavar="MATRIX", help="Data set: a folder, its matrix.yaml, or a .zip.")],
-    diagnosis: Annotated[Path, typer.Option(metavar="D.json", help="File from `servoident diagnose --json`.")],
+    diagnosis: Annotated[
+        Path,
+        typer.Option(metavar="D.json|last", help="File from `servoident diagnose --json`, or last: the latest kept."),
+    ],
     out: Annotated[Path, typer.Option(metavar="DIR", help="Folder for command.csv, command.mat, experiment.json.")],
     seed: Annotated[int, typer.Option(min=0, max=2**31 - 1, help="Seed of the command signal.")] = 0,
     rig: RigFile = None,
@@ -29,8 +33,9 @@ def next_(
     from ident.readers import read_matrix
 
     check_target(json)
-    in_question = competing_models(read_diagnosis(diagnosis))
-    proposal = propose(in_question, on_rig(read_matrix(matrix), rig), seed)
+    records = read_matrix(matrix)
+    in_question = competing_models(read_diagnosis(found_file(diagnosis, records)))
+    proposal = propose(in_question, on_rig(records, rig), seed)
     proposal.write(out)
     if json is not None:
         write_json(proposal.to_json(), json)

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from app.cli.given import read_diagnosis, read_fit
+from app.cli.last_diagnosis import found_file
 from app.cli.output import check_target, write_bytes
 from app.cli.report_options import Customer, Laboratory, Logo, OilTemperature, Operator, Order, TestDate
 from ident.errors import Unusable
@@ -30,7 +31,8 @@ def report(
         Path | None, typer.Option(metavar="FIT.json", help="Fit. Default: make a fit with default settings.")
     ] = None,
     diagnosis: Annotated[
-        Path | None, typer.Option(metavar="D.json", help="File from `servoident diagnose --json`.")
+        Path | None,
+        typer.Option(metavar="D.json|last", help="File from `servoident diagnose --json`, or last: the latest kept."),
     ] = None,
     laboratory: Laboratory = "",
     customer: Customer = "",
@@ -58,11 +60,11 @@ def report(
     from ident.readers import read_matrix
     from ident.workflows import identify
 
-    found = None if diagnosis is None else read_diagnosis(diagnosis)
     stated = {"laboratory": laboratory, "customer": customer, "order": order, "operator": operator, "date": date,
               "oil_temperature": oil_temperature}  # fmt: skip
     sheet = Sheet(logo=picture(logo) if logo else None).of(stated)
     read = read_matrix(matrix)
+    found = None if diagnosis is None else read_diagnosis(found_file(diagnosis, read))
     if result is None:
         with shown() as progress:
             result = identify(read, Settings(), progress)

@@ -9,10 +9,12 @@ from typing import TYPE_CHECKING
 
 from app.cli.arguments import method_options
 from app.cli.given import read_result
+from app.cli.last_diagnosis import found_file
 from ident.errors import Unusable
 
 if TYPE_CHECKING:
     from ident.fit.settings import Settings
+    from ident.matrix import Matrix
 
 
 @dataclass(frozen=True)
@@ -40,19 +42,23 @@ class StartOptions:
     searched: Searched = field(default_factory=Searched)
     others: Mapping[str, object] = field(default_factory=dict)
 
-    def settings(self) -> Settings:
-        """The settings of the fit that the file leads to. Raises Unusable."""
-        from ident.diagnosis.recommended import settings_after
-
+    def check(self) -> None:
+        """Raise Unusable where options are given that do not go together."""
         given = [name for name, value in self.others.items() if value]
         if given:
             raise Unusable("bad-option", f"{' and '.join(given)} cannot be given with a start", "--start",
                            "leave out what the file decides: model, effects, bounds and values")  # fmt: skip
-        found = settings_after(read_result(self.file), self.effects, self.terms, self.search)
+        if not self.search and self.searched != Searched():
+            raise Unusable("bad-option", "options of a search are given, and no search is made", "--start",
+                           "add --search, or leave out --method, --seed, --option and --budget")  # fmt: skip
+
+    def settings(self, matrix: Matrix) -> Settings:
+        """The settings of the fit of a matrix that the file leads to. Raises Unusable."""
+        from ident.diagnosis.recommended import settings_after
+
+        file = found_file(self.file, matrix)
+        found = settings_after(read_result(file), self.effects, self.terms, self.search)
         if not self.search:
-            if self.searched != Searched():
-                raise Unusable("bad-option", "options of a search are given, and no search is made", "--start",
-                               "add --search, or leave out --method, --seed, --option and --budget")  # fmt: skip
             return found
         how = self.searched
         options = method_options(list(how.option))

@@ -73,8 +73,10 @@ def recommended(found: Diagnosis, terms: int | None = None) -> End:
     return ladder[-1]
 
 
-def next_command(found: Diagnosis, file: str = "D.json") -> str:
+def next_command(found: Diagnosis, file: str = "D.json", matrix: str = "MATRIX") -> str:
     """The command that makes the recommended fit, in sentences; "" where a diagnosis has nothing to add.
+
+    `file` is that of the diagnosis and `matrix` that of its data, both as a shell takes them.
 
     Nor is there one where validation data contradict its effects, or where an earlier version did not tell what its
     refits ended with.
@@ -84,13 +86,13 @@ def next_command(found: Diagnosis, file: str = "D.json") -> str:
     if contradicted or (not proposals and not any(end.added for end in _rungs(found))):
         return ""
     end = recommended(found)
-    command = message("recommended", file=file, effects=end.added, error=end.error.get("fit"))
+    command = message("recommended", matrix=matrix, file=file, effects=end.added, error=end.error.get("fit"))
     return said([command, *([message("recommended.terms")] if proposals else [])])
 
 
-def next_run_command(found: Diagnosis, file: str = "D.json") -> str:
+def next_run_command(found: Diagnosis, file: str = "D.json", matrix: str = "MATRIX") -> str:
     """The command that writes the proposed run, in a sentence; "" where none is proposed."""
-    return "" if found.next_experiment is None else str(message("recommended.run", file=file))
+    return "" if found.next_experiment is None else str(message("recommended.run", matrix=matrix, file=file))
 
 
 def end_with(found: Diagnosis, effects: Sequence[str]) -> End | None:

@@ -231,9 +231,9 @@ SEARCH: Mapping[str, str] = {
     "refused.error_verify": "With it the error is {error:error} ({verify:error} on validation data).",
     "term.hypothesis": "{meaning} (a hypothesis: too few runs to confirm it)",
     "recommended":
-        "`servoident fit MATRIX --start {file}` makes the recommended fit, with {effects:titles}. It begins where the "
-        "diagnosis ended, at an error of {error:percent}.",
-    "recommended.run": "`servoident next MATRIX --diagnosis {file} --out DIR` writes the proposed run.",
+        "`servoident fit {matrix} --start {file}` makes the recommended fit, with {effects:titles}. It begins where "
+        "the diagnosis ended, at an error of {error:percent}.",
+    "recommended.run": "`servoident next {matrix} --diagnosis {file} --out next-run` writes the proposed run.",
     "recommended.terms": "--terms N takes the first N of the proposed terms, 0 none.",
     "run.next": "Run a {conditions}.",
     "run.separates": "After a refit, {models:all} differ by {separation:.3g} standard deviations of the noise.",

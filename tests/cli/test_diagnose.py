@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import json
+import re
+import shlex
 from pathlib import Path
 
 import pytest
@@ -126,7 +128,7 @@ def test_a_proposed_term_goes_from_a_diagnosis_into_a_fit(servoident, tmp_path):
     (term,) = json.loads(found.read_text())["proposals"]
     assert term["equation"] == "w = w + s * (w * exp(-((x - xm) / d)**2))"
     assert "acts at one part of the way" in " ".join(done.stdout.split())
-    assert f"`servoident fit MATRIX --start {found}`" in " ".join(done.stdout.split())
+    assert f"`servoident fit {matrix} --start {found}`" in " ".join(done.stdout.split())
     assert "Beyond the library a search proposes: w = w + s * (w * exp(" in " ".join(done.stdout.split())
     promised = json.loads(found.read_text())["proposals"][0]["error"]["fit"]
     for how in ("--custom", "--start"):
@@ -152,13 +154,26 @@ def test_the_recommended_fit_begins_where_the_diagnosis_ended(servoident, matrix
     diagnosis, fitted = tmp_path / "D.json", tmp_path / "fit.json"
     diagnosis.write_text(json.dumps(found))
     assert "makes the recommended fit, with dead zone. It begins where the diagnosis ended" in " ".join(printed.split())
-    for start in (diagnosis, fitted):
+    for start in (diagnosis, fitted, "last"):
         done = servoident("fit", matrix, "--start", start, "--json", fitted)
         assert done.returncode == 0, done.stderr
         fit = json.loads(fitted.read_text())
         assert (fit["effects"], fit["method"]) == (["dead_zone"], "refinement")
         assert fit["error"]["fit"] <= (1 + 1e-6) * found["ladder"][-1]["error"]["fit"]
-        assert fit["settings"]["start"]["of"] == ("diagnosis" if start == diagnosis else "fit")
+        assert fit["settings"]["start"]["of"] == ("fit" if start == fitted else "diagnosis")
+
+
+def test_the_commands_that_are_printed_run_as_they_stand(servoident, matrix, tmp_path, monkeypatch):
+    """Also where no file was written: the latest diagnosis of these data is kept."""
+    monkeypatch.chdir(tmp_path)
+    with of_few_effects(full=False):
+        printed = servoident("diagnose", matrix, "--max-effects", 1, "--no-propose").stdout
+    commands = re.findall(r"`servoident ([^`]*)`", " ".join(printed.split()))
+    assert [command.split()[0] for command in commands] == ["fit", "next"]
+    for command in commands:
+        done = servoident(*shlex.split(command))
+        assert done.returncode == 0, done.stderr
+    assert (tmp_path / "next-run" / "command.csv").is_file()
 
 
 @pytest.mark.parametrize(("options", "said"), [

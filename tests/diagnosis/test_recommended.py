@@ -158,7 +158,7 @@ def test_the_command_that_comes_next_names_the_model_its_error_and_the_file():
     assert next_run_command(replace(found, next_experiment=None)) == ""
     proposed = NextRun(amplitude=1e-3, signal="blwn", frequency=10.0, seconds=5.0, sample_rate=1000.0)
     run = next_run_command(replace(found, next_experiment=proposed), "found.json")
-    assert run == "`servoident next MATRIX --diagnosis found.json --out DIR` writes the proposed run."
+    assert run == "`servoident next MATRIX --diagnosis found.json --out next-run` writes the proposed run."
     nothing = replace(found, proposals=(), ladder=found.ladder[:1])
     assert next_command(nothing) == ""
     earlier = replace(found, proposals=(), ladder=tuple(replace(rung, parameters={}) for rung in found.ladder))
