@@ -44,7 +44,12 @@ class Moves:
     def __post_init__(self) -> None:
         self.refitted_sets = RefittedSets(self.base)
         self.latest = Selection(
-            self.models, self.base, (self.base,), rungs=Ladder(self.models), refitted_sets=self.refitted_sets
+            self.models,
+            self.base,
+            (self.base,),
+            most=self.most,
+            rungs=Ladder(self.models),
+            refitted_sets=self.refitted_sets,
         )
 
     def keep(self, selection: Selection) -> Selection:

@@ -95,7 +95,7 @@ def _text(selection: Selection, steps: Rungs, found: Findings, floor: float | No
         found.added, verdict.indistinguishable, found.suspects, verdict.unexplained, steps[-1][1].errors,
         selection.base.error, repeats is not False, floor, against, selection.complete, models.described,
         found.at_bound, fewer, steps[-1][1].unstable.get("verify", ()), verdict.probabilities,
-        verdict.group_probabilities,
+        verdict.group_probabilities, selection.limit,
     )  # fmt: skip
 
 

@@ -18,7 +18,7 @@ class Selection:
 
     `path` are the fitted models, the given one first; `ranking` is the first ranking; `alternatives` are for each added
     effect the candidates that are indistinguishable from it, itself included, best first. `changes` counts the moves
-    that call for another round. Not `complete`, there was no time for all of it.
+    that call for another round. At most `most` effects are added. Not `complete`, there was no time for all of it.
     """
 
     models: CandidateModels
@@ -27,6 +27,7 @@ class Selection:
     ranking: tuple[Candidate, ...] = ()
     alternatives: Mapping[str, list[Candidate]] = field(default_factory=dict)
     changes: int = 0
+    most: int | None = None
     complete: bool = False
     rungs: Ladder = field(kw_only=True, compare=False, repr=False)
     refitted_sets: RefittedSets = field(kw_only=True, compare=False, repr=False)
@@ -40,6 +41,11 @@ class Selection:
     def added(self) -> tuple[str, ...]:
         """The effects that the last model has over the given one."""
         return tuple(name for name in self.fitted.effects if name not in self.base.effects)
+
+    @property
+    def limit(self) -> int | None:
+        """The number of effects that ended the selection: no more were to be added; None where it did not."""
+        return self.most if self.most and len(self.added) >= self.most else None
 
     def ladder(self) -> Rungs:
         """From the given model to the last, one effect a step, without the detours: what was added, and the model."""

@@ -82,6 +82,7 @@ def verdict_text(
     against: Sequence[Contradiction] = (), complete: bool = True, described: Callable[[str], str] = title,
     bounded: Sequence[str] = (), fewer: tuple[float, Sequence[str]] | None = None, unstable: Sequence[str] = (),
     probabilities: Mapping[str, float] = MappingProxyType({}), group_probabilities: Sequence[float] = (),
+    limit: int | None = None,
 ) -> str:  # fmt: skip
     """The verdict in a few sentences, what speaks against it first.
 
@@ -89,7 +90,8 @@ def verdict_text(
     `described` tells what an effect is the first time that it is named; `bounded` are those whose strength ended at the
     bound of its search. `fewer` is the error on verify runs without the last of what was added, where it is
     smaller there; `unstable` are the verify runs on which the model is unstable with it. `probabilities` are those
-    of effects, of "nothing" and of something "unlisted", `group_probabilities` those of the groups.
+    of effects, of "nothing" and of something "unlisted", `group_probabilities` those of the groups. `limit` is the
+    number of effects that ended the search, where that did.
     """
     named = _described_once(described)
     found = [one.message(named(one.effect)) for one in against]
@@ -113,7 +115,10 @@ def verdict_text(
     found += [_group(group, added, named, unexplained) for group in groups]
     found += [message("verdict.label", run=one.run, what=one.what, evidence=one.evidence) for one in suspects]
     if unexplained:
-        found.append(_probable("verdict.unlisted" if complete else "verdict.remains", "unlisted", probabilities))
+        examined = complete and limit is None
+        found.append(_probable("verdict.unlisted" if examined else "verdict.remains", "unlisted", probabilities))
+        if limit is not None:
+            found.append(message("verdict.limited", limit=limit))
         if not repeats:
             found.append(message("verdict.not_repeated"))
     return said(found)

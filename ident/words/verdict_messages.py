@@ -111,6 +111,8 @@ VERDICT: Mapping[str, str] = {
     "verdict.remains": "Part of the error remains unexplained.",
     "verdict.remains_probable":
         "Part of the error remains unexplained (probability {probability:probability}).",
+    "verdict.limited":
+        "At most {limit} of the listed effects could be added (--max-effects): others may explain this part.",
     "verdict.not_repeated":
         "No command was repeated: part of it may be noise in the band of the command, which a repeated run would show.",
     "group": "These data cannot distinguish {group:all}.",

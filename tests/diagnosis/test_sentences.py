@@ -57,6 +57,13 @@ def test_an_effect_of_a_group_is_said_with_the_others_and_the_probability_of_the
     assert "More probably this has another cause, or is chance." in text
 
 
+def test_where_no_more_effects_could_be_added_it_is_not_said_that_none_explains_the_rest():
+    said = [verdict_text(("dead_zone",), (), (), True, {"fit": 0.1}, 0.2, limit=limit) for limit in (None, 1)]
+    assert "none of the listed effects explains" in said[0]
+    assert "none of the listed" not in said[1]
+    assert "At most 1 of the listed effects could be added (--max-effects): others may explain this part." in said[1]
+
+
 @pytest.mark.parametrize("against", [True, False])
 def test_a_verdict_says_what_an_effect_does_once(against):
     models = family(matrix(Actuator("ANY")))
