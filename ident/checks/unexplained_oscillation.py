@@ -11,7 +11,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-import scipy  # signal, which takes a third of a second to load, is loaded where it is first used
+import scipy.fft  # not scipy.signal, which takes a second of every diagnosis to load
 from numpy.typing import NDArray
 
 from ident.run import Run, Samples
@@ -128,7 +128,9 @@ def _strongest(signal: Samples) -> Spectrum | None:
     turned = 2 * signal * np.exp(-2j * np.pi * at / n * np.arange(n))
     if at >= (1 - BAND) * n / 2:
         return None
-    kept = scipy.signal.fftconvolve(turned, window / window.sum(), "valid")
+    size = scipy.fft.next_fast_len(n + len(window) - 1)
+    products = scipy.fft.fft(turned, size) * scipy.fft.fft(window / window.sum(), size)
+    kept = scipy.fft.ifft(products)[len(window) - 1 : n]
     z: Spectrum = kept * np.exp(2j * np.pi * at / n * np.arange(len(kept)))
     return z
 

@@ -112,6 +112,8 @@ def _error(found: Diagnosis) -> Message:
     use = next((use for use in _USES if steps[0].error.get(use) is not None), _USES[-1])
     before, after = (step.error.get(use) for step in (steps[0], steps[-1]))
     floor = found.noise_floor.get(use) or found.noise_floor.get("fit")
+    if before is None:
+        return message("summary.error_unknown")
     if not found.verdict.effects or len(steps) == 1:
         if floor is None:
             return message("summary.error_floor_unknown", use=use, before=before)

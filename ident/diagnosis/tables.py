@@ -24,13 +24,16 @@ def diagnosis_listings(found: Diagnosis) -> Iterator[Listing | str]:
     """Errors, ranking, ladder, suspects, proposals; sentences between and below them."""
     uses = tuple(DATA.values())
     yield found.headline
-    yield Listing("", (_measure(found), *uses), error_rows(found), uses)
-    header = ("effect", "probability", "predicted", "held-out", "validation", "strength", "group")
-    yield Listing("", header, ranking_rows(found), header[1:5])
+    if any(known is not None for known in (*found.baseline.error.values(), *found.noise_floor.values())):
+        yield Listing("", (_measure(found), *uses), error_rows(found), uses)
+    if ranked := [*ranking_rows(found)]:
+        header = ("effect", "probability", "predicted", "held-out", "validation", "strength", "group")
+        yield Listing("", header, ranked, header[1:5])
     if rest := unconfirmed(found):
         yield rest
     steps = ("added", *uses, "floor", "evidence (nats)")
-    yield Listing("", steps, ladder_rows(found), steps[1:])
+    if found.ladder:
+        yield Listing("", steps, ladder_rows(found), steps[1:])
     if len(found.ladder) > 1:
         yield "evidence: nats by which the step made the held-out data more likely"
     if found.verdict.suspects:

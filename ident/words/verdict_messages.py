@@ -24,6 +24,7 @@ SUMMARY: Mapping[str, str] = {
     "summary.missing_input": "Missing: an input that is not in the record of {run:run}.",
     "summary.error": "The error on {use:data} is {before:error}; the noise floor is {floor:percent}.",
     "summary.error_floor_unknown": "The error on {use:data} is {before:error}; the noise floor is not known.",
+    "summary.error_unknown": "The error of the model is not known.",
     "summary.change":
         "The error on {use:data} goes from {before:error} to {after:error}; the noise floor is {floor:percent}.",
     "summary.change_floor_unknown":

@@ -106,5 +106,15 @@ def test_a_wrong_label_and_a_search_that_was_stopped_come_first():
     )
 
 
+def test_where_nothing_was_fitted_no_empty_table_and_no_error_is_shown():
+    stopped = Diagnosis(
+        candidates=(), verdict=Verdict(text="No time."), complete=False, baseline=Baseline({"fit": None})
+    )
+    assert stopped.summary[1] == "The error of the model is not known."
+    assert all(isinstance(said, str) for said in stopped.listings())
+    shown = [one.header[0] for one in FOUND.listings() if not isinstance(one, str)]
+    assert shown == ["error (eq. 17)", "added"]
+
+
 def test_a_diagnosis_of_an_earlier_version_has_them_without_probabilities():
     assert lines(probabilities={})[0] == "Missing: dead zone (80.00 ± 0.20 µm)."
