@@ -36,8 +36,8 @@ _Texts = list[str] | None
 
 
 def init(
-    files: Annotated[list[Path], typer.Argument(metavar="FILES…", help="Raw files of one actuator: one run or one "
-                                                           "signal per file.")],
+    files: Annotated[list[Path], typer.Argument(metavar="FILES…", help="Raw files of one actuator, or their folder: "
+                                                           "one run or one signal per file.")],
     out: Annotated[
         Path | None,
         typer.Option(metavar="MATRIX", help="Folder to write, with matrix.yaml and runs/. Default: the serial number."),
@@ -79,6 +79,7 @@ def init(
 
     if out is not None:
         _free(out)
+    files = [file for one in files for file in _records(one)]
     whole = [(Path(name).name, data) for name, data in with_runs_joined([(str(one), _content(one)) for one in files])]
     of_files = [(one, data) for name, data in whole for one in _parts(data, name, files)]
     found, contents = [one for one, _ in of_files], [data for _, data in of_files]
@@ -99,6 +100,19 @@ def init(
         raise _with_command(draft, files, said)
     made = gathered(draft, contents)
     _made(draft, made, _free(out or _of_serial(draft.answers.serial)))
+
+
+def _records(given: Path) -> list[Path]:
+    """A file, or the records of a folder by name. Raises Unusable where it has none."""
+    from ident.readers import ENDINGS, ending_of
+
+    if not given.is_dir():
+        return [given]
+    found = sorted(file for file in given.iterdir() if file.is_file() and ending_of(file.name) in ENDINGS)
+    if not found:
+        what, remedy = "the folder holds no records", f"name a folder with files of {', '.join(ENDINGS)}"
+        raise Unusable("missing-file", what, str(given), remedy)
+    return found
 
 
 def _with_command(draft: Draft, files: list[Path], said: Mapping[str, object]) -> Unusable:

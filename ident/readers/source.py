@@ -6,6 +6,7 @@ import os
 import stat
 from collections.abc import Callable
 from pathlib import Path, PurePosixPath
+from shlex import quote
 from typing import Protocol
 
 from ident.errors import Unusable
@@ -75,6 +76,9 @@ class Folder:
             path = path / part
             if path.is_symlink():
                 raise Unusable("symbolic-link", f"{part!r} is a symbolic link", name, "put the file itself there")
+        if name == DESCRIPTION and not path.exists():
+            remedy = f"write one with `servoident init {quote(str(self.folder))}`, or name a folder that has one"
+            raise Unusable("missing-file", "there is no such file", name, remedy)
         return read_regular(path, name, limit)
 
 

@@ -104,6 +104,21 @@ def test_on_a_terminal_what_is_missing_is_asked(record, tmp_path):
     assert read_matrix(tmp_path / "m").actuator.serial == "SW-2"
 
 
+def test_a_folder_stands_for_the_records_in_it(servoident, tmp_path):
+    folder = tmp_path / "raw"
+    folder.mkdir()
+    done = servoident("init", folder)
+    assert (done.returncode, "the folder holds no records" in done.stderr) == (2, True)
+    for name in ("b.csv", "a.csv", "notes.md"):
+        (folder / name).write_text(
+            "time_s,command_mm,displacement_mm\n" + "".join(f"{i / 100},{i},{i}\n" for i in range(9))
+        )
+    done = servoident("init", folder)
+    assert f"servoident init {folder / 'a.csv'} {folder / 'b.csv'} --serial" in done.stderr
+    done = servoident("fit", folder)
+    assert f"write one with `servoident init {folder}`" in done.stderr
+
+
 @pytest.mark.parametrize("case", CASES, ids=lambda case: case.name)
 def test_files_of_any_form_are_one_matrix(servoident, case, tmp_path):
     """What is said of all files, and what of some of them by their name or a pattern, with @."""
