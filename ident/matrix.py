@@ -9,6 +9,7 @@ from typing import Any, Literal
 
 from ident.errors import Unusable
 from ident.plain import WHERE_KNOWN
+from ident.rig.conditions import conditions_of
 from ident.rig.limits import RigLimits
 from ident.rig.provenance import UNSTATED, Provenance
 from ident.run import Run
@@ -114,6 +115,11 @@ class Matrix(Shown):
             }
             for run in self.runs
         ]  # fmt: skip
+
+    @property
+    def conditions(self) -> dict[str, float]:
+        """The conditions of its test that are known, SI; see :mod:`ident.rig.conditions`."""
+        return conditions_of(self.test, self.actuator.supply_pressure, self.runs)
 
     def of_use(self, use: str) -> tuple[Run, ...]:
         """The runs of one use, "fit" or "verify"."""

@@ -41,6 +41,19 @@ class SpreadRequest(_Asked):
     batch: Short | None = None
 
 
+class AtRequest(_Asked):
+    """The `value` of a condition at which the machine is wanted, with its unit, such as 60 degC.
+
+    `over` is temperature, supply_pressure, oil_age or cycles. Each parameter moves by its law over the approved sets of
+    a `serial`, the sets in force of a `batch`, or of the fit's model.
+    """
+
+    value: Short
+    over: Short = "temperature"
+    serial: Short | None = None
+    batch: Short | None = None
+
+
 class BeforeRequest(_Asked):
     """The loop when it was stable: the id of the `fit` of its machine, its `gain` Kp; without one that of the loop."""
 
@@ -59,7 +72,7 @@ class ControllerRequest(_Asked):
 
     `structure` is `feedback` or `two-degree`; `target` stands for eq. (19) of Qian et al. 2014; `seed` is that of the
     draws from the fitted covariance, or from the `spread`. `before` is the loop when it was stable, by which the cause
-    is found where it no longer is.
+    is found where it no longer is. `at` moves the machine to another condition.
     """
 
     fit: str
@@ -68,6 +81,7 @@ class ControllerRequest(_Asked):
     structure: str = "feedback"
     seed: int = Field(default=0, ge=0, lt=2**31)
     spread: SpreadRequest | None = None
+    at: AtRequest | None = None
     before: EarlierRequest | None = None
 
 
@@ -98,8 +112,8 @@ class HybridRequest(_Asked):
     `controller` is `none`, `kalman` or another that has a name, the id of a stored one, or what its `.json` holds.
     `effects` are switched on at a fifth of their largest strength; `set` gives values by NAME or NAME.PARAM, with a
     unit or in SI. With `map` there is also the map over the shares of mass and stiffness that are physical. With a
-    `spread` 100 machines that are drawn from it are simulated, too. `before` is
-    the loop when it was stable, by which the cause is found where it no longer is.
+    `spread` 100 machines that are drawn from it are simulated, too. `before` is the loop when it was stable, by which
+    the cause is found where it no longer is. `at` moves the machine to another condition.
     """
 
     fit: str
@@ -110,6 +124,7 @@ class HybridRequest(_Asked):
     set: dict[str, Value] = Field(default_factory=dict, max_length=50)
     map: bool = False
     spread: SpreadRequest | None = None
+    at: AtRequest | None = None
     before: EarlierRequest | None = None
 
 
@@ -144,7 +159,7 @@ class WhatIfRequest(_Asked):
     at 45 Hz and in proportion), inside `axes` up to the frequency `up_to`; that takes some seconds. `before` is the
     loop when it was stable, by which the cause is found where it no longer is. `choose` asks for the gain that
     has a margin, say; responses without `gain` are those at it. With a `spread` the loop at each gain is also judged
-    over 100 machines drawn from it.
+    over 100 machines drawn from it. `at` moves the fitted machine to another condition before it is changed.
     """
 
     set: dict[str, Value] = Field(default_factory=dict, max_length=50)
@@ -154,6 +169,7 @@ class WhatIfRequest(_Asked):
     before: BeforeRequest | None = None
     choose: ChooseRequest | None = None
     spread: SpreadRequest | None = None
+    at: AtRequest | None = None
     peak: Value | None = None
     tolerance: Value | None = None
     axes: list[AxesRequest] = Field(default_factory=list, max_length=10)

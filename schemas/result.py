@@ -279,3 +279,4 @@ class FitResultView(BaseModel):
     left_out: list[str] = Field(default_factory=list)
     preprocessing: list[StepView] = Field(default_factory=list)
     sheet: dict[str, SheetQuantityView] = Field(default_factory=dict)
+    conditions: dict[str, float] = Field(default_factory=dict)

@@ -1,5 +1,7 @@
 """What the sets of a batch, or of an actuator over time, tell about the process that made them."""
 
+from typing import Literal
+
 from pydantic import BaseModel
 
 
@@ -100,3 +102,77 @@ class StatisticsView(BaseModel):
     limits: ProductLimitsView | None = None
     no_capability: str = ""
     unstable: int = 0
+
+
+class ConditionPointView(BaseModel):
+    """The value of a set, and the condition of its test."""
+
+    fit: str
+    serial: str
+    condition: float
+    value: float
+    std_error: float | None
+
+
+class ConditionLawView(BaseModel):
+    """A law that was tried: its formula, its probability among all, and the scatter of the sets about it.
+
+    `scatter` is the standard deviation of the logarithm of the value where `relative`, else that of the value.
+    `lack_of_fit` is the chance of so large a lack of fit were the law true; null of too few sets.
+    """
+
+    name: str
+    formula: str
+    probability: float
+    scatter: float
+    relative: bool
+    lack_of_fit: float | None
+    holds: bool
+
+
+class LevelView(BaseModel):
+    """The law at a condition, with its 95 % band."""
+
+    condition: float
+    value: float
+    std_error: float
+    lower: float
+    upper: float
+
+
+class AtView(BaseModel):
+    """What is said at the condition that was asked for: null with the reason where the law says nothing there.
+
+    `outcome` is against the limits of the quantity, null where none are set: on one side of them with 99 % confidence,
+    or `unknown`.
+    """
+
+    condition: float
+    level: LevelView | None
+    outcome: Literal["inside", "outside", "unknown"] | None
+    reason: str
+
+
+class DependenceView(BaseModel):
+    """A parameter over a condition of the tests, SI: the sets, the laws (the most probable first), and a band.
+
+    `without` is the number of sets that do not know the condition; `law` the first of the laws, null where there are
+    too few sets; `text` says it in words.
+    """
+
+    parameter: str
+    unit: str
+    model: str
+    over: str
+    over_unit: str
+    n: int
+    without: int
+    left_out: bool
+    points: list[ConditionPointView]
+    laws: list[ConditionLawView]
+    law: str | None
+    holds: bool
+    text: str
+    band: list[LevelView]
+    limits: ProductLimitsView | None
+    at: AtView | None

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from app.cli.at_option import At, Over, Sets, moved_to
 from app.cli.before_option import CaseBefore, EarlierFit, EarlierGain, earlier_case
 from app.cli.figure_files import FORMATS, write_figure
 from app.cli.given import read_fit
@@ -33,6 +34,9 @@ def control(
         str, typer.Option(metavar="NAME", help="feedback or two-degree (two degrees of freedom).")
     ] = "feedback",
     seed: Annotated[int, typer.Option(min=0, max=2**31 - 1, help="Random seed of the draws from the covariance.")] = 0,
+    at: At = None,
+    over: Over = "temperature",
+    sets: Sets = None,
     spread: SpreadGiven = None,
     before: EarlierFit = None,
     before_gain: EarlierGain = None,
@@ -52,7 +56,8 @@ def control(
     from ident.hybrid.controller_design import design_controller, on_case
     from ident.hybrid.target import QIAN2014_TARGET
 
-    result, given = read_fit(fit), read_case(case)
+    moved, given = moved_to(read_fit(fit), at, over, sets), read_case(case)
+    result = moved.fit
     earlier = earlier_case(result, given, before, before_gain, before_case)
     wanted = QIAN2014_TARGET if target is None else _target(target)
     made = design_controller(
@@ -61,6 +66,7 @@ def control(
         spread=spread_in(spread, result.model),
     )  # fmt: skip
     made = on_case(made, result, given if rig is None else replace(given, rig=rig_in(rig)), earlier)
+    made = replace(made, notes=(*moved.text, *made.notes))
     _write(made, out, given.name)
     show(made.listings())
     print(f"wrote {', '.join(FILES)} to {out}")

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from app.cli.arguments import effect_values
+from app.cli.at_option import At, Over, Sets, moved_to
 from app.cli.before_option import CaseBefore, EarlierFit, EarlierGain, earlier_case
 from app.cli.figure_files import write_figures
 from app.cli.given import read_fit
@@ -38,6 +39,9 @@ def hybrid(
     shares: Annotated[
         bool, typer.Option("--map", help="Also map stability over the physical/numerical split.")
     ] = False,
+    at: At = None,
+    over: Over = "temperature",
+    sets: Sets = None,
     spread: SpreadGiven = None,
     before: EarlierFit = None,
     before_gain: EarlierGain = None,
@@ -61,14 +65,16 @@ def hybrid(
     from ident.hybrid.rig import name_of, simulate_hybrid
 
     check_target(json)
-    result, of = read_fit(fit), read_case(case)
+    moved, of = moved_to(read_fit(fit), at, over, sets), read_case(case)
+    result = moved.fit
     of = of if ground is None else of.with_ground(ground)
     of = of if rig is None else replace(of, rig=rig_in(rig))
     effects, wide = effect_values(effect or [], result.model), spread_in(spread, result.model)
     earlier = earlier_case(result, of, before, before_gain, before_case)
     acting = controller_called(controller, result, of)
     with shown() as report:
-        runs = {name_of(acting): simulate_hybrid(result, of, acting, effects, report, earlier)}
+        found_here = simulate_hybrid(result, of, acting, effects, report, earlier)
+        runs = {name_of(acting): replace(found_here, notes=(*moved.text, *found_here.notes))}
         if controller != "none" and out is not None:
             runs["no controller"] = simulate_hybrid(result, of, None, effects, report)
         found = _map(shares, acting, result, of, effects, report)

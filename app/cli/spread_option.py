@@ -52,6 +52,12 @@ def stated_spread(given: Sequence[str]) -> Spread:
 def _scatter(file: Path, model: str) -> Scatter:
     """Between the sets of a file that are of this model. Raises Unusable."""
     from ident.design.scatter import Scatter
+
+    return Scatter.of_sets(sets_in(file, model), f"{file.name} of model {model}")
+
+
+def sets_in(file: Path, model: str) -> list[dict[str, float]]:
+    """The values of each set of a file that is of this model, by name, SI. Raises Unusable."""
     from ident.errors import Unusable
 
     if not file.is_file() or file.stat().st_size > _LARGEST:
@@ -59,12 +65,11 @@ def _scatter(file: Path, model: str) -> Scatter:
             "no-such-file", "the file does not exist", str(file), "write it by `servoident query --json FILE`"
         )
     try:
-        values = [_values(one) for one in json.loads(file.read_bytes()) if one["model"] == model]
+        return [_values(one) for one in json.loads(file.read_bytes()) if one["model"] == model]
     except (ValueError, KeyError, TypeError, AttributeError, RecursionError):
         raise Unusable(
             "bad-sets", "it holds no parameter sets", str(file), "write it by `servoident query --json FILE`"
         ) from None
-    return Scatter.of_sets(values, f"{file.name} of model {model}")
 
 
 def _values(one: dict[str, Any]) -> dict[str, float]:

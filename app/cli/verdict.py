@@ -13,6 +13,12 @@ from app.cli.remote import DEFAULT, Server, Token, request, segment
 
 def verdict(
     serial: Annotated[str, typer.Argument(metavar="SERIAL", help="Serial number.")],
+    at: Annotated[
+        str | None, typer.Option(metavar="QUANTITY", help="Judge at a condition by the laws, such as 60 degC.")
+    ] = None,
+    over: Annotated[
+        str, typer.Option(metavar="CONDITION", help="Which one: temperature, supply_pressure, oil_age or cycles.")
+    ] = "temperature",
     server: Server = DEFAULT,
     token: Token = "",
     json: Annotated[Path | None, typer.Option(metavar="FILE", help="Write the verdict as JSON; - is stdout.")] = None,
@@ -23,7 +29,7 @@ def verdict(
     """
     check_target(json)
     path = f"/actuators/{segment(serial)}/verdict"
-    found = request(server, token, "GET", path).json()
+    found = request(server, token, "GET", path, params={"over": over, "at": at} if at else {}).json()
     if json is not None:
         write_json(found, json)
     if json != STANDARD_OUTPUT:

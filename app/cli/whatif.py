@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from app.cli.arguments import in_si, number, split
+from app.cli.at_option import At, Over, Sets, moved_to
 from app.cli.before_option import EarlierFit, EarlierGain, gain_of
 from app.cli.figure_files import write_figures
 from app.cli.given import read_fit
@@ -81,7 +82,8 @@ Out = Annotated[Path | None, typer.Option(metavar="DIR", help="Write the figures
 
 def whatif(
     fit: FitPath, set_: Changed = None, fitted: Fitted = None, specimen: OfSpecimen = None, gain: Gains = None,
-    choose: Choose = None, spread: SpreadGiven = None, before: EarlierFit = None, before_gain: EarlierGain = None,
+    choose: Choose = None, at: At = None, over: Over = "temperature", sets: Sets = None,
+    spread: SpreadGiven = None, before: EarlierFit = None, before_gain: EarlierGain = None,
     peak: AtPeak = None, tolerance: Near = None, axes: InAxes = None, up_to: UpTo = None, seed: Seed = 0,
     rig: RigFile = None, regulator: OfRegulator = None, amplitude: Amplitudes = None, json: Json = None,
     out: Out = None,
@@ -92,6 +94,8 @@ def whatif(
     status 1 if the loop is unstable: cause and remedies are listed. With --regulator it gives the margins of a
     position loop around a servo-actuator of a bench, at stated amplitudes.
     """
+    from dataclasses import replace
+
     from app.cli.tables import show
     from ident.hybrid.what_if import what_if
     from ident.stability.judgement import UNSTABLE
@@ -101,12 +105,15 @@ def whatif(
     if regulator is not None or amplitude:
         show_margins(result, regulator, amplitude or [], json, out)
         return
+    moved = moved_to(result, at, over, sets)
+    result = moved.fit
     change = _change(result, set_ or [], fitted or [], specimen)
     gains = None if gain is None else _range(gain, "--gain", "LO:HI")
     target = _target(peak, tolerance, axes or [], up_to)
     with shown() as report:
         found = what_if(result, change, gains, target, seed, report, rig_in(rig), _before(before, before_gain),
                         _wanted(choose), spread_in(spread, result.model))  # fmt: skip
+    found = replace(found, notes=(*moved.text, *found.notes))
     if json is not None:
         write_json(found.to_json(), json)
     if json != STANDARD_OUTPUT:

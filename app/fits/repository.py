@@ -15,6 +15,8 @@ from app.storage import Storage
 from app.tables import DiagnosisRow, EvolutionRow, FitRow, JobRow, MatrixRow, SetRow, ValueRow
 from ident.fit.result import FitResult
 from ident.fit.sheet import PREFIX
+from ident.rig.conditions import CONDITIONS
+from ident.rig.conditions import PREFIX as CONDITION
 from ident.run import USES
 
 
@@ -80,10 +82,12 @@ def _set(matrix: MatrixRow, result: dict[str, Any], who: str) -> SetRow:
 
 
 def _entries(result: dict[str, Any]) -> Iterator[tuple[str, dict[str, Any]]]:
-    """What a set holds by name: the parameters, and the quantities of the acceptance sheet."""
+    """What a set holds by name: the parameters, the quantities of the acceptance sheet, the conditions of the test."""
     yield from result["parameters"].items()
     for name, entry in result.get("sheet", {}).items():
         yield PREFIX + name, entry
+    for name, value in result.get("conditions", {}).items():
+        yield CONDITION + name, {"value": value, "unit": CONDITIONS[name].unit, "std_error": None}
 
 
 def _errors(fit: FitResult) -> dict[str, Any]:

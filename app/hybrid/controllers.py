@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 from typing import Any
 
 from sqlalchemy.exc import IntegrityError
@@ -13,6 +14,7 @@ from app.errors import Failure, missing
 from app.fits import service as fits
 from app.hybrid import repository
 from app.hybrid.asked import AskedCase, asked_case
+from app.hybrid.at_condition import moved_to
 from app.hybrid.before import earlier_case, stated
 from app.hybrid.spread import spread_of
 from app.lru import LRU
@@ -23,7 +25,7 @@ from ident.hybrid.controller import SampledController
 from ident.hybrid.controller_design import ControllerDesign, design_controller, on_case
 from ident.hybrid.export import as_header, as_mat
 from ident.hybrid.target import QIAN2014_TARGET, target_of
-from schemas.hybrid import ControllerRequest, SpreadRequest
+from schemas.hybrid import AtRequest, ControllerRequest, SpreadRequest
 from schemas.hybrid_result import ControllerPage, ControllerView, DesignView
 
 FILES = {"json": "application/json", "mat": "application/x-matlab-data", "h": "text/x-c"}
@@ -51,7 +53,8 @@ def design(context: Context, request: ControllerRequest, controller: str) -> Con
 
 def _designed(context: Context, asked: dict[str, Any]) -> ControllerDesign:
     """The design that is asked for."""
-    fit = _fit(context, asked["fit"])
+    moved = moved_to(context, _fit(context, asked["fit"]), AtRequest(**asked["at"]) if "at" in asked else None)
+    fit = moved.fit
     case = AskedCase(asked["case"], None).read()
     asked_spread = SpreadRequest(**asked["spread"]) if "spread" in asked else None
     before = earlier_case(asked.get("before"), fit, case, lambda one: _fit(context, one))
@@ -61,7 +64,8 @@ def _designed(context: Context, asked: dict[str, Any]) -> ControllerDesign:
         delay=case.delay, target=target, structure=asked["structure"], seed=asked["seed"],
         before=before, spread=spread_of(context, asked_spread, fit.model),
     )  # fmt: skip
-    return on_case(made, fit, case, before)
+    made = on_case(made, fit, case, before)
+    return replace(made, notes=(*moved.text, *made.notes))
 
 
 def _fit(context: Context, fit: str) -> FitResult:

@@ -13,6 +13,7 @@ from app.fits import service as fits
 from app.hybrid import repository
 from app.hybrid.acting import acting, named
 from app.hybrid.asked import AskedCase, asked_case, effects_of
+from app.hybrid.at_condition import moved_to
 from app.hybrid.before import earlier_case, stated
 from app.hybrid.spread import spread_of
 from app.jobs import service as jobs
@@ -40,7 +41,8 @@ _FILE_KEYS = ("name", "sample_rate", "A", "B", "C", "D")
 def submit(context: Context, request: HybridRequest, job: str) -> JobView:
     """Queue a hybrid simulation under the id decided for its job. Raises Unusable where it cannot be run."""
     row = fits.find(context, request.fit)
-    fit = FitResult.from_json(row.result)
+    moved = moved_to(context, FitResult.from_json(row.result), request.at)
+    fit = moved.fit
     asked = asked_case(request.case, request.ground)
     case, effects = asked.read(), effects_of(request, fit.model)
     given, stored = _controller(context, request.controller)
@@ -57,6 +59,7 @@ def submit(context: Context, request: HybridRequest, job: str) -> JobView:
             "controller": given if isinstance(given, str) else _kept(context, json.dumps(given)),
             "inline": not isinstance(given, str), "controller_id": stored,
             "spread": None if spread is None else written(spread),
+            "moved": [_kept(context, json.dumps(fit.to_json())), *moved.text] if moved.text else None,
             "before": _before(context, stated(request.before), fit, case),
         },
     }  # fmt: skip

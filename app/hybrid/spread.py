@@ -44,5 +44,10 @@ def kept(data: dict[str, Any] | None) -> AnySpread | None:
 
 
 def _scatter(context: Context, wanted: Wanted, of: str) -> Scatter:
+    return Scatter.of_sets(sets_of(context, wanted), of)
+
+
+def sets_of(context: Context, wanted: Wanted) -> list[dict[str, float]]:
+    """The values of the newest of these sets by name, SI."""
     sets = parameters.page(context, wanted, None, _MOST).items
-    return Scatter.of_sets([{name: entry.value for name, entry in one.parameters.items()} for one in sets], of)
+    return [{name: entry.value for name, entry in one.parameters.items()} for one in sets]

@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from app.context import Context
 from app.fits import service as fits
 from app.hybrid.asked import change_of, gains_of, peak_of
+from app.hybrid.at_condition import moved_to
 from app.hybrid.spread import spread_of
 from app.lru import LRU
 from ident.fit.result import FitResult
@@ -21,11 +24,13 @@ def what_if(context: Context, fit: str, request: WhatIfRequest) -> WhatIf:
     """The machine of a fit after a change. Raises Unusable, and Failure 404."""
 
     def made() -> WhatIf:
-        found = _fit(context, fit)
+        moved = moved_to(context, _fit(context, fit), request.at)
+        found = moved.fit
         change, target, before = change_of(found, request), peak_of(request), _before(context, request.before)
         spread = spread_of(context, request.spread, found.model)
-        return library.what_if(found, change, gains_of(request), target, request.seed, before=before,
+        told = library.what_if(found, change, gains_of(request), target, request.seed, before=before,
                                choose=_wanted(request.choose), spread=spread)  # fmt: skip
+        return replace(told, notes=(*moved.text, *told.notes))
 
     return _answers.get((str(context.storage.folder), fit, request.model_dump_json()), made)
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import base64
 import json
+from dataclasses import replace
 from typing import Any
 
 from sqlalchemy.orm import Session
@@ -39,10 +40,13 @@ class HybridWork(InOnePiece):
         asked, report, fit = self.task.settings["asked"], self.task.report, self.task.fit
         case = AskedCase(asked["case"], asked["ground"], self._blob(asked["text"])).read()
         assert fit is not None
+        moved = asked.get("moved") or []
+        fit = self._fit(moved[0]) if moved else fit
         given: Any = json.loads(self._blob(asked["controller"])) if asked["inline"] else asked["controller"]
         chosen, effects = acting(given, fit, case), asked["effects"]
         before = earlier_case(asked.get("before"), fit, case, self._fit)
         main = simulate_hybrid(fit, case, chosen, effects, report, before)
+        main = replace(main, notes=(*moved[1:], *main.notes))
         alone = None if given == "none" else simulate_hybrid(fit, case, None, effects, report)
         mapped = None
         if asked["map"] and isinstance(chosen, SampledController):

@@ -36,6 +36,9 @@ class Judged:
     lower: float | None
     upper: float | None
     error: ErrorOf | None = None  # of an error, as it is read: it has no standard error and needs none
+    sure: float = SURE
+    at: str = ""  # the condition at which it is the value, in words
+    why: str = ""  # it is not judged there
 
     @property
     def nearest(self) -> float:
@@ -51,7 +54,7 @@ class Judged:
         if self.value is None or self.std_error is None:
             return False
         ends = [limit for limit in (self.lower, self.upper) if limit is not None]
-        return any(abs(self.value - limit) < SURE * self.std_error for limit in ends)
+        return any(abs(self.value - limit) < self.sure * self.std_error for limit in ends)
 
     @property
     def outcome(self) -> Outcome:
@@ -63,13 +66,17 @@ class Judged:
     @property
     def reason(self) -> str:
         """The outcome in words."""
+        name = f"{self.name} at {self.at}".strip() if self.at else self.name
+        if self.why:
+            return str(message("limit.silent", name=name, why=self.why))
         if self.value is None:
-            return str(message("limit.absent", name=self.name))
+            return str(message("limit.absent", name=name))
         if self.std_error is None and self.error is None:
-            return str(message("limit.not_judged", name=self.name, value=self._shown(self.value)))
-        values = {"name": self.name, "value": self._with_error, "limits": self._limits}
+            return str(message("limit.not_judged", name=name, value=self._shown(self.value)))
+        values = {"name": name, "value": self._with_error, "limits": self._limits}
         said = message("limit.inside" if self.nearest >= 0 else "limit.outside", **values)
-        return str(message("limit.uncertain", outcome=said) if self.uncertain else said)
+        errors = "two" if self.sure == SURE else f"{self.sure:.3g}"
+        return str(message("limit.uncertain", outcome=said, errors=errors) if self.uncertain else said)
 
     @property
     def _with_error(self) -> str:

@@ -28,9 +28,11 @@ def actuators(
 
 
 @router.get("/actuators/{serial:path}", dependencies=[READERS])
-def actuator(request: Request, here: Here, serial: str, cursor: str | None = None) -> HTMLResponse:
-    """One actuator: the set in force, its fits and its matrices."""
-    return page(request, "actuator.html", **service.actuator(here, serial, cursor))
+def actuator(
+    request: Request, here: Here, serial: str, cursor: str | None = None, over: str = "temperature", at: str = ""
+) -> HTMLResponse:
+    """One actuator: the set in force, its fits and its matrices, and the verdict at a condition."""
+    return page(request, "actuator.html", **service.actuator(here, serial, cursor, over.strip(), at.strip()))
 
 
 @router.get("/upload", dependencies=[LAB])

@@ -16,10 +16,18 @@ pages = APIRouter(include_in_schema=False, route_class=PageRoute)
 
 @pages.get("/statistics", dependencies=[READERS])
 def statistics(
-    request: Request, here: Here, parameter: str = "", batch: str = "", serial: str = "", model: str = ""
+    request: Request,
+    here: Here,
+    parameter: str = "",
+    batch: str = "",
+    serial: str = "",
+    model: str = "",
+    over: str = "",
+    at: str = "",
 ) -> HTMLResponse:
-    """The statistics of a parameter with its control chart."""
-    found = line_page.statistics_page(here, parameter.strip(), batch.strip(), serial.strip(), model.strip())
+    """The statistics of a parameter with its control chart, or with its law over a condition."""
+    given = {"parameter": parameter, "batch": batch, "serial": serial, "model": model, "over": over, "at": at}
+    found = line_page.statistics_page(here, {name: text.strip() for name, text in given.items()})
     return page(request, "statistics.html", vega=assets.VEGA, **found)
 
 

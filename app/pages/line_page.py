@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Any
 from urllib.parse import urlencode
 
@@ -14,7 +15,8 @@ from app.parameters.wanted import Wanted
 from app.regress import jobs as regressions
 from app.regress import words as rechecks
 from app.statistics import service as statistics
-from app.statistics.words import called, facts
+from app.statistics.dependence import over_condition
+from app.statistics.words import called, facts, laws, of_dependence
 from ident.errors import Unusable
 from ident.fit.settings import Settings
 from ident.presets import PRESETS
@@ -23,18 +25,22 @@ from schemas.parameters import ParameterSetView
 Shown = dict[str, Any]
 
 
-def statistics_page(context: Context, parameter: str, batch: str, serial: str, model: str) -> Shown:
+def statistics_page(context: Context, asked: Mapping[str, str]) -> Shown:
     """The statistics that are asked for, or why there are none; without a parameter only the form."""
     latest = _latest(context)
     names = [*(latest.parameters if latest else ()), *ERRORS]
-    asked = {"parameter": parameter, "batch": batch, "serial": serial, "model": model}
-    query = urlencode({name: value for name, value in asked.items() if value})
-    shown: Shown = {"asked": asked, "query": query, "names": names, "found": None, "problem": ""}
-    if not parameter:
+    query = urlencode({name: value for name, value in asked.items() if value and name != "at"})
+    shown: Shown = {"asked": asked, "query": query, "names": names, "found": None, "law": None, "problem": ""}
+    if not asked["parameter"]:
         return shown
+    batch, serial, model = (asked[name] or None for name in ("batch", "serial", "model"))
     try:
-        found = statistics.statistics(context, parameter, batch or None, serial or None, model or None)
-    except Failure as error:
+        if asked["over"]:
+            over = (asked["over"], asked["at"] or None)
+            law = over_condition(context, asked["parameter"], over, batch, serial, model)[0]
+            return shown | {"law": law, "facts": of_dependence(law), "laws": laws(law)}
+        found = statistics.statistics(context, asked["parameter"], batch, serial, model)
+    except (Failure, Unusable) as error:
         return shown | {"problem": f"{error.what}: {error.remedy}"}
     return shown | {"found": found, "facts": facts(found), "called": called(found)}
 

@@ -10,6 +10,7 @@ from fastapi import Request
 from fastapi.responses import HTMLResponse
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
 
+from app.pages.condition_view import conditions
 from app.pages.manual import is_there
 from ident.words.error import ErrorOf
 from ident.words.percent import percent_in_print
@@ -53,6 +54,7 @@ def _environment() -> Environment:
     environment.filters["level"] = level
     environment.filters["use"] = DATA.__getitem__
     environment.globals["static"] = static
+    environment.globals["conditions"] = conditions
     environment.globals["has_manual"] = is_there
     return environment
 

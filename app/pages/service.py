@@ -35,6 +35,8 @@ from app.refits import lineage
 from app.verdicts.service import judge
 from app.workers import service as workers
 from ident.comparison.side_by_side import MOST
+from ident.errors import Unusable
+from ident.rig.conditions import TEMPERATURE
 from ident.synthesis.matrix import SIMULATED
 from ident.words.engineering import quantity
 from ident.words.number import count
@@ -69,8 +71,8 @@ def _simulated(found: ActuatorPage) -> bool:
     return bool(found.items) and found.next is None and simulated
 
 
-def actuator(context: Context, serial: str, cursor: str | None) -> Shown:
-    """The set in force, fits and matrices; raises Failure 404."""
+def actuator(context: Context, serial: str, cursor: str | None, over: str = TEMPERATURE, at: str = "") -> Shown:
+    """The set in force, fits and matrices, the verdict at a condition; raises Failure 404."""
     found = actuators.brief(context, serial)
     stored = matrices.listed(context, serial, None, _ROWS).items
     return {
@@ -79,11 +81,20 @@ def actuator(context: Context, serial: str, cursor: str | None) -> Shown:
         "approved": _approved(context, found),
         "said": {use: error_of(found.current, use) for use in USES},
         "drifts": _drifts(context, found),
-        "verdict": judge(context, serial),
+        **_verdict(context, serial, over, at),
         "approvals": approvals.of_actuator(context, serial),
         **_fits(context, cursor, serial=serial),
         "matrices": [(entry, counted(entry.findings) or "none") for entry in stored],
     }
+
+
+def _verdict(context: Context, serial: str, over: str, at: str) -> Shown:
+    """The verdict, at a condition where one is asked for; why it is not at that one."""
+    shown: Shown = {"over": over, "at": at, "problem": ""}
+    try:
+        return shown | {"verdict": judge(context, serial, over, at or None)}
+    except Unusable as error:
+        return shown | {"verdict": judge(context, serial), "problem": f"{error.what}: {error.remedy}"}
 
 
 def _fits(context: Context, cursor: str | None, serial: str | None = None, matrix: str | None = None) -> Shown:

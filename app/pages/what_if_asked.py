@@ -26,6 +26,7 @@ def asked(given: Mapping[str, str]) -> WhatIfRequest:
         "before": _before(stated),
         "choose": _chosen(stated),
         "spread": _under("spread.", stated) or None,
+        "at": _at(_under("at.", stated)),
         **_quantities(_PEAK, stated),
         "axes": _axes(stated, gain),
     }
@@ -37,6 +38,13 @@ def asked(given: Mapping[str, str]) -> WhatIfRequest:
 def _quantities(dimensions: Mapping[str, str], stated: Mapping[str, str]) -> dict[str, float]:
     """Those that are stated, SI."""
     return {name: quantity(stated[name], of, name) for name, of in dimensions.items() if name in stated}
+
+
+def _at(stated: dict[str, str]) -> dict[str, str] | None:
+    """The condition of the machine; the name of the condition always stands in the form."""
+    if "value" not in stated and len(stated) > ("over" in stated):
+        raise Unusable("bad-request", "sets without a condition", "at", "give its value, such as 60 degC")
+    return stated if "value" in stated else None
 
 
 def _under(prefix: str, stated: Mapping[str, str]) -> dict[str, str]:

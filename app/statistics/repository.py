@@ -10,6 +10,7 @@ from sqlalchemy import ColumnElement, Select, exists, literal, null, select
 from sqlalchemy.orm import Session
 
 from app.tables import ApprovalRow, SetRow, ValueRow
+from ident.rig.conditions import PREFIX
 
 ERRORS = {
     "error.fit": (SetRow.error_fit, SetRow.unstable_fit),
@@ -53,6 +54,12 @@ def points(session: Session, parameter: str, chosen: Chosen, most: int) -> Seque
         query = query.join(ValueRow, ValueRow.number == SetRow.number).where(ValueRow.name == parameter)
     query = query.where(*_asked(chosen)).order_by(SetRow.number.desc()).limit(most)
     return [Point(*row) for row in session.execute(query)][::-1]
+
+
+def conditions(session: Session, name: str, numbers: Sequence[int]) -> dict[int, float]:
+    """The condition of this name of each of these sets that knows it."""
+    query = select(ValueRow.number, ValueRow.value).where(ValueRow.name == PREFIX + name)
+    return dict(session.execute(query.where(ValueRow.number.in_(numbers))).all())
 
 
 def batches(session: Session) -> Sequence[str]:

@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from datetime import datetime
 
+from sqlalchemy.orm import Session
+
 from app.context import Context
 from app.errors import Failure
 from app.limits.repository import EVERY, in_batch
@@ -45,7 +47,7 @@ def statistics(
     with context.sessions() as session:
         points = repository.points(session, parameter, Chosen(batch, serial, model), MOST + 1)
         points, left_out = points[-MOST:], len(points) > MOST
-        _check(points, parameter, Chosen(batch, serial, model), lambda: repository.batches(session))
+        checked(session, points, parameter, Chosen(batch, serial, model))
         unstable, points = sum(bool(one.unstable) for one in points), [one for one in points if not one.unstable]
         if not points:
             raise Failure(409, "too-few", "the model of every set here is unstable on a run", "parameter",
@@ -60,15 +62,15 @@ def statistics(
         percentiles={str(share): value for share, value in found.percentiles.items()},
         control_chart=_chart(chart), capability=_capability(capability(values, lower, upper), lower, upper),
         outliers=_outliers(points), drift=_drift(points) if serial is not None else None,
-        points=_points(points, chart), left_out=left_out, limits=_limits(values, lower, upper, unstable),
+        points=_points(points, chart), left_out=left_out, limits=limits_view(values, lower, upper, unstable),
         no_capability=withheld(values, lower, upper), unstable=unstable,
     )  # fmt: skip
 
 
-def _check(points: Sequence[Point], parameter: str, chosen: Chosen, batches: Callable[[], Sequence[str]]) -> None:
+def checked(session: Session, points: Sequence[Point], parameter: str, chosen: Chosen) -> None:
     """Raises Failure where there is nothing, or where values of several models would be mixed."""
     if not points:
-        raise _nothing(parameter, chosen, batches)
+        raise _nothing(parameter, chosen, lambda: repository.batches(session))
     models = sorted({point.model for point in points})
     if len(models) > 1:
         raise Failure(409, "several-models", f"the sets are of {', '.join(models)}", "model", "name one of them")
@@ -104,7 +106,7 @@ def _capability(found: Capability | None, lower: float | None, upper: float | No
     return None if found is None else CapabilityView(lower=lower, upper=upper, **vars(found))
 
 
-def _limits(
+def limits_view(
     values: Sequence[float], lower: float | None, upper: float | None, unstable: int
 ) -> ProductLimitsView | None:
     """What lies outside; an error whose model is unstable is above any upper limit."""

@@ -5,10 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 
+from ident.rig.conditions import CONDITIONS
 from ident.words.engineering import quantity
 from ident.words.message import message
 from ident.words.number import count, plain
-from schemas.statistics import StatisticsView
+from ident.words.percent import percent_in_print
+from schemas.statistics import DependenceView, LevelView, StatisticsView
 
 
 @dataclass(frozen=True)
@@ -69,3 +71,32 @@ def called(found: StatisticsView) -> list[Called]:
                "; ".join(dict.fromkeys(texts)))
         for place, texts in sorted(why.items())
     ]  # fmt: skip
+
+
+def of_dependence(found: DependenceView) -> list[tuple[str, str]]:
+    """What the law over a condition says, and what it says at the condition that was asked for."""
+    shown = [("Sets", str(message("sets", count=found.n, model=found.model))), ("Law", found.text)]
+    condition = CONDITIONS[found.over]
+    if found.without:
+        shown.append((f"Without the {condition.title}", count(found.without, "set")))
+    if (at := found.at) is not None:
+        place = f"At {condition.said(at.condition)}"
+        shown.append((place, _level(at.level, found.unit) if at.level else at.reason))
+        if at.outcome is not None:
+            said = {"inside": "within the limits", "outside": "outside the limits", "unknown": "inconclusive"}
+            shown.append((f"{place}, against the limits", said[at.outcome]))
+    return shown
+
+
+def laws(found: DependenceView) -> list[tuple[str, str, str, str, str]]:
+    """The laws that were tried: name, formula, probability, scatter, chance of the lack of fit."""
+    return [
+        (one.name, one.formula, percent_in_print(one.probability),
+         percent_in_print(one.scatter) if one.relative else quantity(one.scatter, found.unit),
+         "–" if one.lack_of_fit is None else plain(one.lack_of_fit, 2) + ("" if one.holds else ", does not hold"))
+        for one in found.laws
+    ]  # fmt: skip
+
+
+def _level(level: LevelView, unit: str) -> str:
+    return f"{quantity(level.value, unit)}, 95 % band {quantity(level.lower, unit)} to {quantity(level.upper, unit)}"

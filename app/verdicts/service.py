@@ -11,17 +11,25 @@ from app.limits import repository
 from app.limits.holding import bounds_of
 from app.limits.verdict import Judged, judged_by, verdict
 from app.tables import SetRow, ValueRow
+from app.verdicts.at_condition import at_condition
 from ident.bench.acceptance import QUANTITIES
+from ident.design.at_condition import condition_value
 from ident.fit.sheet import PREFIX
+from ident.rig.conditions import TEMPERATURE
 from schemas.limits import JudgedView, LineVerdictView, SheetLine, SheetView
 
 
-def judge(context: Context, serial: str) -> LineVerdictView:
-    """Pass, fail, or unknown with the reasons; raises Failure 404."""
+def judge(context: Context, serial: str, over: str = TEMPERATURE, at: str | None = None) -> LineVerdictView:
+    """Pass, fail, or unknown with the reasons; raises Failure 404.
+
+    With `at` the parameters are judged at that value of the condition `over`, by their laws. Raises Unusable for it.
+    """
+    value = None if at is None else condition_value(over, at)
     with context.sessions() as session:
         row = in_force(session, [serial]).get(serial)
         limits = bounds_of(row, repository.in_batch(session, row.model, row.batch)) if row else {}
         actuator = None if row else find(session, serial)
+        moved = {} if row is None or value is None else at_condition(session, row, limits, over, value)
     if row is None:
         if actuator is None:
             raise missing("actuator", serial)
@@ -29,7 +37,7 @@ def judge(context: Context, serial: str) -> LineVerdictView:
     if not limits:
         of = f"model {row.model}, batch {row.batch}" if row.batch else f"model {row.model}"
         return _unknown(serial, row.batch, row, f"no limits are set for {of}")
-    judged = judged_by(row, limits)
+    judged = [moved.get(one.name, one) for one in judged_by(row, limits)]
     found = verdict(judged)
     decisive = {"fail": "outside", "unknown": "unknown", "pass": "inside"}[found]
     reasons = [one.reason for one in judged if one.outcome == decisive]

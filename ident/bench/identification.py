@@ -202,7 +202,7 @@ class BenchIdentification:
                    *_compared(self.analysis, solution)),
             settings=self.settings.to_json(), searched=tuple(called[n] for n in self.space.names),
             evolution=evolution(self.space, state), actuator=self.matrix.actuator,
-            preprocessing=self.matrix.preprocessing,
+            preprocessing=self.matrix.preprocessing, conditions=self.matrix.conditions,
             sheet=sheet_quantities(self.analysis, read_limits(self.matrix.limits_text, self.matrix.limits or "limits")),
         )  # fmt: skip
 

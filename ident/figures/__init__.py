@@ -59,6 +59,7 @@ _FILES = (
     "loop_margins",
     "tracking",
     "control_chart",
+    "dependence",
     "signals",
     "spectra",
 )

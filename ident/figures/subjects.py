@@ -18,6 +18,7 @@ from ident.hybrid.tracked_run import Track
 from ident.matrix import Actuator
 from ident.run import Run
 from ident.statistics import ControlChart
+from ident.statistics.dependence import Dependence
 from ident.words.nearest import did_you_mean
 
 Step = tuple[str, float | None, float | None]
@@ -111,6 +112,18 @@ class Charted:
     """Values of a quantity in the order of production, a label each, and the limits of the product."""
 
     chart: ControlChart
+    quantity: str
+    unit: str
+    where: str
+    labels: Sequence[str]
+    limits: tuple[float | None, float | None]
+
+
+@dataclass(frozen=True)
+class OverCondition:
+    """A parameter over a condition, a label a set, and the limits of the product."""
+
+    dependence: Dependence
     quantity: str
     unit: str
     where: str

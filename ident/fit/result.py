@@ -182,7 +182,8 @@ class FitResult(Shown):
     earlier versions did not keep it. The search of one that `ended_early` ran out of its time. Runs that are
     `left_out` were not fitted, and are in no mean over the runs to fit; they stand in `runs`. `preprocessing` has
     what became of each step of it, which earlier versions did not tell. `sheet` has the acceptance sheet of bench
-    records by quantity. `matrix` holds the data, where the fit was made here.
+    records by quantity, `conditions` those of the test that are known, SI. `matrix` holds the data, where the fit was
+    made here.
     """
 
     model: str
@@ -220,6 +221,7 @@ class FitResult(Shown):
     actuator: Actuator | None = field(default=None, metadata=WHERE_KNOWN)
     preprocessing: tuple[StepOutcome, ...] = field(default=(), metadata=WHERE_KNOWN)
     sheet: Mapping[str, SheetQuantity] = field(default_factory=dict, metadata=WHERE_KNOWN)
+    conditions: Mapping[str, float] = field(default_factory=dict, metadata=WHERE_KNOWN)
     matrix: Matrix | None = field(default=None, compare=False, repr=False, metadata=UNWRITTEN)
 
     def records(self) -> list[dict[str, Any]]:

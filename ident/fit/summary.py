@@ -164,6 +164,7 @@ def summarise(
         searched=tuple(label[name][0] for name in space.names),
         evolution=evolution(optimum.searched or space, state),
         actuator=matrix.actuator,
+        conditions=matrix.conditions,
         preprocessing=matrix.preprocessing,
     )
 

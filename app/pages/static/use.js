@@ -86,7 +86,7 @@ async function controller(form) {
     for (const name of ["numerator", "denominator"]) target[name] = target[name]?.map?.(Number) ?? target[name];
     asked.target = target;
   }
-  return withBefore(withSpread(asked, fields), fields);
+  return withBefore(withSpread(withCondition(asked, fields), fields), fields);
 }
 
 async function simulation(form) {
@@ -98,7 +98,13 @@ async function simulation(form) {
   asked.effects = effects.filter((name) => !fields.get(`strength.${name}`)?.trim());
   const stated = effects.filter((name) => !asked.effects.includes(name));
   asked.set = Object.fromEntries(stated.map((name) => [name, fields.get(`strength.${name}`).trim()]));
-  return withBefore(withSpread(asked, fields), fields);
+  return withBefore(withSpread(withCondition(asked, fields), fields), fields);
+}
+
+// The condition of the machine, where it is stated.
+function withCondition(asked, fields) {
+  const stated = ["value", "serial", "batch"].map((name) => [name, fields.get(`at.${name}`).trim()]).filter(([, value]) => value);
+  return stated.length ? { ...asked, at: { over: fields.get("at.over"), ...Object.fromEntries(stated) } } : asked;
 }
 
 // What the parameters may be off, where it is stated.

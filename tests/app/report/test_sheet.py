@@ -116,3 +116,15 @@ def _filled(content_of: bytes) -> float:
     body = grey[: round(0.93 * len(grey))]
     inked = np.flatnonzero((body < 200).any(axis=1))
     return float(inked[-1] / len(body))
+
+
+def test_a_test_states_the_conditions_of_its_set(base):
+    """Oil and cycles from the block `test`, the supply from its record before what is stated of the machine."""
+    test = describe_test({"oil_temperature": "42 degC", "oil_age": "1200 h", "cycles": 2.1e6})
+    run = replace(base.matrix.runs[0], channels={**base.matrix.runs[0].channels, "supply_pressure": np.full(9, 205e5)})
+    machine = replace(base.matrix.actuator, supply_pressure=210e5)
+    stated = replace(base.matrix, test=test, actuator=machine)
+    known = {"temperature": 315.15, "supply_pressure": 210e5, "oil_age": 4.32e6, "cycles": 2.1e6}
+    assert stated.conditions == pytest.approx(known)
+    assert replace(stated, runs=(run,)).conditions == pytest.approx(known | {"supply_pressure": 205e5})
+    assert replace(base.matrix, test=Provenance(cycles=0.0)).conditions["cycles"] == 0.0
