@@ -9,6 +9,7 @@ from app.pages.sparkline import ERROR, Drift, drift
 from app.parameters.error import error_of
 from ident.errors import Unusable
 from ident.presets import preset
+from ident.rig.conditions import CONDITIONS, PREFIX
 from ident.words.engineering import quantity
 from ident.words.error import ErrorOf
 from ident.words.symbols import symbol
@@ -111,6 +112,8 @@ def _parameters(shown: ParameterSetView) -> tuple[tuple[str, str], ...]:
 
 def _symbol(model: str, name: str) -> str:
     """The symbol of the literature, behind the name of its effect; the plain name where neither is known."""
+    if (condition := CONDITIONS.get(name.removeprefix(PREFIX))) and name.startswith(PREFIX):
+        return condition.title
     effect, dot, _ = name.partition(".")
     try:
         written = symbol(name, preset(model, (effect,) if dot else ()).parameter(name).symbol)

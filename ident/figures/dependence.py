@@ -21,7 +21,7 @@ _LETTERS = 88  # of a line of the caption
 def dependence(of: OverCondition, look: Look) -> Chart:
     """Sets as points, the law of most evidence as a line in its band, dotted the limits of the product.
 
-    A law that does not hold is dashed, without a band.
+    A law that does not hold is dashed, without a band. The axis of a viscosity is logarithmic.
     """
     own, condition = of.dependence, of.dependence.condition
     given = [limit for limit in of.limits if limit is not None]
@@ -35,7 +35,9 @@ def dependence(of: OverCondition, look: Look) -> Chart:
         for x, y, label in zip(own.conditions, own.values, of.labels, strict=True)
     ]
     x = alt.X("x:Q", title=words.axis(condition.title, condition.shown or "1"), scale=alt.Scale(zero=False))
-    y = alt.Y("y:Q", title=words.axis(of.quantity, unit), scale=alt.Scale(zero=False))
+    viscous = own.law is not None and own.law.form.viscous
+    scale = alt.Scale(type="log", nice=False) if viscous else alt.Scale(zero=False)
+    y = alt.Y("y:Q", title=words.axis(of.quantity, unit), scale=scale)
     tooltip = [alt.Tooltip("of:N", title="Set of"), alt.Tooltip("x:Q", title=condition.title),
                alt.Tooltip("y:Q", title=of.quantity)]  # fmt: skip
     points = alt.Chart(alt.InlineData(values=rows)).mark_circle(size=36, color=look.series[0], opacity=1)

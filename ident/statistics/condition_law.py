@@ -3,7 +3,7 @@
 Where every value has one sign the sets scatter by a share of the value: ln |y| has one standard deviation, elsewhere y.
 The law is that of :mod:`ident.statistics.law_forms` with the least BIC = n ln(RSS/n) + k ln n, −2 times the logarithm
 of its evidence for n sets and k parameters (Schwarz, Annals of Statistics 6 (1978) 461). It does not hold where
-polynomials of the second to the fourth degree, added to it, reduce the residual by more than chance: the F-test of lack
+polynomials up to the fourth degree, added to it, reduce the residual by more than chance: the F-test of lack
 of fit. Bands are those of nonlinear regression by its linearisation (Bates and Watts 1988, section 2.3).
 """
 
@@ -29,7 +29,7 @@ LACK_OF_FIT = 0.01
 SURE = 0.99
 """One-sided confidence with which a value at a condition is said to lie on one side of a limit."""
 _BAND = 0.975  # one-sided: 95 % of both sides
-_DEGREES = (2, 4)  # of the polynomials of the F-test
+_DEGREES = (2, 4)  # of the polynomials of the F-test; of a constant from the first on
 _STEP = 1e-6  # of the parameters, for slopes
 _EXACT = 1e-11  # of the largest value: a scatter below it is that of rounding
 
@@ -110,7 +110,8 @@ class ConditionLaw:
     def judged(self) -> ConditionLaw:
         """With the chance of its lack of fit."""
         x = np.array(self.conditions)
-        known, extra = self._slopes(x), legvander(LINE.abscissa(x)(x), _DEGREES[1])[:, _DEGREES[0] :]
+        known = self._slopes(x)
+        extra = legvander(LINE.abscissa(x)(x), _DEGREES[1])[:, min(known.shape[1], _DEGREES[0]) :]
         added = min(extra.shape[1], len(np.unique(x)) - known.shape[1])
         left = len(x) - known.shape[1] - added
         if added <= 0 or left <= 0:
