@@ -15,6 +15,20 @@ class AnswerRequest(BaseModel):
     unit: str = Field(default="", max_length=_LINE)
 
 
+class DialectRequest(BaseModel):
+    """How a text is laid out, as far as it is stated; what is left out is found in the text.
+
+    `header_rows` lines stand above the first row of samples, `skip_rows` above the line of column names.
+    """
+
+    model_config = ConfigDict(extra="forbid")
+    delimiter: str = Field(default="", max_length=_LINE, description="tab, semicolon, comma, pipe or space")
+    decimal: str = Field(default="", max_length=_LINE, description="point or comma")
+    header_rows: int | None = Field(default=None, ge=0)
+    skip_rows: int = Field(default=0, ge=0)
+    encoding: str = Field(default="", max_length=_LINE, description="utf-8, windows-1252 and others")
+
+
 class FileAnswersRequest(BaseModel):
     """What a person says of one raw file; what is left out is as said of all of them, or as the file states it."""
 
@@ -22,6 +36,7 @@ class FileAnswersRequest(BaseModel):
     channels: dict[str, AnswerRequest] = Field(default_factory=dict)
     time: AnswerRequest = Field(default_factory=AnswerRequest)
     rate: str = Field(default="", max_length=_LINE, description="Sample rate, where no column of it has the time")
+    dialect: DialectRequest = Field(default_factory=DialectRequest, description="Of a text: how it is laid out")
 
 
 class AnswersRequest(BaseModel):
@@ -34,6 +49,7 @@ class AnswersRequest(BaseModel):
     rate: str = Field(
         default="", max_length=_LINE, description="Sample rate, such as 4096 Hz, where no column has the time"
     )
+    dialect: DialectRequest = Field(default_factory=DialectRequest, description="Of texts: how they are laid out")
     output: str = Field(default="", max_length=_LINE, description="Channel that a model is to reproduce")
     verify: list[str] = Field(default_factory=list, description="Files whose runs only verify")
     area: str = Field(default="", max_length=_LINE, description="Piston area, such as 497 mm^2")
@@ -63,10 +79,25 @@ class ColumnView(BaseModel):
     name: str
     unit: str
     role: str
+    first: list[float] = Field(default_factory=list)
+
+
+class DialectView(BaseModel):
+    """How a text is read, as stated or found; empty and null of a binary, and of a text that cannot be read so."""
+
+    delimiter: str
+    decimal: str
+    header_rows: int | None
+    skip_rows: int
+    encoding: str
 
 
 class RawFileView(BaseModel):
-    """A raw file: a run. `channels`, `time` and `rate` are what is known of it with the answers."""
+    """A raw file: a run. `channels`, `time` and `rate` are what is known of it with the answers.
+
+    `lines` are the first ones of a text as they stand in it, `first` those of the samples of each column as they are
+    read; `problem` says why a text has no columns in this dialect.
+    """
 
     name: str
     samples: int
@@ -74,6 +105,9 @@ class RawFileView(BaseModel):
     channels: dict[str, AnswerView] = Field(default_factory=dict)
     time: AnswerView = AnswerView(column="", unit="")
     rate: str = ""
+    dialect: DialectView
+    lines: list[str] = Field(default_factory=list)
+    problem: str = ""
 
 
 class MissingView(BaseModel):

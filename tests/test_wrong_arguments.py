@@ -32,7 +32,7 @@ STATED = {
     "units": [5, "mm", ["mm"], {"command": 5}], "columns": [5, "x", {"command": []}], "sample_rate": [4096, []],
     "time": ["t", 5], "actuator": ["SW-1", 5], "specimen": ["1 kg", 5, {"mass": []}], "gain": [[], {}],
     "amplitude": [5, []], "kind": [5], "hold": [5, []], "output": [5, {}, [5]], "use": [5, []], "id": [[], {}],
-    "skip_rows": ["two", 1.5], "rows": [5, "1:5", (1, "2")],
+    "skip_rows": ["two", 1.5], "dialect": ["semicolon", {"sign": ";"}], "rows": [5, "1:5", (1, "2")],
 }  # fmt: skip
 
 

@@ -26,6 +26,7 @@ if TYPE_CHECKING:
     from ident.drafts.draft import Draft, Missing
     from ident.drafts.raw import RawFile
     from ident.drafts.text import Gathered
+    from ident.readers.dialect import Dialect
 
 _SHOWN = 5  # names of files in a remedy
 _LONGEST = 400  # signs of what was given, in a remedy: of more the files are left out
@@ -59,6 +60,11 @@ def init(
         typer.Option(metavar="HZ", help="Sample rate, such as '4096 Hz', if there is no time column; @FILE=HZ: in some "
                      "files only. May be repeated."),
     ] = None,
+    dialect: Annotated[
+        _Texts,
+        typer.Option(metavar="KEY=VALUE", help="Layout of a text file: delimiter, decimal, header_rows, skip_rows or "
+                     "encoding, if it is not detected. @FILE=KEY=VALUE: in some files only. May be repeated."),
+    ] = None,
     output: Annotated[str, typer.Option(metavar="NAME", help="Output channel of the model.")] = "",
     verify: Annotated[_Texts, typer.Option(metavar="FILE", help="A validation run, with or without its suffix; may be "
                                                       "repeated.")] = None,
@@ -81,13 +87,15 @@ def init(
         _free(out)
     files = [file for one in files for file in _records(one)]
     whole = [(Path(name).name, data) for name, data in with_runs_joined([(str(one), _content(one)) for one in files])]
-    of_files = [(one, data) for name, data in whole for one in _parts(data, name, files)]
-    found, contents = [one for one, _ in of_files], [data for _, data in of_files]
     given = {"gain": gain, "hold": hold}
     names = [name for name, _ in whole]
-    of_all, of_some = _said(names, channel or [], time or [], rate or [])
+    of_all, of_some = _said(names, channel or [], time or [], rate or [], dialect or [])
+    dialects = {name: of_some[name].over(of_all).dialect if name in of_some else of_all.dialect for name in names}
+    of_files = [(one, data) for name, data in whole for one in _parts(data, name, files, dialects[name])]
+    found, contents = [one for one, _ in of_files], [data for _, data in of_files]
     answers = Answers(
-        serial=serial, channels=of_all.channels, time=of_all.time, rate=of_all.rate, files=of_some,
+        serial=serial, channels=of_all.channels, time=of_all.time, rate=of_all.rate, dialect=of_all.dialect,
+        files=of_some,
         output=output, verify=tuple(_among(names, name, "--verify") for name in verify or []),
         actuator={"piston_area": area} if area else {}, common={name: text for name, text in given.items() if text},
     )  # fmt: skip
@@ -96,7 +104,8 @@ def init(
         draft = _asked(draft, NONE)
     if draft.missing:
         said = {"--out": out, "--serial": serial, "--channel": channel, "--time": time, "--rate": rate,
-                "--output": output, "--verify": verify, "--area": area, "--gain": gain, "--hold": hold}  # fmt: skip
+                "--dialect": dialect, "--output": output, "--verify": verify, "--area": area, "--gain": gain,
+                "--hold": hold}  # fmt: skip
         raise _with_command(draft, files, said)
     made = gathered(draft, contents)
     _made(draft, made, _free(out or _of_serial(draft.answers.serial)))
@@ -171,12 +180,12 @@ def _made(draft: Draft, files: Gathered, out: Path) -> None:
     print(f"wrote {out / 'matrix.yaml'} and {count(len(files.files) - 1, 'file')}; next: servoident fit {out}")
 
 
-def _parts(content: bytes, name: str, files: list[Path]) -> tuple[RawFile, ...]:
+def _parts(content: bytes, name: str, files: list[Path], dialect: Dialect) -> tuple[RawFile, ...]:
     """The runs of a file. Raises Unusable; for one signal alone with the command that joins the files given."""
     from ident.drafts.raw import read_parts
 
     try:
-        return read_parts(content, name)
+        return read_parts(content, name, stated=dialect)
     except Unusable as refused:
         if refused.code != "one-signal" or len(files) == 1:
             raise
@@ -193,7 +202,7 @@ def _content(file: Path) -> bytes:
 
 
 def _said(
-    names: list[str], channels: list[str], times: list[str], rates: list[str]
+    names: list[str], channels: list[str], times: list[str], rates: list[str], dialects: list[str]
 ) -> tuple[FileAnswers, dict[str, FileAnswers]]:
     """What the options say of all files, and of some of them by name. Raises Unusable."""
     from ident.drafts.answers import FileAnswers
@@ -209,6 +218,9 @@ def _said(
     for text in rates:
         pattern, value = _at(text, "--rate")
         given.append((pattern, FileAnswers(rate=value)))
+    for text in dialects:
+        pattern, value = _at(text, "--dialect")
+        given.append((pattern, FileAnswers(dialect=_dialect(value))))
     of_all, of_some = FileAnswers(), dict[str, FileAnswers]()
     for pattern, one in given:
         if not pattern:
@@ -216,6 +228,20 @@ def _said(
         for name in _matching(names, pattern) if pattern else ():
             of_some[name] = one.over(of_some.get(name, FileAnswers()))
     return of_all, of_some
+
+
+def _dialect(text: str) -> Dialect:
+    """`KEY=VALUE` of a dialect. Raises Unusable."""
+    from ident.readers.dialect import KEYS, describe_dialect
+
+    key, value = split(text, "--dialect", "KEY=VALUE")
+    known = int(value) if value.isdigit() else value
+    if key == "skip_rows" and isinstance(known, int):
+        return describe_dialect({}, "--dialect", known)
+    if key not in KEYS:
+        remedy = did_you_mean(key, (*KEYS, "skip_rows"))
+        raise Unusable("bad-option", f"a dialect has no {key!r}", "--dialect", remedy)
+    return describe_dialect({key: known}, "--dialect")
 
 
 def _at(text: str, option: str) -> tuple[str, str]:

@@ -19,17 +19,20 @@ from app.storage import Storage
 from ident.checks.check import check
 from ident.drafts.answers import Answer, Answers, FileAnswers
 from ident.drafts.draft import Draft
-from ident.drafts.raw import RawFile, read_parts
+from ident.drafts.raw import RawFile, read_or_shown
 from ident.drafts.signal_files import named_runs, with_runs_joined
 from ident.drafts.text import as_yaml, run_files
 from ident.errors import Unusable
 from ident.readers import read_source
+from ident.readers.dialect import Dialect, describe_dialect
 from ident.readers.limits import LIMITS, check_size
 from ident.readers.source import DESCRIPTION, inside, read_regular
 from schemas.draft import (
     AnswersRequest,
     AnswerView,
     ColumnView,
+    DialectRequest,
+    DialectView,
     DraftView,
     FileAnswersRequest,
     MissingView,
@@ -39,7 +42,9 @@ from schemas.matrix import FindingView, MatrixView
 
 _NAMES = "names.json"
 _MOST = 2  # drafts in memory
-_read: LRU[tuple[RawFile, ...]] = LRU(_MOST)
+_FIRST = 4  # samples of a column that are shown
+_Read = dict[tuple[str, Dialect], tuple[RawFile, ...]]  # by the name and the dialect of a file
+_read: LRU[_Read] = LRU(_MOST)
 
 
 def check_room(context: Context) -> None:
@@ -82,7 +87,8 @@ def look(context: Context, draft: str, asked: AnswersRequest) -> DraftView:
 
     Raises Unusable for answers that fit no file, and Failure 404.
     """
-    of = Draft(raw_files(context, draft), answers(asked))
+    said = answers(asked)
+    of = Draft(raw_files(context, draft, said), said)
     files, lacks = [_file(of, file) for file in of.files], of.missing
     text, findings = "", []
     if not lacks:
@@ -111,11 +117,20 @@ def _file(draft: Draft, file: RawFile) -> RawFileView:
     }
     if known.time.column != "":
         by_column[file.table.number(known.time.column, "")] = "time"
+    samples = {c.number: file.samples(c.number) for c in file.columns}
     columns = [
-        ColumnView(number=c.number, name=c.name, unit=c.unit, role=by_column.get(c.number, "")) for c in file.columns
+        ColumnView(
+            number=c.number,
+            name=c.name,
+            unit=c.unit,
+            role=by_column.get(c.number, ""),
+            first=samples[c.number][:_FIRST].tolist(),
+        )
+        for c in file.columns
     ]
     return RawFileView(
-        name=file.name, samples=len(file.samples(file.columns[0].number)), columns=columns,
+        name=file.name, samples=max(map(len, samples.values()), default=0), columns=columns,
+        dialect=DialectView(**asdict(file.head.dialect)), lines=list(file.head.lines), problem=file.problem,
         channels={name: AnswerView(**asdict(answer)) for name, answer in known.channels.items()},
         time=AnswerView(**asdict(known.time)), rate=known.rate,
     )  # fmt: skip
@@ -126,7 +141,8 @@ def make(context: Context, draft: str, asked: AnswersRequest) -> tuple[MatrixVie
 
     Raises Unusable where something is missing or the matrix cannot be, and Failure 404.
     """
-    text = as_yaml(Draft(raw_files(context, draft), answers(asked)))
+    said = answers(asked)
+    text = as_yaml(Draft(raw_files(context, draft, said), said))
     store, names = _opened(context, draft)
     described = {DESCRIPTION: store.put(io.BytesIO(text.encode()))}
     found = matrices.record(context, store, {"files": described | run_files(names)}, None)
@@ -139,7 +155,8 @@ def answers(asked: AnswersRequest) -> Answers:
     common = {"gain": asked.gain, "hold": asked.hold}
     of_all = _of_file(asked)
     return Answers(
-        serial=asked.serial.strip(), channels=of_all.channels, time=of_all.time, rate=of_all.rate, output=asked.output,
+        serial=asked.serial.strip(), channels=of_all.channels, time=of_all.time, rate=of_all.rate,
+        dialect=of_all.dialect, output=asked.output,
         verify=tuple(asked.verify), actuator={"piston_area": asked.area} if asked.area else {},
         common={name: text for name, text in common.items() if text},
         files={name: _of_file(of_one) for name, of_one in asked.files.items()},
@@ -149,23 +166,33 @@ def answers(asked: AnswersRequest) -> Answers:
 def _of_file(asked: AnswersRequest | FileAnswersRequest) -> FileAnswers:
     """What is said of a file, or of all. Raises Unusable for a channel that is none."""
     channels = {name: Answer(answer.column, answer.unit) for name, answer in asked.channels.items()}
-    return FileAnswers(channels, Answer(asked.time.column, asked.time.unit), asked.rate.strip())
+    time = Answer(asked.time.column, asked.time.unit)
+    return FileAnswers(channels, time, asked.rate.strip(), _dialect(asked.dialect))
 
 
-def raw_files(context: Context, draft: str) -> tuple[RawFile, ...]:
-    """The files of a draft, from memory where they were read lately. Raises Failure 404, Unusable."""
+def _dialect(asked: DialectRequest) -> Dialect:
+    stated = asked.model_dump(exclude={"skip_rows"}, exclude_defaults=True)
+    return describe_dialect(stated, "dialect", asked.skip_rows)
+
+
+def raw_files(context: Context, draft: str, said: Answers) -> tuple[RawFile, ...]:
+    """The files of a draft in the dialects that were said, from memory where they were read lately so.
+
+    Raises Failure 404, Unusable.
+    """
     store, names = _opened(context, draft)
-
-    def read() -> tuple[RawFile, ...]:
-        sizes = [store.path(sha256).stat().st_size for sha256 in names.values()]
-        check_size(sum(sizes), LIMITS.total, "all files together", "upload")
-        return tuple(
-            one
-            for name, sha in names.items()
-            for one in read_parts(read_regular(store.path(sha), name, LIMITS.file), name)
+    sizes = [store.path(sha256).stat().st_size for sha256 in names.values()]
+    check_size(sum(sizes), LIMITS.total, "all files together", "upload")
+    before: _Read = _read.get((str(context.storage.folder), draft), dict)
+    now: _Read = {}
+    for name, sha256 in names.items():
+        dialect = said.of(name).dialect
+        now[name, dialect] = before.get((name, dialect)) or read_or_shown(
+            read_regular(store.path(sha256), name, LIMITS.file), name, dialect
         )
-
-    return _read.get((str(context.storage.folder), draft), read)
+    before.clear()  # of a file that is read otherwise now nothing is kept
+    before.update(now)
+    return tuple(one for parts in now.values() for one in parts)
 
 
 def _opened(context: Context, draft: str) -> tuple[Storage, dict[str, str]]:

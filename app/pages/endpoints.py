@@ -42,15 +42,15 @@ def upload(request: Request) -> HTMLResponse:
 
 
 @router.get("/drafts/{draft}", dependencies=[LAB])
-def draft(request: Request, here: Here, draft: str, apart: bool = False) -> HTMLResponse:
-    """Raw files: their columns, and the form that makes a matrix of them; each file by itself where asked for."""
-    return page(request, "draft.html", **draft_page(here, draft, apart))
+def draft(request: Request, here: Here, draft: str, apart: bool = False, dialects: str = "") -> HTMLResponse:
+    """Raw files: how they begin, their columns, and the form that makes a matrix of them; `apart` one by one."""
+    return page(request, "draft.html", **draft_page(here, draft, apart, dialects))
 
 
 @router.get("/drafts/{draft}/{file}/{column}.svg", dependencies=[LAB])
-def draft_column(here: Here, draft: str, file: int, column: int) -> Response:
+def draft_column(here: Here, draft: str, file: int, column: int, dialects: str = "") -> Response:
     """A column of a raw file at a glance."""
-    return Response(column_picture(here, draft, file, column), media_type="image/svg+xml", headers=assets.OWN)
+    return Response(column_picture(here, draft, file, column, dialects), media_type="image/svg+xml", headers=assets.OWN)
 
 
 @router.get("/matrices/{matrix}", dependencies=[READERS])

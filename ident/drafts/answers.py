@@ -7,6 +7,7 @@ from dataclasses import dataclass, field, replace
 from typing import Any
 
 from ident.errors import Unusable
+from ident.readers.dialect import FOUND, Dialect
 from ident.run import CHANNELS
 from ident.units.quantity import shown
 from ident.words.nearest import did_you_mean
@@ -29,7 +30,8 @@ class Answer:
 
 @dataclass(frozen=True)
 class FileAnswers:
-    """What is said of one file: the column and the unit of each channel and of the time, or the sample rate.
+    """What is said of one file: the column and the unit of each channel and of the time, or the sample rate; of a text
+    the dialect that it is read in.
 
     Raises Unusable: ``unknown-channel``.
     """
@@ -37,6 +39,7 @@ class FileAnswers:
     channels: Mapping[str, Answer] = field(default_factory=dict)
     time: Answer = Answer()
     rate: str = ""
+    dialect: Dialect = FOUND
 
     def __post_init__(self) -> None:
         for channel in self.channels:
@@ -52,14 +55,15 @@ class FileAnswers:
             for name in {**other.channels, **self.channels}
         }
         timed = self.time.column not in ("", NONE)
-        return FileAnswers(channels, self.time.over(other.time), self.rate or ("" if timed else other.rate))
+        rate = self.rate or ("" if timed else other.rate)
+        return FileAnswers(channels, self.time.over(other.time), rate, self.dialect.over(other.dialect))
 
 
 @dataclass(frozen=True)
 class Answers:
     """What a person says of raw files. `common` are further entries of every run, as they stand in matrix.yaml.
 
-    `channels`, `time` and `rate` hold for every file, but for what `files` says of one of them, by its name.
+    `channels`, `time`, `rate` and `dialect` hold for every file, but for what `files` says of one of them, by its name.
     Raises Unusable: ``unknown-channel``.
     """
 
@@ -67,6 +71,7 @@ class Answers:
     channels: Mapping[str, Answer] = field(default_factory=dict)
     time: Answer = Answer()
     rate: str = ""
+    dialect: Dialect = FOUND
     output: str = ""
     verify: tuple[str, ...] = ()
     actuator: Mapping[str, str] = field(default_factory=dict)
@@ -81,7 +86,7 @@ class Answers:
     @property
     def of_all(self) -> FileAnswers:
         """What holds for every file."""
-        return FileAnswers(self.channels, self.time, self.rate)
+        return FileAnswers(self.channels, self.time, self.rate, self.dialect)
 
     def of(self, file: str) -> FileAnswers:
         """What holds for one file, by its name."""

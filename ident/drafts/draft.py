@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from ident.drafts.answers import NONE, Answer, Answers, FileAnswers
-from ident.drafts.names import suggested, unit_of
+from ident.drafts.names import suggested, unit_of, unnamed_clock
 from ident.drafts.raw import Column, RawFile
 from ident.drafts.steps import moves_in_steps
 from ident.errors import Unusable
@@ -73,6 +73,8 @@ class Draft:
 
     def known(self, file: RawFile) -> Known:
         """What the file states and the answers say of it. Raises Unusable where an answer names no column of it."""
+        if file.problem:
+            return Known({}, Answer(), "", "linear", ())
         doubts: list[str] = []
         said = self.answers.of(file_name(file))
         found = {channel: Answer(column.name, unit_of(column)) for channel, column in suggested(file.columns).items()}
@@ -126,7 +128,7 @@ class Draft:
         """Everything that has still to be said: once for all files whose columns are called alike."""
         found: dict[tuple[object, ...], Missing] = {}
         for file in self.files:
-            columns = tuple(column.name for column in file.columns)
+            columns = tuple(column.name for column in file.columns) or (file.name,)
             for one in self._missing_of(file):
                 before = found.setdefault((one.key, columns), replace(one, files=()))
                 found[one.key, columns] = replace(before, files=(*before.files, file_name(file)))
@@ -135,7 +137,7 @@ class Draft:
 
     def _of_some(self, missing: Missing) -> Missing:
         """What is missing, its question with the files that it concerns where these are not all."""
-        if self.of_all(missing) or missing.key.startswith("channel"):
+        if self.of_all(missing) or missing.key.startswith(("channel", "dialect")):
             return missing
         return replace(missing, question=f"{missing.question}, of {some_of(missing.files)}")
 
@@ -144,6 +146,9 @@ class Draft:
         return len(missing.files) in (0, len(self.files))
 
     def _missing_of(self, file: RawFile) -> list[Missing]:
+        if file.problem:
+            question = f"{shown(file_name(file))} cannot be read: {file.problem}. Which delimiter, decimal sign, header"
+            return [Missing("dialect", f"{question} rows and encoding has it?")]
         known, found = self.known(file), []
         output = next((name for name in OUTPUTS if name in known.channels), "")
         wanted = self.answers.output or output
@@ -232,9 +237,11 @@ class Draft:
     def _option(self, key: str, file: RawFile, at: str) -> str:
         """How an answer is given; `at` says of which file alone."""
         kind, _, name = key.partition(" ")
+        if kind == "dialect":
+            return f"--dialect {at}delimiter=NAME"
         clock, others = self._left(file)
         if kind == "rate":
-            return f"--time {quote(f'{at}{clock}')}:UNIT" if clock else f"--rate '{at}1000 Hz'"
+            return f"--time {quote(f'{at}{clock}')}:UNIT" if clock else f"--rate '{at}RATE Hz'"
         column = (quote(others[0]) if len(others) == 1 else "COLUMN") if kind == "channel" else ""
         return f"--time {at}{column}:UNIT" if name == "time" else f"--channel {name}{at or '='}{column}:UNIT"
 
@@ -257,6 +264,7 @@ class Draft:
         else:
             run["sample_rate"] = known.rate
         run |= {"skip_rows": file.skip_rows} if file.skip_rows else {}
+        run |= {"dialect": file.dialect.entries} if file.dialect.entries else {}
         run |= {"output": output} if output != OUTPUTS[0] else {}
         run |= {"hold": "zoh"} if known.hold == "zoh" else {}
         run |= {
@@ -292,7 +300,11 @@ def _clock(file: RawFile, said: FileAnswers) -> tuple[Answer, str, tuple[str, ..
         found = Answer(named[0].name, answer.unit or named[0].unit)
         return found, "", (by_name, *_other_unit(named[0], answer.unit))
     if (rate := file.rate) is None:
-        return Answer(), "", ()
+        clock = None if answer.column == NONE else unnamed_clock(file)
+        if clock is None:
+            return Answer(), "", ()
+        unnamed = message("draft.first_is_time", number=clock.number)
+        return Answer(clock.number, answer.unit or clock.unit), "", (str(unnamed),)
     told = message("draft.rate" if rate.stated else "draft.rate_without_unit", rate=rate.value)
     return Answer(), f"{rate.value:g} Hz", (str(told),)
 

@@ -4,29 +4,31 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ident.cached import cached_property
+from ident.drafts.head import NOTHING, Head, head_of, text_of
 from ident.errors import Unusable
-from ident.readers import PACKED, TEXT, ending_of, read_table
+from ident.readers import ending_of, read_table
 from ident.readers.column_names import bracketed, is_time, is_unit, measures_time, suffix
 from ident.readers.controldesk import is_controldesk
-from ident.readers.gzipped import unpacked
+from ident.readers.dialect import FOUND, Dialect
 from ident.readers.layout import Form, line_start, recognise
 from ident.readers.limits import LIMITS, Limits
 from ident.readers.suggestion import unit_in
 from ident.readers.table import MINUS, NUMERIC, Table
-from ident.readers.text import as_utf8
 from ident.run import Samples
 from ident.units.quantity import unit_scale
 
 JOINED = "# joined: "
 """How a line begins, above a table that was joined from several files, that says how."""
 _OF_TABLES = (".json",)
+_OF_DIALECT = ("no-columns", "comma-twice", "not-numeric", "ragged-row", "bad-rows")
+"""Refusals that another dialect may cure."""
 _LETTER_M = "m"  # behind a name it may be metres, or say that it was measured
 _SAMPLING = r"^\W{0,9}(?:sampl|abtast|[ée]chantillon|campion)\w*[ _]?"
 _NUMBER = r"[^0-9A-Za-z]{0,9}([0-9][0-9.,eE+-]*) ?"
@@ -61,6 +63,8 @@ class RawFile:
 
     `form` is how a text is cut; `period` what a row of the heading such as Interval says: a number and its unit.
     `part` is the run of a file that holds several; a column is called by its number in it, or as the file calls it.
+    `dialect` is the one that was stated, `head` how the text begins and the dialect that it is read in; `problem`
+    says why a text has no columns, as it is laid out now.
     """
 
     name: str
@@ -70,6 +74,9 @@ class RawFile:
     form: Form | None = None
     period: tuple[float, str] | None = None
     part: str = ""
+    dialect: Dialect = FOUND
+    head: Head = NOTHING
+    problem: str = ""
 
     @cached_property
     def columns(self) -> tuple[Column, ...]:
@@ -100,6 +107,8 @@ class RawFile:
     def rate(self) -> Rate | None:
         """The sample rate that the heading or the lines above the table state; a rate without a unit where an interval
         confirms it. An interval in a row of the heading that names no unit is in seconds."""
+        if self.table.rate:
+            return Rate(float(f"{self.table.rate:.9g}"), True)
         if self.period is not None and (step := _seconds(self.period[0], self.period[1] or "s")):
             return Rate(1.0 / step, bool(self.period[1]))
         rates = [(value, unit) for value, unit in _stated(_RATE, self.preamble) if unit.lower() in ("", "hz", "khz")]
@@ -204,9 +213,9 @@ def _seconds(value: float, unit: str) -> float:
     return value * unit_scale(unit, "time", "unit").factor if is_unit(unit) and measures_time(unit) else 0.0
 
 
-def read_raw(data: bytes, name: str, limits: Limits = LIMITS) -> RawFile:
+def read_raw(data: bytes, name: str, limits: Limits = LIMITS, stated: Dialect = FOUND) -> RawFile:
     """A raw file that may be a run. Raises Unusable: ``one-signal``, and what :func:`read_whole` raises."""
-    read = read_whole(data, name, limits)
+    read = read_whole(data, name, limits, stated)
     signals = [one for one in read.columns if not is_time(one.name) and one.number not in read.table.stamps]
     if len(signals) == 1 and not read.left_out:
         what = "it holds one signal, and a run is one file with all of its signals"
@@ -215,25 +224,33 @@ def read_raw(data: bytes, name: str, limits: Limits = LIMITS) -> RawFile:
     return read
 
 
-def read_whole(data: bytes, name: str, limits: Limits = LIMITS) -> RawFile:
-    """A raw file of one signal or more. Raises Unusable: ``no-columns`` and what the readers raise."""
-    ending, skip, preamble, form, period = ending_of(name), 0, "", None, None
-    if ending.removesuffix(PACKED) in TEXT:
-        text = as_utf8(unpacked(data, name, limits) if ending.endswith(PACKED) else data)
-        if not is_controldesk(text):
-            layout = recognise(text, name)
-            skip, form, period = layout.skip_rows, layout.form, layout.heading.period
-        preamble = text[: line_start(text, skip)].decode("utf-8", "replace")
-    read = RawFile(name, read_table(data, name, skip, limits), skip, preamble, form, period)
+def read_whole(data: bytes, name: str, limits: Limits = LIMITS, stated: Dialect = FOUND) -> RawFile:
+    """A raw file of one signal or more, a text in the dialect that is stated.
+
+    Raises Unusable: ``no-columns`` and what the readers raise.
+    """
+    dialect, preamble, form, period, head = stated, "", None, None, NOTHING
+    if (found := text_of(data, name, limits, stated)) is not None:
+        text, encoding = found
+        layout = None
+        if stated != FOUND or not is_controldesk(text):
+            layout = recognise(text, name, stated)
+            dialect = replace(stated, skip_rows=layout.skip_rows)
+            form, period = layout.form, layout.heading.period
+        preamble = text[: line_start(text, dialect.skip_rows)].decode("utf-8", "replace")
+        head = head_of(text, encoding, stated, layout)
+    table = read_table(data, name, dialect, limits)
+    read = RawFile(name, table, dialect.skip_rows, preamble, form, period, dialect=stated, head=head)
     if not read.columns:
-        raise Unusable("no-columns", "no column holds numbers throughout", name, "look into the file")
+        remedy = "look into the file; of a text state the dialect: delimiter, decimal sign, header rows, encoding"
+        raise Unusable("no-columns", "no column holds numbers throughout", name, remedy)
     return read
 
 
-def read_parts(data: bytes, name: str, limits: Limits = LIMITS) -> tuple[RawFile, ...]:
+def read_parts(data: bytes, name: str, limits: Limits = LIMITS, stated: Dialect = FOUND) -> tuple[RawFile, ...]:
     """The runs of a raw file, one of each table where it holds several of the same columns, as logs of a drive's
     characterisation in JSON do. Raises Unusable as :func:`read_raw`."""
-    whole = read_raw(data, name, limits)
+    whole = read_raw(data, name, limits, stated)
     tables: dict[str, list[int]] = {}
     for number, column in enumerate(whole.table.names):
         table, apart, place = column.rpartition("/")
@@ -243,6 +260,23 @@ def read_parts(data: bytes, name: str, limits: Limits = LIMITS) -> tuple[RawFile
     if ending_of(name) not in _OF_TABLES or len(tables) < 2 or len({len(numbers) for numbers in tables.values()}) > 1:
         return (whole,)
     return tuple(RawFile(name, _part(whole.table, numbers), 0, "", part=table) for table, numbers in tables.items())
+
+
+def read_or_shown(data: bytes, name: str, stated: Dialect = FOUND, limits: Limits = LIMITS) -> tuple[RawFile, ...]:
+    """As :func:`read_parts`; of a text that cannot be read as it is laid out now, its head, and the problem in words.
+
+    Raises Unusable for what no other dialect cures.
+    """
+    try:
+        return read_parts(data, name, limits, stated)
+    except Unusable as refused:
+        told = refused.code in _OF_DIALECT or (refused.code == "one-signal" and stated != FOUND)
+        if not told or (found := text_of(data, name, limits, stated)) is None:
+            raise
+        text, encoding = found
+        head = head_of(text, encoding, stated, None)
+        nothing = Table((), lambda _: [])
+        return (RawFile(name, nothing, stated.skip_rows, "", dialect=stated, head=head, problem=refused.what),)
 
 
 def _part(table: Table, numbers: Sequence[int]) -> Table:

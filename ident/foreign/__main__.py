@@ -23,7 +23,9 @@ def limited(memory: int) -> None:
 def answer(format_: str, path: str) -> tuple[dict[str, Any], list[Any]]:
     """What is said of the columns, and those of numbers."""
     try:
-        found = list(import_module(f"ident.foreign.{format_}").columns(path))
+        parser = import_module(f"ident.foreign.{format_}")
+        found = list(parser.columns(path))
+        rate = parser.rate(path) if hasattr(parser, "rate") else 0.0
     except ModuleNotFoundError as error:
         return {"refused": "not-installed", "what": error.name}, []
     except MemoryError:
@@ -36,7 +38,7 @@ def answer(format_: str, path: str) -> tuple[dict[str, Any], list[Any]]:
         {"name": name, "unit": unit, "length": len(values) if fine else None}
         for (name, unit, _), values, fine in zip(found, numbers, sound, strict=True)
     ]
-    return {"columns": entries}, [values for values, fine in zip(numbers, sound, strict=True) if fine]
+    return {"columns": entries, "rate": rate}, [values for values, fine in zip(numbers, sound, strict=True) if fine]
 
 
 def main() -> None:

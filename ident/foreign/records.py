@@ -1,30 +1,66 @@
-"""JSON: a list of records, a record a line, an object of columns, or an object of tables, each a list of rows."""
+"""JSON: a list of records, a record a line, an object of columns, or an object of tables, each a list of rows.
+
+Beside its columns an object may state ``sample_rate`` (Hz) or ``dt`` (s), and ``units`` by the names of columns.
+"""
 
 from __future__ import annotations
 
 import json
 from collections.abc import Iterator
+from functools import lru_cache
 from pathlib import Path
 from typing import Any
+
+RATES = ("sample_rate", "samplerate", "sampling_rate", "sample_rate_hz", "rate", "rate_hz", "fs", "fs_hz")
+"""Entries that state a sample rate in Hz, in small letters."""
+STEPS = ("dt", "dt_s", "ts", "sample_time", "sample_interval", "sample_period", "interval")
+"""Entries that state the time between two samples in s."""
+
+
+@lru_cache(1)
+def _held(path: str) -> Any:
+    """What a file holds; a list where each of its lines is a record."""
+    text = Path(path).read_text(encoding="utf-8-sig")
+    try:
+        return json.loads(text)
+    except json.JSONDecodeError:
+        return [json.loads(line) for line in text.splitlines() if line.strip()]
+
+
+def rate(path: str) -> float:
+    """The sample rate in Hz that an object states; 0 where it states none."""
+    held = _held(path)
+    stated = {name.lower(): value for name, value in held.items()} if isinstance(held, dict) else {}
+    for names, per in ((RATES, False), (STEPS, True)):
+        for name in names:
+            value = stated.get(name)
+            if isinstance(value, int | float) and not isinstance(value, bool) and 0 < value < float("inf"):
+                return 1.0 / value if per else float(value)
+    return 0.0
 
 
 def columns(path: str) -> Iterator[tuple[str, str, Any]]:
     """Every entry that the first record has, as a column. Raises ValueError where records differ in their entries."""
-    text = Path(path).read_text(encoding="utf-8-sig")
-    try:
-        held = json.loads(text)
-    except json.JSONDecodeError:
-        held = [json.loads(line) for line in text.splitlines() if line.strip()]
+    held, units = _held(path), {}
+    if isinstance(held, dict) and isinstance(held.get("units"), dict):
+        units = held["units"]
+    for name, unit, values in _columns(held):
+        yield name, unit or str(units.get(name, "")), values
+
+
+def _columns(held: Any) -> Iterator[tuple[str, str, Any]]:
     if isinstance(held, dict):
         tables = {name: value for name, value in held.items() if isinstance(value, list)}
         if tables and all(map(is_table, tables.values())):
             yield from of_tables(tables)
             return
     if isinstance(held, dict) and len(tables) < len(held):
-        lists = list(tables.values())
-        if len(lists) != 1:
-            raise ValueError("write a list of records, or an object of columns")
-        (held,) = lists
+        if len(tables) == 1:
+            (held,) = tables.values()
+        elif len({len(one) for one in tables.values()}) == 1:
+            held = tables
+        else:
+            raise ValueError("write a list of records, or an object of columns of one length")
     if isinstance(held, dict):
         for name, values in held.items():
             yield name, "", plain(values)

@@ -16,6 +16,7 @@ from ident.readers.archive import Archive
 from ident.readers.controldesk import read_controldesk
 from ident.readers.dat import read_dat
 from ident.readers.description import Description, describe
+from ident.readers.dialect import FOUND, Dialect
 from ident.readers.gzipped import unpacked
 from ident.readers.hold import with_hold
 from ident.readers.limits import LIMITS, Limits, check_size
@@ -88,7 +89,7 @@ def _read_file(path: Path, limits: Limits, stated: Stated) -> Matrix:
     folder = Folder(path.parent, limits)
     parts = [folder.read(path.name, limits.file)]
     near = beside(folder, path.name, limits, parts)
-    return of_file(path, parts, stated, lambda run: read_table(parts[0], path.name, run.skip_rows, limits, "", near))
+    return of_file(path, parts, stated, lambda run: read_table(parts[0], path.name, run.dialect, limits, "", near))
 
 
 def read_source(source: Source, limits: Limits = LIMITS) -> Matrix:
@@ -132,14 +133,14 @@ def read_runs(
         near = beside(source, name, limits, parts)
         read += len(parts[0])
         check_size(read, limits.total, "all run files together", name)
-        tables: dict[int, Table] = {}
+        tables: dict[Dialect, Table] = {}
         for number, run in wanted:
-            if run.skip_rows not in tables:
+            if run.dialect not in tables:
                 of_run = run_name(run.labels.id)
-                tables[run.skip_rows] = read_table(parts[0], name, run.skip_rows, limits, of_run, near)
-                for notice in tables[run.skip_rows].notices:
+                tables[run.dialect] = read_table(parts[0], name, run.dialect, limits, of_run, near)
+                for notice in tables[run.dialect].notices:
                     notices.setdefault(notice.replace(name, "", 1), []).append(notice)
-            runs[number] = read_run(run, tables[run.skip_rows])
+            runs[number] = read_run(run, tables[run.dialect])
             in_memory += sum(samples.nbytes for samples in runs[number].channels.values())
             check_size(in_memory, limits.samples, "all samples together", name)
         read += sum(map(len, parts[1:]))
@@ -161,7 +162,7 @@ def by_file(runs: tuple[RunDescription, ...]) -> dict[str, list[tuple[int, RunDe
     return files
 
 
-def read_table(data: bytes, name: str, skip_rows: int, limits: Limits, where: str = "", near: Beside = alone) -> Table:
+def read_table(data: bytes, name: str, stated: Dialect, limits: Limits, where: str = "", near: Beside = alone) -> Table:
     """The table of a file by the ending of its name; `where` is the run that asks for it, `near` has what lies beside.
 
     Raises Unusable: ``unknown-type``, ``empty-file``, ``bad-rows``, and what the reader raises.
@@ -175,10 +176,12 @@ def read_table(data: bytes, name: str, skip_rows: int, limits: Limits, where: st
     if ending.endswith(PACKED):
         data, ending = unpacked(data, name, limits), ending.removesuffix(PACKED)
     if ending in TEXT:
-        recording = None if skip_rows else read_controldesk(data, name, limits)
-        return recording or read_text(data, name, limits, skip_rows)
-    if skip_rows:
+        recording = read_controldesk(data, name, limits) if stated == FOUND else None
+        return recording or read_text(data, name, limits, stated)
+    if stated.skip_rows:
         raise Unusable("bad-rows", "skip_rows is for text files", f"{where} skip_rows".strip(), "use rows")
+    if stated != FOUND:
+        raise Unusable("bad-dialect", "a dialect is for text files", f"{where} dialect".strip(), "leave it out")
     if ending in FOREIGN:
         return read_apart(FOREIGN[ending], data, name, limits)
     kind = BINARY[ending]

@@ -52,7 +52,8 @@ def read_apart(format_: str, data: bytes, where: str, limits: Limits) -> Table:
                 raise Unusable("not-numeric", what, where, "save real numbers")
         return [np.frombuffer(numbers, "<f8", lengths[n], _NUMBER * int(starts[n])) for n in wanted]
 
-    return Table(names, load, units=tuple(str(column["unit"]) for column in columns))
+    units = tuple(str(column["unit"]) for column in columns)
+    return Table(names, load, units=units, rate=float(said.get("rate") or 0.0))
 
 
 def _output(format_: str, data: bytes, where: str, limits: Limits) -> bytes:

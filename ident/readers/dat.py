@@ -8,6 +8,7 @@ from __future__ import annotations
 from ident.errors import Unusable
 from ident.readers.apart import read_apart
 from ident.readers.diadem import HEADS, read_diadem
+from ident.readers.dialect import Dialect
 from ident.readers.layout import line_start
 from ident.readers.limits import Limits
 from ident.readers.source import Beside
@@ -46,6 +47,6 @@ def read_mts(data: bytes, where: str, limits: Limits) -> Table:
         end = line_start(text, 1, start)
         fields = text[start:end].decode("utf-8", "replace").split("\t") if text[start:end].strip() else []
         if line > 1 and fields and all(is_number(field.strip(), "\t") for field in fields if field.strip()):
-            return read_text(data, where, limits, line - 2)
+            return read_text(data, where, limits, Dialect(skip_rows=line - 2))
         start = end
     raise Unusable("broken-mts", "no line of numbers was found", where, "export the record again, as text")

@@ -14,12 +14,11 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from ident.errors import Unusable
+from ident.readers.dialect import DECIMALS, DELIMITERS, FOUND, Dialect
 from ident.readers.heading import Heading, heading, is_label
 from ident.readers.numeral import QUOTES, decimals, has_fraction, in_thousands, is_begun, is_numeral
 from ident.readers.time_stamp import is_stamp
 
-DELIMITERS = ("\t", ";", ",", "|", None)
-"""What may separate columns, the first of equals; None are columns aligned by spaces."""
 HEAD_LINES = 400
 """Lines that are looked through for the first row: preambles of bench software have up to some hundred lines."""
 _HEAD_BYTES = 1 << 20
@@ -93,22 +92,27 @@ class _Shape:
         return 2 * found >= len(self.numbers) + len(self.stamps) and found > 0 and not words
 
 
-def recognise(text: bytes, where: str, skip_rows: int = 0) -> Layout:
-    """The layout of a table in UTF-8. Where lines above are stated, the next one is the line of names.
+def recognise(text: bytes, where: str, stated: Dialect = FOUND) -> Layout:
+    """The layout of a table in UTF-8, as stated or found. Where `skip_rows` is stated, the names stand below.
 
-    Raises Unusable: ``empty-file``, ``not-text``, ``comma-twice``.
+    Raises Unusable: ``empty-file``, ``not-text``, ``comma-twice``, ``bad-rows``.
     """
+    skip_rows = stated.skip_rows
     start = line_start(text, skip_rows)
-    lines = head_lines(text, start, where)
-    form, shape = _judged(lines)
+    lines = head_lines(text, start, where, HEAD_LINES + (stated.header_rows or 0))
+    begin = _stated_first(lines, stated, where)
+    form, shape = _judged(lines[begin or 0 :], stated, where)
     if shape is None:  # no line of numbers: the first line is one of names, and loading says what is wrong
-        form = Form(sniffed(lines), None)
+        form = Form(DELIMITERS[stated.delimiter] if stated.delimiter else sniffed(lines), DECIMALS.get(stated.decimal))
         return _without_rows(text, start, lines, form, skip_rows)
     cut = [form.fields(line) for line in lines]
-    first = _first_row(lines, cut, shape, bool(form.comma))
+    first = _first_row(lines, cut, shape, bool(form.comma)) if begin is None else begin
     form = _with_sign(form, cut[first:])
+    head = first
+    while begin and head and shape.is_full(cut[head - 1], bool(form.comma)):  # stated to be no sample, and no name
+        head -= 1
     found = heading(
-        lines[:first], form.fields, shape.columns, frozenset(shape.numbers | shape.stamps), skip_rows > 0, where
+        lines[:head], form.fields, shape.columns, frozenset(shape.numbers | shape.stamps), skip_rows > 0, where
     )
     _check_commas(form, cut[first : first + _JUDGED], found, where)
     above = first if found.begin is None else found.begin
@@ -128,14 +132,28 @@ def recognise(text: bytes, where: str, skip_rows: int = 0) -> Layout:
     )
 
 
-def head_lines(text: bytes, start: int, where: str) -> list[str]:
+def _stated_first(lines: Sequence[str], stated: Dialect, where: str) -> int | None:
+    """The first row of samples among the lines below `skip_rows`, where header rows are stated. Raises Unusable."""
+    if stated.header_rows is None:
+        return None
+    first = stated.header_rows - stated.skip_rows
+    if first < 0:
+        what = f"{stated.skip_rows} lines stand above the column names, and {stated.header_rows} above the samples"
+        raise Unusable("bad-rows", what, where, "give as many header_rows as skip_rows, or more")
+    if not any(line.strip() for line in lines[first:]):
+        what = f"no line of samples stands below {stated.header_rows} header rows"
+        raise Unusable("bad-rows", what, where, "give fewer header rows")
+    return first
+
+
+def head_lines(text: bytes, start: int, where: str, most: int = HEAD_LINES) -> list[str]:
     """The lines of the head from byte `start` on. Raises Unusable for none, and for what is no text."""
-    raw = text[start : start + _HEAD_BYTES].split(b"\n")[:HEAD_LINES]
+    raw = text[start : start + _HEAD_BYTES].split(b"\n")[:most]
     if not any(line.strip() for line in raw):
         raise Unusable("empty-file", "there is no line of column names", where, "check skip_rows and the file")
     if any(len(line) > LONGEST_LINE or b"\0" in line for line in raw):
         raise Unusable("not-text", "this is not a table of text", where, "give the file the ending of its type")
-    if len(raw) > 2 and start + sum(map(len, raw)) + len(raw) <= len(text) and len(raw) < HEAD_LINES:
+    if len(raw) > 2 and start + sum(map(len, raw)) + len(raw) <= len(text) and len(raw) < most:
         raw.pop()  # the head ends within this line
     return [line.decode("utf-8", "replace").rstrip("\r") for line in raw]
 
@@ -153,21 +171,30 @@ def line_start(text: bytes, lines: int, start: int = 0) -> int:
 def sniffed(lines: Sequence[str]) -> str | None:
     """The delimiter by counting, where nothing else tells."""
     some = [line for line in lines if line.strip()][:2]
-    counts = {sign: min(line.count(sign) for line in some) for sign in DELIMITERS if sign}
+    counts = {sign: min(line.count(sign) for line in some) for sign in DELIMITERS.values() if sign}
     best = max(counts, key=lambda sign: counts[sign])
     return best if counts[best] else None
 
 
-def _judged(lines: Sequence[str]) -> tuple[Form, _Shape | None]:
-    """The form under which the rows are most consistently numbers, of equals the one of most columns."""
+def _judged(lines: Sequence[str], stated: Dialect, where: str) -> tuple[Form, _Shape | None]:
+    """The form under which the rows are most consistently numbers, of equals the one of most columns.
+
+    Only forms that are as stated are judged. Raises Unusable ``comma-twice`` where no row could be cut so.
+    """
     filled = [line for line in lines if line.strip()]
     rows = (filled[:-1] if len(filled) > _ENOUGH else filled[-2:])[-_JUDGED:]
     best: tuple[tuple[float, int], Form, _Shape] | None = None
-    for delimiter in DELIMITERS:
-        if delimiter is not None and sum(delimiter in row for row in rows) * 2 < len(rows):
+    quoted = any('"' in row for row in rows)
+    if stated.delimiter == stated.decimal == "comma" and not quoted:
+        what = "the comma is stated as the delimiter and as the decimal sign"
+        raise Unusable("comma-twice", what, where, "state another delimiter, or the point as the decimal sign")
+    for delimiter in [DELIMITERS[stated.delimiter]] if stated.delimiter else DELIMITERS.values():
+        seldom = delimiter is not None and sum(delimiter in row for row in rows) * 2 < len(rows)
+        if seldom and not stated.delimiter:
             continue
-        quoted = delimiter == "," and any('"' in row for row in rows)
-        for comma in (False, True) if delimiter != "," or quoted else (False,):
+        for comma in [DECIMALS[stated.decimal]] if stated.decimal else DECIMALS.values():
+            if comma and delimiter == "," and not quoted:
+                continue
             form = Form(delimiter, comma)
             cut = [form.fields(row) for row in rows]
             shape = _shape(cut, comma)
@@ -176,11 +203,11 @@ def _judged(lines: Sequence[str]) -> tuple[Form, _Shape | None]:
             score = (_consistency(cut, shape, comma), len(shape.numbers) + len(shape.stamps))
             if best is None or score > best[0]:
                 shown = any(has_fraction(field, comma) for fields in cut for field in fields)
-                best = score, Form(delimiter, comma if shown else None), shape
+                best = score, Form(delimiter, comma if shown or stated.decimal else None), shape
     if best is None:
         return Form(None, None), None
     _, form, shape = best
-    if form.delimiter == "," and _is_one_column(filled, rows):
+    if form.delimiter == "," and not (stated.delimiter or stated.decimal) and _is_one_column(filled, rows):
         form = Form(None, True)
         return form, _shape([form.fields(row) for row in rows], True)
     return form, shape

@@ -10,6 +10,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from ident.errors import Unusable
+from ident.readers.dialect import Dialect
 from ident.readers.layout import line_start
 from ident.readers.limits import Limits
 from ident.readers.table import Array, Table, filled
@@ -37,7 +38,8 @@ def read_lvm(data: bytes, where: str, limits: Limits) -> Table:
         raise Unusable("many-segments", "the file has more than one segment", where, "save one segment a file")
     apart = _SEPARATORS.get(_entries(text[:first], None).get("Separator", ["Tab"])[0], "\t")
     head = _entries(text[:first], apart) | _entries(text[first:second], apart)
-    table = read_text(text, where, limits, text.count(b"\n", 0, line_start(text, 1, second)))
+    above = text.count(b"\n", 0, line_start(text, 1, second))
+    table = read_text(text, where, limits, Dialect(skip_rows=above))
     units = filled(["", *head.get("Y_Unit_Label", [])], len(table.names))
     if head.get("X_Columns", ["One"])[0] != "No":
         return Table(table.names, table.load, table.notices, units)

@@ -8,6 +8,7 @@ from typing import Any
 
 from ident.errors import Unusable
 from ident.readers.channel_description import ChannelDescription, describe_channels, describe_disturbance
+from ident.readers.dialect import Dialect, describe_dialect
 from ident.readers.fields import Fields
 from ident.readers.loop_settings import loop_gain, sample_rate
 from ident.readers.source import inside
@@ -19,7 +20,7 @@ from ident.words.run_name import run_name
 
 RUN = (
     "id", "file", "sample_rate", "time", "specimen", "gain", "amplitude", "kind", "hold", "output", "use", "skip_rows",
-    "rows", "trend", "channels", "disturbance", "position_range", "frequency", "rated_current",
+    "dialect", "rows", "trend", "channels", "disturbance", "position_range", "frequency", "rated_current",
     "closed_loop",
 )  # fmt: skip
 
@@ -49,7 +50,7 @@ class RunDescription:
     outputs: tuple[str, ...]
     channels: dict[str, ChannelDescription]
     time: TimeColumn | None
-    skip_rows: int
+    dialect: Dialect
     rows: tuple[int, int] | None
     hold_stated: bool = True
     trend: str = "none"
@@ -90,7 +91,8 @@ def describe_run(data: Any, where: str) -> RunDescription:
     )
     rows, hold_stated = describe_rows(fields), "hold" in fields
     trend = describe_trend(fields, kind)
-    return RunDescription(labels, outputs, channels, time, fields.whole("skip_rows"), rows, hold_stated, trend)
+    dialect = describe_dialect(fields.data.get("dialect"), fields.place("dialect"), fields.whole("skip_rows"))
+    return RunDescription(labels, outputs, channels, time, dialect, rows, hold_stated, trend)
 
 
 def _driven_unit(units: dict[str, str]) -> str:

@@ -59,8 +59,9 @@ def of_file(
     `parts` are its bytes, and those of the files beside it that `read` adds.
     """
     if not stated.get("units"):
-        some = {"units": {"command": "1", "displacement": "1"}, "skip_rows": stated.get("skip_rows", 0)}
-        table = read(described({**some, "sample_rate": "1 Hz"}, path.name, path.stem))
+        laid_out = {key: stated[key] for key in ("skip_rows", "dialect") if key in stated}
+        some = {"units": {"command": "1", "displacement": "1"}, "sample_rate": "1 Hz"}
+        table = read(described({**some, **laid_out}, path.name, path.stem))
         what = "a file without a matrix.yaml does not state its units"
         found = suggestion(table)
         asked = f"state them, as {found}" if found else f"{_EXAMPLE}, and the clock"

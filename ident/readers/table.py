@@ -28,7 +28,7 @@ class Table:
     is written there and for a suggestion alone: what counts is the unit that matrix.yaml states. Loading checks
     declared sizes before it allocates. `aliases` are further names of the columns, each a row of them, for a heading of
     several lines; `stamps` are the columns that were time stamps and are loaded in seconds, `mostly` those of a
-    text that hold numbers, in some rows at least.
+    text that hold numbers, in some rows at least. `rate`, Hz, is the sample rate that the file states, 0 where none.
     """
 
     names: tuple[str, ...]
@@ -38,6 +38,7 @@ class Table:
     aliases: tuple[tuple[str, ...], ...] = ()
     stamps: frozenset[int] = frozenset()
     mostly: frozenset[int] = frozenset()
+    rate: float = 0.0
 
     def number(self, column: str | int, where: str) -> int:
         """The number of a column given by name or by 0-based number.

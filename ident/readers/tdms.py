@@ -18,6 +18,9 @@ LEAD_IN = 28  # bytes: tag, table of contents, version, offset of the next segme
 BIG_ENDIAN = 1 << 6
 
 
+_FASTEST = 1e9  # Hz: a smaller increment is none
+
+
 def read_tdms(data: bytes, where: str, limits: Limits) -> Table:
     """The channels as ``group/channel``. Raises Unusable: ``broken-tdms``, ``not-numeric``, ``too-large``."""
     follow_segments(data, where)
@@ -27,13 +30,23 @@ def read_tdms(data: bytes, where: str, limits: Limits) -> Table:
         file = TdmsFile.open(io.BytesIO(data))
         channels = [channel for group in file.groups() for channel in group.channels()]
         names = tuple(f"{channel.group_name}/{channel.name}" for channel in channels)
+        units = tuple(str(channel.properties.get("unit_string", "")) for channel in channels)
+        steps = {channel.properties.get("wf_increment", 0.0) for channel in channels}
     except Exception as error:  # whatever npTDMS meets in a broken file
         raise broken(where) from error
 
     def load(numbers: Sequence[int]) -> list[Array]:
         return [samples(channels[number], names[number], where, limits) for number in numbers]
 
-    return Table(names, load)
+    return Table(names, load, units=units, rate=_rate(steps))
+
+
+def _rate(steps: set[Any]) -> float:
+    """The sample rate in Hz of channels that state one and the same increment in s; 0 where they do not."""
+    if len(steps) != 1:
+        return 0.0
+    (step,) = steps
+    return 1.0 / step if isinstance(step, float) and 1.0 / _FASTEST <= step < np.inf else 0.0
 
 
 def samples(channel: Any, name: str, where: str, limits: Limits) -> Array:

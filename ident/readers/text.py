@@ -16,6 +16,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from ident.errors import Unusable
+from ident.readers.dialect import ENCODINGS, FOUND, Dialect
 from ident.readers.layout import Layout, mixes_thousands, recognise
 from ident.readers.limits import Limits, check_size
 from ident.readers.table import Array, Table
@@ -26,16 +27,16 @@ _HEAD = 1 << 20  # bytes by which an encoding is told
 _HALF = 0.4  # of the bytes of the head: the zeros of a text of two bytes a sign
 
 
-def read_text(data: bytes, where: str, limits: Limits, skip_rows: int = 0) -> Table:
-    """The table below `skip_rows` lines, the next one being that of names; where none are stated they are found.
+def read_text(data: bytes, where: str, limits: Limits, stated: Dialect = FOUND) -> Table:
+    """The table of a text, laid out as it is stated; what is not stated is found.
 
     A column of time stamps is read in seconds since its first row.
 
     Raises Unusable: ``empty-file``, ``not-text``, ``comma-twice``, and on loading ``not-numeric``, ``ragged-row``,
     ``too-large``, ``bad-time-stamp``.
     """
-    text = as_utf8(data)
-    layout = recognise(text, where, skip_rows)
+    text = as_utf8(data, stated.encoding)
+    layout = recognise(text, where, stated)
 
     def load(numbers: Sequence[int]) -> list[Array]:
         plain = [number for number in dict.fromkeys(numbers) if number not in layout.stamps]
@@ -66,24 +67,35 @@ def _stamped(text: bytes, layout: Layout, number: int, where: str, limits: Limit
     return seconds([fields[number] if number < len(fields) else "" for fields in cut], layout.first_line, where)
 
 
-def as_utf8(data: bytes) -> bytes:
+def as_utf8(data: bytes, encoding: str = "") -> bytes:
     """The text without a byte order mark, other encodings turned into UTF-8, old Macintosh line ends into newlines.
+
+    An encoding that is not stated is found.
+    """
+    encoding = encoding or encoding_of(data)
+    if encoding == "utf-8":
+        data = data.removeprefix(codecs.BOM_UTF8)
+    else:
+        data = data.decode(ENCODINGS[encoding], "replace").removeprefix("\ufeff").encode()
+    return data if b"\n" in data else data.replace(b"\r", b"\n")
+
+
+def encoding_of(data: bytes) -> str:
+    """The encoding of a text by its mark or its bytes, as ENCODINGS calls it.
 
     What is no UTF-8 is taken for Windows-1252, which has the µ, ° and ² of benches where Latin-1 has them.
     """
-    for mark, encoding in ((b"\xff\xfe", "utf-16-le"), (b"\xfe\xff", "utf-16-be")):
+    for mark, encoding in ((codecs.BOM_UTF16_LE, "utf-16-le"), (codecs.BOM_UTF16_BE, "utf-16-be")):
         if data.startswith(mark):
-            data = data[2:].decode(encoding, "replace").encode()
-    data = data.removeprefix(b"\xef\xbb\xbf")
+            return encoding
     head = data[:_HEAD]
     if b"\0" in head and (encoding := _of_two_bytes(head)):
-        data = data.decode(encoding, "replace").encode()
-    elif not head.isascii():
-        try:
-            codecs.getincrementaldecoder("utf-8")().decode(head)
-        except UnicodeDecodeError:
-            data = data.decode("cp1252", "replace").encode()
-    return data if b"\n" in data else data.replace(b"\r", b"\n")
+        return encoding
+    try:
+        codecs.getincrementaldecoder("utf-8")().decode(head)
+    except UnicodeDecodeError:
+        return "windows-1252"
+    return "utf-8"
 
 
 def _of_two_bytes(head: bytes) -> str:

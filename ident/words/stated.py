@@ -28,4 +28,5 @@ class Stated(TypedDict, total=False):
     output: str | list[str]
     use: str
     skip_rows: int
+    dialect: Mapping[str, str | int]
     rows: tuple[int, int]

@@ -87,7 +87,7 @@ def test_the_same_files_and_answers_again_are_the_same_matrix(service):
 @pytest.mark.parametrize(
     ("files", "status", "code"),
     [
-        ([("files", ("a.csv", b"words\nalone\n"))], 422, "no-columns"),
+        ([("files", ("a.csv", b"\0\1\n\2"))], 422, "not-text"),
         ([("files", ("a.exe", b"MZ"))], 422, "unknown-type"),
         ([("files", ("x/a.csv", record(1))), ("files", ("y/a.csv", record(2)))], 422, "duplicate-file"),
     ],
@@ -161,3 +161,32 @@ def test_what_is_missing_of_some_files_names_them(service):
         ("serial",), ("channel command", "a.csv"), ("channel displacement", "a.csv"), ("unit time", "a.csv"),
         ("channel command", "b.csv"), ("channel displacement", "b.csv"), ("rate", "b.csv"),
     }  # fmt: skip
+
+
+def test_a_text_is_read_in_the_dialect_that_is_stated_of_it(service):
+    """What cannot be read as it is laid out shows its lines and asks; the description states what was stated."""
+    draft = service.post(f"{API}/drafts", files=[("files", ("a.txt", b"words\nalone\n"))]).json()
+    (file,) = draft["files"]
+    assert (file["lines"][:2], file["columns"]) == (["words", "alone"], [])
+    assert file["problem"] == "no column holds numbers throughout"
+    assert [one["key"] for one in draft["missing"]] == ["serial", "dialect"]
+    content = record(1).replace(b"t,u,x\n", b"t,u,x\n1,2,3\n1,2,3\n2,2,3\n")  # three lines of the instrument's ranges
+    draft = service.post(f"{API}/drafts", files=[("files", ("a.txt", content))]).json()
+    assert (draft["files"][0]["samples"], draft["files"][0]["dialect"]["header_rows"]) == (603, 1)
+    answers = {**ANSWERS, "verify": [], "files": {"a.txt": {"dialect": {"header_rows": 4, "delimiter": "comma"}}}}
+    found = service.post(f"{API}/drafts/{draft['id']}", json=answers).json()
+    assert (found["files"][0]["samples"], found["files"][0]["columns"][0]["first"][:2]) == (600, [0.0, 0.0004])
+    assert not found["missing"]
+    assert "dialect: {delimiter: comma, header_rows: 4}" in found["description"]
+    made = service.post(f"{API}/drafts/{draft['id']}/matrix", json=answers)
+    assert (made.status_code, made.json()["runs"][0]["sample_rate"]) == (201, 2500)
+
+
+@pytest.mark.parametrize(
+    ("dialect", "code"),
+    [({"delimiter": "dot"}, "unknown-delimiter"), ({"decimal": ";"}, "unknown-decimal"),
+     ({"encoding": "ebcdic"}, "unknown-encoding"), ({"header_rows": 99999}, "bad-rows")],
+)  # fmt: skip
+def test_a_dialect_that_is_none_is_refused_with_what_can_be_said(service, draft, dialect, code):
+    answer = service.post(f"{API}/drafts/{draft['id']}", json={"dialect": dialect})
+    assert (answer.status_code, answer.json()["code"]) == (422, code)

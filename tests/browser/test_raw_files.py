@@ -38,13 +38,13 @@ def test_three_raw_files_become_a_fit_without_a_description(page, watch, site, t
     page.get_by_role("button", name="Upload").click()
     expect(page.get_by_role("heading", name="Describe the raw files")).to_be_visible()
     expect(page.locator("img").first).to_have_js_property("naturalWidth", 160)
-    missing = page.locator("[data-missing] li")
-    expect(missing).to_have_count(4)
+    missing = page.locator("[data-question]")
+    expect(missing).to_have_count(3)
     make = page.get_by_role("button", name="Create data set")
     expect(make).to_be_disabled()
     everywhere(page, screenshots, "raw-files")
 
-    page.get_by_label("Unit of t", exact=True).select_option("s")
+    page.get_by_label("Unit of the time, column 't'").select_option("s")
     page.get_by_label("Serial number").fill("SW-RAW")
     page.get_by_label("What AI0 is").select_option("command")
     page.get_by_label("What AI1 is").select_option("command")
@@ -97,7 +97,7 @@ def test_files_of_any_form_are_described_each_by_its_own(page, watch, site, tmp_
     clock.select_option("command")
     expect(page.locator("#draft [role=alert]")).to_contain_text(f"Two columns{where} are the command.")
     clock.select_option("time")
-    expect(page.locator("[data-missing] li")).to_have_count(0, timeout=60_000)
+    expect(page.locator("[data-question]")).to_have_count(0, timeout=60_000)
     expect(page.locator("#draft [role=alert]")).to_be_empty()
     page.get_by_role("button", name="Create data set").click(timeout=60_000)
     expect(page.get_by_role("heading", name=f"Test data of CASE-{case.name}")).to_be_visible(timeout=60_000)
@@ -130,6 +130,6 @@ def test_files_with_the_same_columns_can_be_described_one_by_one(page, site, tmp
             page.get_by_label(f"Unit of {column}{of}", exact=True).select_option(
                 "cm" if number == 1 and unit == "mm" else unit
             )
-    expect(page.locator("[data-missing] li")).to_have_count(0, timeout=60_000)
+    expect(page.locator("[data-question]")).to_have_count(0, timeout=60_000)
     text = page.locator("[data-description] pre").text_content()
     assert (text.count("unit: mm"), text.count("unit: cm"), text.count("unit: s")) == (4, 2, 3)

@@ -153,3 +153,17 @@ def test_a_rate_and_columns_of_some_files_are_said_with_their_name(servoident, r
         assert (refused.returncode, what in refused.stderr) == (2, True)
     refused = servoident("init", *files, *KNOWN, "--rate", "@b.csv")
     assert (refused.returncode, "write --rate @FILE=VALUE" in refused.stderr) == (2, True)
+
+
+def test_the_layout_of_a_text_is_stated_as_an_option(servoident, tmp_path):
+    """Of all files or of some; what stands in matrix.yaml is what was stated, and a word that is none is refused."""
+    rows = "".join(f"{n / 100:g};{n % 7};{n % 5}\n" for n in range(50))
+    (tmp_path / "a.csv").write_text(f"time [s];command [mm];position [mm]\n1;1;1\n2;2;2\n3;3;3\n{rows}")
+    made = servoident("init", tmp_path / "a.csv", "--serial", "A", "--out", tmp_path / "m",
+                      "--dialect", "header_rows=4", "--dialect", "@a*=delimiter=semicolon")  # fmt: skip
+    assert made.returncode == 0, made.stderr
+    assert "dialect: {delimiter: semicolon, header_rows: 4}" in (tmp_path / "m" / "matrix.yaml").read_text()
+    for stated, said in (("delimiter=dot", "'dot' is not a delimiter"), ("signs=comma", "a dialect has no 'signs'")):
+        refused = servoident("init", tmp_path / "a.csv", "--serial", "A", "--dialect", stated)
+        assert refused.returncode == 2
+        assert said in refused.stderr

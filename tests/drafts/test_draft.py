@@ -62,7 +62,7 @@ def test_what_is_found_in_measured_files_is_the_truth_or_asked(measured):
             assert float(known.rate.removesuffix(" Hz")) == truth.labels.sample_rate
         elif known.time.column == "":
             assert "rate" in asked
-        assert file.skip_rows == truth.skip_rows
+        assert file.skip_rows == truth.dialect.skip_rows
     assert "serial" in asked
     with pytest.raises(Unusable) as refused:
         gathered(draft, [b""] * len(files))
@@ -354,3 +354,37 @@ def test_a_current_beside_a_speed_is_no_command_unless_the_kind_is_of_a_bench():
     answered = Draft([raw(text)], Answers(serial="A1", channels={"command": Answer("Current (A)", "A")}))
     assert not answered.missing
     assert not any("command" in one.key for one in Draft([raw(text)], Answers(common={"kind": "static"})).missing)
+
+
+def test_a_first_column_without_a_name_that_increases_in_equal_steps_is_the_time():
+    """Its unit is asked; one that counts the rows is no clock, and nobody is asked for its unit."""
+    timed = Draft([raw(table(",cmd_mm,pos_mm"))], Answers())
+    assert [one.key for one in timed.missing] == ["serial", "unit time"]
+    assert any("no name" in doubt for doubt in timed.doubts)
+    lines = ["", *(f"{n},{np.sin(n):.6f},{np.sin(n - 1):.6f}" for n in range(40)), ""]
+    counted = Draft([raw(",cmd_mm,pos_mm" + "\n".join(lines))], Answers())
+    assert [one.key for one in counted.missing] == ["serial", "rate"]
+
+
+def test_of_two_columns_of_one_name_the_one_whose_unit_fits_is_suggested():
+    """Force (V) is the amplifier's voltage; of two forces in N none is suggested."""
+    rows = [f"{n / 100:g},{np.sin(n):.6f},{np.sin(n - 1):.6f},{np.cos(n):.6f},0.{n}" for n in range(10, 50)]
+    for other, found in (("V", 4), ("kN", None)):
+        head = f"Time (s),Command (mm),Position (mm),Force ({other}),Force (N)"
+        file = raw("\n".join([head, *rows, ""]))
+        channels = Draft([file], Answers()).known(file).channels
+        assert (channels["force"].column if "force" in channels else None) == (found and "Force (N)")
+
+
+def test_the_rate_and_the_units_of_a_tdms_are_found(tmp_path):
+    from nptdms import ChannelObject, TdmsWriter
+
+    with TdmsWriter(tmp_path / "run.tdms") as writer:
+        of_all = {"wf_increment": 0.002}
+        writer.write_segment([
+            ChannelObject("g", name, np.sin(np.arange(40.0)), of_all | {"unit_string": unit})
+            for name, unit in (("command", "V"), ("position", "mm"))
+        ])  # fmt: skip
+    file = read_raw((tmp_path / "run.tdms").read_bytes(), "run.tdms")
+    known = Draft([file], Answers()).known(file)
+    assert (known.rate, known.channels["command"].unit, known.channels["displacement"].unit) == ("500 Hz", "V", "mm")

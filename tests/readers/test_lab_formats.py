@@ -14,6 +14,7 @@ import pytest
 
 from ident.errors import Unusable
 from ident.readers import read_matrix, read_table
+from ident.readers.dialect import FOUND
 from ident.readers.limits import LIMITS, Limits
 from tests.readers.lab_files import APART, BESIDE, DESCRIBED, FILES, ROWS, U, X, controldesk, diadem, lvm, mts, uff
 from tests.readers.lab_mdf import mdf3
@@ -63,7 +64,7 @@ def test_units_that_a_file_states_are_told(form):
     if form in NO_UNITS:
         pytest.skip("it has no units")
     ending, made, (_, u, x) = FILES[form]
-    table = read_table(made(), f"run{ending}", 0, LIMITS, near=lambda name: beside(name, form))
+    table = read_table(made(), f"run{ending}", FOUND, LIMITS, near=lambda name: beside(name, form))
     assert [table.units[table.number(column, "")] for column in (u, x)] == ["V", "mm"]
 
 
@@ -73,7 +74,7 @@ def test_a_record_a_line_and_an_object_of_columns_are_json_as_well():
     columns = json.dumps({"u": U, "x": X})
     held = json.dumps({"bench": "one", "data": [{"u": u, "x": x} for u, x in zip(U, X, strict=True)]})
     for made in (lines, columns, held):
-        table = read_table(made.encode(), "run.json", 0, LIMITS)
+        table = read_table(made.encode(), "run.json", FOUND, LIMITS)
         assert table.names == ("u", "x")
         np.testing.assert_array_equal(table.load([1])[0], X)
 
@@ -104,7 +105,7 @@ def test_a_record_a_line_and_an_object_of_columns_are_json_as_well():
 )  # fmt: skip
 def test_what_is_not_a_whole_file_of_its_kind_is_refused(name, data, code):
     with pytest.raises(Unusable) as refused:
-        read_table(data, name, 0, LIMITS).load([0, -1])
+        read_table(data, name, FOUND, LIMITS).load([0, -1])
     assert refused.value.code == code
     assert "\n" not in str(refused.value)
 
@@ -112,7 +113,7 @@ def test_what_is_not_a_whole_file_of_its_kind_is_refused(name, data, code):
 @pytest.mark.skipif(HAS_MDF, reason="asammdf is installed")
 def test_without_the_extra_an_mdf_file_is_refused_with_what_to_install():
     with pytest.raises(Unusable, match=r"install servoident\[mdf\]") as refused:
-        read_table(mdf3(ROWS), "run.mf4", 0, LIMITS)
+        read_table(mdf3(ROWS), "run.mf4", FOUND, LIMITS)
     assert refused.value.code == "not-installed"
 
 
@@ -235,7 +236,7 @@ def most_memory() -> int:
 def refusal(data, name, form) -> Unusable | None:
     """Why the file is refused; nothing where it is read."""
     try:
-        table = read_table(data, name, 0, LIMITS, near=lambda asked: beside(asked, form))
+        table = read_table(data, name, FOUND, LIMITS, near=lambda asked: beside(asked, form))
         table.load(range(len(table.names)))
     except Unusable as refused:
         return refused
@@ -248,3 +249,15 @@ def beside(name, form) -> bytes:
 
     found = BESIDE.get(form, {}).get(name.lower())
     return alone(name) if found is None else found
+
+
+def test_the_sample_rate_and_the_units_that_an_object_of_columns_states_are_found():
+    """In Hz, or as the time between samples; what is no such entry, or differs in length, is none."""
+    held = {"sample_rate": 500, "units": {"x": "mm"}, "operator": "A", "u": U, "x": X}
+    table = read_table(json.dumps(held).encode(), "run.json", FOUND, LIMITS)
+    assert (table.names, table.units, table.rate) == (("u", "x"), ("", "mm"), 500.0)
+    stepped = read_table(json.dumps({"dt": 0.002, "u": U, "x": X}).encode(), "run.json", FOUND, LIMITS)
+    assert stepped.rate == pytest.approx(500.0)
+    assert read_table(json.dumps({"fs": "fast", "u": U, "x": X}).encode(), "run.json", FOUND, LIMITS).rate == 0.0
+    with pytest.raises(Unusable, match="columns of one length"):
+        read_table(json.dumps({"fs": 1, "u": U[1:], "x": X}).encode(), "run.json", FOUND, LIMITS)

@@ -9,6 +9,7 @@ from ident.drafts.answers import Answers
 from ident.drafts.draft import Draft
 from ident.drafts.raw import read_raw
 from ident.errors import Unusable
+from ident.readers.dialect import Dialect
 from ident.readers.layout import recognise
 from ident.readers.limits import LIMITS
 from ident.readers.numeral import in_thousands
@@ -24,7 +25,9 @@ def lines(form: str = "{:.4f}", delimiter: str = ",", rows: np.ndarray = ROWS) -
 
 
 def read(text: str | bytes, skip_rows: int = 0):
-    return read_text(text if isinstance(text, bytes) else text.encode(), "run.csv", LIMITS, skip_rows)
+    return read_text(
+        text if isinstance(text, bytes) else text.encode(), "run.csv", LIMITS, Dialect(skip_rows=skip_rows)
+    )
 
 
 def test_a_row_of_numbers_above_and_a_remark_sign_before_the_names_are_no_row_and_no_name():
@@ -106,7 +109,7 @@ def test_the_line_of_names_that_matrix_yaml_states_is_the_one_that_is_found():
     text = "\n".join([*above, "time;command;position", "s;V;mm", *(f"{n};{n % 5};{n % 3}" for n in range(30))]).encode()
     found = recognise(text, "run.csv")
     assert (found.skip_rows, found.heading.units) == (3, ("s", "V", "mm"))
-    stated = recognise(text, "run.csv", 3)
+    stated = recognise(text, "run.csv", Dialect(skip_rows=3))
     assert (stated.heading.names, stated.heading.units, stated.below) == (
         found.heading.names, found.heading.units, found.below
     )  # fmt: skip

@@ -7,6 +7,7 @@ import pytest
 
 from ident.errors import Unusable
 from ident.readers import read_matrix
+from ident.readers.dialect import Dialect
 from ident.readers.limits import LIMITS, Limits
 from ident.readers.text import read_text
 
@@ -14,7 +15,7 @@ VALUES = np.round(np.random.default_rng(0).normal(size=(50, 2)), 6)
 
 
 def read(text: str | bytes, columns=("a", "b"), skip_rows: int = 0):
-    table = read_text(text.encode() if isinstance(text, str) else text, "file", LIMITS, skip_rows)
+    table = read_text(text.encode() if isinstance(text, str) else text, "file", LIMITS, Dialect(skip_rows=skip_rows))
     return np.column_stack(table.load([table.number(name, "column") for name in columns]))
 
 
