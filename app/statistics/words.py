@@ -10,7 +10,7 @@ from ident.words.engineering import quantity
 from ident.words.message import message
 from ident.words.number import count, plain
 from ident.words.percent import percent_in_print
-from schemas.statistics import DependenceView, LevelView, StatisticsView
+from schemas.statistics import ConditionLawView, DependenceView, LevelView, StatisticsView
 
 
 @dataclass(frozen=True)
@@ -93,9 +93,16 @@ def laws(found: DependenceView) -> list[tuple[str, str, str, str, str]]:
     return [
         (one.name, one.formula, percent_in_print(one.probability),
          percent_in_print(one.scatter) if one.relative else quantity(one.scatter, found.unit),
-         "–" if one.lack_of_fit is None else plain(one.lack_of_fit, 2) + ("" if one.holds else ", does not hold"))
+         _lack_of_fit(one))
         for one in found.laws
     ]  # fmt: skip
+
+
+def _lack_of_fit(law: ConditionLawView) -> str:
+    if law.lack_of_fit is None:
+        return "–"
+    p = plain(law.lack_of_fit, 2)
+    return p if law.holds else str(message("law.does_not_hold", p=p))
 
 
 def _level(level: LevelView, unit: str) -> str:

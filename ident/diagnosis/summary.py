@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from ident.diagnosis.evidence.probability import is_improbable
 from ident.diagnosis.result import Diagnosis, Suspect
 from ident.words.message import Message, message
+from ident.words.run_name import run_name
 from ident.words.shown import in_brief
 from ident.words.titles import title
 
@@ -29,6 +30,8 @@ def _missing(found: Diagnosis) -> Message:
     verdict = found.verdict
     if found.lacks_input:
         return message("summary.missing_input", run=found.missing_inputs[0]["run"])
+    if _oscillates(found):
+        return message("summary.oscillation", evidence=found.oscillation[0]["evidence"])
     if verdict.effects:
         named = [_named(found, name) for name in verdict.effects]
         if verdict.standing == "contradicted":
@@ -41,6 +44,11 @@ def _missing(found: Diagnosis) -> Message:
     if verdict.unexplained:
         return _probable(found, "unlisted", "summary.unlisted", "summary.unlisted_probable")
     return _probable(found, "nothing", "summary.nothing", "summary.nothing_probable")
+
+
+def _oscillates(found: Diagnosis) -> bool:
+    """Whether a part of the error remains, and the machine oscillates by itself: no effect can stand for that."""
+    return bool(found.oscillation) and found.verdict.unexplained
 
 
 def _missing_and_helping(found: Diagnosis, named: Sequence[Message]) -> Message:
@@ -127,6 +135,8 @@ def _next(found: Diagnosis) -> Message:
     verdict = found.verdict
     if found.lacks_input:
         return message("next.input")
+    if _oscillates(found):
+        return message("next.oscillation", runs=[run_name(str(swing["run"])) for swing in found.oscillation])
     if verdict.suspects:
         return _correct(verdict.suspects[0])
     if not found.complete:

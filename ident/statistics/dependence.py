@@ -49,9 +49,11 @@ class Dependence:
         if (law := self.law) is None:
             key = "law.few" if len(self.values) < FEWEST_FOR_LAW else "law.one_condition"
             return message(key, sets=len(self.values), condition=self.condition.title, least=FEWEST_FOR_LAW)
+        known = {"condition": self.condition.title, "name": law.name, "p": law.lack_of_fit}
+        if not law.holds:
+            return message("law.fails", **known)
         scatter = f"{100 * law.scatter:.3g} %" if law.relative else f"{law.scatter:.3g}"
-        values = {"condition": self.condition.title, "name": law.name, "p": law.lack_of_fit}
-        return message("law.holds" if law.holds else "law.fails", share=law.probability, scatter=scatter, **values)
+        return message("law.holds", share=law.probability, scatter=scatter, **known)
 
     def silent(self, value: float) -> Message | None:
         """Why nothing is said at a condition; None where the law says something."""

@@ -67,6 +67,7 @@ FIGURES: Mapping[str, str] = {
         "Law over the {condition}: {name}, probability {share:percent}. The sets scatter by {scatter} about it.",
     "law.fails":
         "No law over the {condition} holds. The best is {name}; chance would make its lack of fit with p = {p:.2g}.",
+    "law.does_not_hold": "{p}, does not hold",
     "law.beyond": "{value} is outside the conditions of the sets, {low} to {high}.",
     "law.none": "The fit has no parameter.",
     "moved.by": "{name} {before:.4g} → {after:.4g} {unit} ({law})",

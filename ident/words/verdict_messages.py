@@ -22,6 +22,7 @@ SUMMARY: Mapping[str, str] = {
     "summary.nothing": "Nothing is missing.",
     "summary.nothing_probable": "Nothing is missing (probability {probability:probability}).",
     "summary.missing_input": "Missing: an input that is not in the record of {run:run}.",
+    "summary.oscillation": "The machine oscillates by itself: {evidence}.",
     "summary.error": "The error on {use:data} is {before:error}; the noise floor is {floor:percent}.",
     "summary.error_floor_unknown": "The error on {use:data} is {before:error}; the noise floor is not known.",
     "summary.error_unknown": "The error of the model is not known.",
@@ -31,6 +32,7 @@ SUMMARY: Mapping[str, str] = {
         "The error on {use:data} goes from {before:error} to {after:error}; the noise floor is not known.",
     "next.label": "Next: correct the label of {run:run}, and fit again.",
     "next.input": "Next: add the channel of the missing input, or keep only the rows in which it rests, and fit again.",
+    "next.oscillation": "Next: lower the gain of the loop, or leave {runs:all} out of the fit, and fit again.",
     "next.label_value":
         "Next: correct the label of {run:run}, and fit again. Its {what} is stated as {stated:quantity}; the data say "
         "{found:quantity}.",

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -40,6 +42,9 @@ def test_an_oscillation_is_said_first_with_its_frequency_and_growth():
     assert found.verdict.text.startswith(
         "The machine oscillates: in run loop the displacement swings by itself at 12.3"
     )
+    partly = replace(found, verdict=Verdict(("dead_zone",), "stand_in", unexplained=True))
+    assert partly.summary[0].startswith("The machine oscillates by itself: in run loop the displacement swings")
+    assert partly.summary[2] == "Next: lower the gain of the loop, or leave run loop out of the fit, and fit again."
     assert set(found.to_json()["oscillation"][0]) == {"run", "frequency", "growth", "cause", "evidence"}
 
 
