@@ -36,9 +36,9 @@ class ChannelDescription:
     zeroed: bool | None = None
 
 
-def describe_channels(data: Any, where: str) -> dict[str, ChannelDescription]:
-    """Every channel of a run by name."""
-    fields = Fields(data, where, CHANNELS)
+def describe_channels(data: Any, where: str, around: Sequence[str] = ()) -> dict[str, ChannelDescription]:
+    """Every channel of a run by name; `around` are the keys of the run."""
+    fields = Fields(data, where, CHANNELS, around)
     return {name: describe_channel(fields.data[name], name, f"{where}.{name}") for name in fields.data}
 
 

@@ -13,19 +13,21 @@ LONGEST_TEXT = 500
 
 
 class Fields:
-    """The keys of a mapping, `known` being the ones it may have.
+    """The keys of a mapping, `known` being the ones it may have, and `around` those of the mapping that it stands in.
 
     Raises Unusable: ``not-a-mapping``, ``unknown-key``.
     """
 
-    def __init__(self, data: Any, where: str, known: Sequence[str]) -> None:
+    def __init__(self, data: Any, where: str, known: Sequence[str], around: Sequence[str] = ()) -> None:
         if not isinstance(data, Mapping):
             raise Unusable("not-a-mapping", f"{shown(data)!r} is not a list of key: value", where, "write {key: value}")
         self.data, self.where = data, where
         for key in data:
             if key not in known:
                 _check_comma(data, key, where)
-                raise Unusable("unknown-key", f"unknown key {shown(key)!r}", where, did_you_mean(str(key), known))
+                remedy = f"move it one level up, beside {where.rpartition(' ')[2]}" if key in around else ""
+                remedy = remedy or did_you_mean(str(key), known)
+                raise Unusable("unknown-key", f"unknown key {shown(key)!r}", where, remedy)
 
     def __contains__(self, key: str) -> bool:
         return self.data.get(key) is not None

@@ -62,7 +62,7 @@ def describe_run(data: Any, where: str) -> RunDescription:
     name = describe_id(fields)
     fields = Fields(data, run_name(name), RUN)
     kind = fields.choice("kind", KINDS, "other")
-    channels = describe_channels(fields.need("channels", "describe command and displacement"), fields.place("channels"))
+    channels = describe_channels(fields.need("channels", "describe command and displacement"), fields.place("channels"), RUN)
     outputs = describe_outputs(fields, kind, channels)
     if "disturbance" in fields:
         channels |= describe_disturbance(fields.data["disturbance"], fields.place("disturbance"))
@@ -172,7 +172,7 @@ def describe_specimen(fields: Fields) -> Specimen | None:
     """What the actuator moves; mass, stiffness and damping that are not stated are 0."""
     if "specimen" not in fields:
         return None
-    given = Fields(fields.data["specimen"], fields.place("specimen"), ("mass", "stiffness", "damping"))
+    given = Fields(fields.data["specimen"], fields.place("specimen"), ("mass", "stiffness", "damping"), RUN)
     values = {key: given.not_negative(key, key) for key in ("mass", "stiffness", "damping")}
     return Specimen(**{key: value for key, value in values.items() if value is not None})
 
