@@ -62,7 +62,8 @@ def describe_run(data: Any, where: str) -> RunDescription:
     name = describe_id(fields)
     fields = Fields(data, run_name(name), RUN)
     kind = fields.choice("kind", KINDS, "other")
-    channels = describe_channels(fields.need("channels", "describe command and displacement"), fields.place("channels"), RUN)
+    described = fields.need("channels", "describe command and displacement")
+    channels = describe_channels(described, fields.place("channels"), RUN)
     outputs = describe_outputs(fields, kind, channels)
     if "disturbance" in fields:
         channels |= describe_disturbance(fields.data["disturbance"], fields.place("disturbance"))
