@@ -99,7 +99,10 @@ def verdict_text(
         found.append(message("verdict.stopped"))
     if added:
         of_groups = dict(zip(map(tuple, groups), group_probabilities, strict=False))
-        effects = [_lacking(name, added, of_groups, probabilities, named) for name in added]
+        if against:  # a probability knows nothing of validation data
+            effects = [message("effect", names=[named(name)]) for name in added]
+        else:
+            effects = [_lacking(name, added, of_groups, probabilities, named) for name in added]
         improbable = any(is_improbable(effect.values.get("probability"), probabilities) for effect in effects)
         key = "verdict.partly" if against or unexplained else "verdict.may_lack" if improbable else "verdict.lacks"
         found.append(message(key, effects=effects, change=_change(before, errors, fewer, unstable)))

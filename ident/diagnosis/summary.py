@@ -34,8 +34,8 @@ def _missing(found: Diagnosis) -> Message:
         return message("summary.oscillation", evidence=found.oscillation[0]["evidence"])
     if verdict.effects:
         named = [_named(found, name) for name in verdict.effects]
-        if verdict.standing == "contradicted":
-            return message("summary.contradicted", effects=named)
+        if verdict.standing == "contradicted":  # a probability knows nothing of validation data
+            return message("summary.contradicted", effects=[_strong(found, name) for name in verdict.effects])
         return _missing_and_helping(found, named)
     if verdict.suspects:
         return message("summary.label", run=verdict.suspects[0].run)
@@ -92,17 +92,31 @@ def _probable(found: Diagnosis, what: str, bare: str, with_probability: str) -> 
 
 def _named(found: Diagnosis, name: str) -> Message:
     """An effect or its group, with its strength and its probability."""
-    others = [title(other) for other in _group(found, name) if other != name and other not in found.verdict.effects]
     probability = _probability(found, name)
-    strength = None if others else _strength(found, name)
-    names = [title(name), *others]
-    if strength is None and probability is None:
-        return message("effect", names=names)
+    if probability is None:
+        return _strong(found, name)
+    names = _names(found, name)
+    strength = _strength(found, name) if len(names) == 1 else None
     if strength is None:
         return message("effect.probable", names=names, probability=probability)
-    if probability is None:
-        return message("effect.strength", names=names, strength=strength)
     return message("effect.strength_probable", names=names, strength=strength, probability=probability)
+
+
+def _strong(found: Diagnosis, name: str) -> Message:
+    """An effect or its group, with its strength."""
+    names = _names(found, name)
+    strength = _strength(found, name) if len(names) == 1 else None
+    return (
+        message("effect", names=names)
+        if strength is None
+        else message("effect.strength", names=names, strength=strength)
+    )
+
+
+def _names(found: Diagnosis, name: str) -> list[str]:
+    """The titles of an effect and of the others of its group that are not named themselves."""
+    others = (other for other in _group(found, name) if other != name and other not in found.verdict.effects)
+    return [title(name), *map(title, others)]
 
 
 def _strength(found: Diagnosis, name: str) -> tuple[float, float, str] | None:

@@ -52,8 +52,10 @@ def with_unit(number: str, unit: str, power: int = 0) -> str:
 
 
 def quantity(value: float | None, unit: str) -> str:
-    """One number with its unit: 497e-6, "m^2" → "497.0 mm²"."""
+    """One number with its unit: 497e-6, "m^2" → "497.0 mm²"; 0.0913, "rad/s" → "0.09130 rad/s"."""
     if value is None:
         return "not stated"
     power = power_of(value)
+    if power == -3 and (unit, power) not in _PREFIXED:  # 0.0913 rad/s is read more easily than 91.3·10⁻³
+        power = 0
     return with_unit(plain(value / 10.0**power), unit, power)

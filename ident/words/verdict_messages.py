@@ -13,7 +13,8 @@ SUMMARY: Mapping[str, str] = {
     "summary.helping_by_chance":
         "Probably nothing is missing. The error falls with {helping:all}, which may be chance.",
     "summary.contradicted":
-        "Not confirmed: {effects:all}. The error on estimation data falls, but validation data contradict it.",
+        "Not confirmed: {effects:all}. Estimation data ask for {effects:them}, but validation data contradict "
+        "{effects:them}.",
     "summary.label": "The label of {run:run} looks wrong: correct it before you conclude what is missing.",
     "summary.stopped": "Nothing was found so far: the search was stopped.",
     "summary.unlisted": "Missing: something that no listed effect explains.",
@@ -80,7 +81,7 @@ VERDICT: Mapping[str, str] = {
     "verdict.may_lack":
         "The error falls {change} with {effects:all}. More probably this has another cause, or is chance.",
     "verdict.partly":
-        "On estimation data the error is partly explained by {effects:all}: with {effects:them} it falls {change}.",
+        "A part of the error on estimation data is explained by {effects:all}: the error falls {change}.",
     "verdict.unconfirmed": "No effect was confirmed that lowers the error of {before:error}.",
     "verdict.white":
         "Nothing seems to be missing: the residual, {before:error}, is white. The noise floor is not known.",

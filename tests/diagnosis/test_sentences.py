@@ -73,7 +73,7 @@ def test_a_verdict_says_what_an_effect_does_once(against):
                         described=models.described)  # fmt: skip
     assert text.count("stiffening or softening") == 1
     assert text.count("the spool moves only above a breakaway signal, at the valve) ") == 0
-    assert text.count("(the spool moves only above a breakaway signal, at the valve): with them") == 1
+    assert text.count("(the spool moves only above a breakaway signal, at the valve): ") == 1
     assert text.count("spool stiction") == 2
     first = "cubic stiffness" if against else "cubic stiffness (stiffening or softening with position, at the load)"
     assert f" by dead zone, {first} and" in text or f"lacks dead zone, {first} and" in text
