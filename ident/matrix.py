@@ -12,6 +12,7 @@ from ident.plain import WHERE_KNOWN
 from ident.rig.conditions import conditions_of
 from ident.rig.limits import RigLimits
 from ident.rig.provenance import UNSTATED, Provenance
+from ident.rig.regulator import PositionControl
 from ident.run import Run
 from ident.words.shown import Listing, Shown
 
@@ -78,6 +79,7 @@ class Matrix(Shown):
     machine: str = ""  # the name of the model that the description puts together from stages
     preprocessing: tuple[StepOutcome, ...] = ()  # the steps that it went through, none as it was read
     test: Provenance = UNSTATED  # who measured, when, for whom
+    regulator: PositionControl | None = None  # in which an actuator of a bench is to work
 
     def __add__(self, other: Matrix) -> Matrix:
         """The runs of both. Raises Unusable where they are of two actuators, or a run's id is in both."""

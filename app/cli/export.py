@@ -16,7 +16,11 @@ def export(
     fit: Annotated[Path, typer.Argument(metavar="FIT.json", help="File from `servoident fit --json`.")],
     format_: Annotated[
         str,
-        typer.Option("--format", metavar="NAME", help="c: header; mat: state space of the linear part; fmu: FMI 2."),
+        typer.Option(
+            "--format",
+            metavar="NAME",
+            help="c: header; mat: state space of the linear part, or blocks of a bench; fmu: FMI 2.",
+        ),
     ],
     out: Annotated[Path, typer.Option(metavar="FILE", help="The file to write.")],
     gain: Annotated[
@@ -28,7 +32,7 @@ def export(
     """Export a model as C header, MAT file or FMU.
 
     The C header and the FMU contain the nonlinear model with its effects, from the equations of the simulator. The MAT
-    file contains its linear part, with A, B, C, D for `ss` and for Simulink.
+    file contains its linear part, with A, B, C, D for `ss` and for Simulink; of an actuator of a bench its blocks.
     """
     from ident.export import as_file, exported, linear_part
     from ident.units.quantity import quantity
@@ -38,5 +42,5 @@ def export(
     machine = exported(read_fit(fit), specimen_of(specimen), gain, rate)
     write_bytes(as_file(machine, format_), out)
     print(f"wrote {out}: {machine.driven_by} in, {', '.join(machine.outputs)} out, at {rate:g} Hz")
-    if format_ == "mat" and (left_out := linear_part(machine).left_out):
+    if format_ == "mat" and machine.preset.kind == "chain" and (left_out := linear_part(machine).left_out):
         print(f"note: the linear part is without {', '.join(left_out)}")

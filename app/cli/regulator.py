@@ -12,8 +12,9 @@ from app.cli.figure_files import write_figures
 from app.cli.output import STANDARD_OUTPUT, write_json
 
 if TYPE_CHECKING:
-    from ident.bench.position_loop import PositionLoop, Regulator
+    from ident.bench.position_loop import PositionLoop
     from ident.fit.result import FitResult
+    from ident.rig.regulator import Regulator
 
 FORM = "kp=VALUE,ki=…,sample_time=…,delay=…,limit=…"
 OfRegulator = Annotated[
@@ -38,8 +39,8 @@ Amplitudes = Annotated[
 
 def regulator_of(text: str) -> Regulator:
     """The regulator from `kp=800, sample_time=2 ms`. Raises Unusable."""
-    from ident.bench.position_loop import REGULATOR_UNITS, Regulator
     from ident.errors import Unusable
+    from ident.rig.regulator import REGULATOR_UNITS, Regulator
     from ident.units.quantity import parameter_value
     from ident.words.nearest import did_you_mean
 

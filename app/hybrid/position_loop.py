@@ -5,8 +5,9 @@ from __future__ import annotations
 from app.context import Context
 from app.fits import service as fits
 from ident.bench import position_loop as library
-from ident.bench.position_loop import REGULATOR_UNITS, PositionLoop, Regulator
+from ident.bench.position_loop import PositionLoop
 from ident.fit.result import FitResult
+from ident.rig.regulator import REGULATOR_UNITS, Regulator
 from ident.units.quantity import parameter_value
 from schemas.hybrid import PositionLoopRequest
 

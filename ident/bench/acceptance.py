@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any
@@ -9,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from ident.bench.analysis import Analysis
+from ident.bench.least_margins import least_margins
 from ident.bench.model import dead_space
 from ident.bench.position_error import position_error
 from ident.bench.quantity import Found
@@ -33,9 +35,12 @@ QUANTITIES = {
     "nonlinearity": ("1", "largest distance of the speed from one straight line over full speed"),
     "asymmetry": ("1", "difference of the gains forward and back over their mean"),
     "position_error": ("1", "position error of the model, RMS over deviation, mean over the frequency records"),
+    "gain_margin": ("dB", "least gain margin of the position loop with the stated regulator"),
+    "phase_margin": ("rad", "least phase margin of the position loop with the stated regulator"),
 }
 """What a limit may be set for: unit and meaning."""
-_PRINTED = {"1": (100.0, "%"), "s": (1e3, "ms"), "Pa": (1e-6, "MPa"), "m/s": (1e3, "mm/s")}
+_PRINTED = {"1": (100.0, "%"), "s": (1e3, "ms"), "Pa": (1e-6, "MPa"), "m/s": (1e3, "mm/s"), "dB": (1.0, "dB"),
+            "rad": (180.0 / math.pi, "°")}  # fmt: skip
 _CHARACTERISTIC = {
     "gain": "gain", "gain_forward": "forward", "gain_back": "back", "nonlinearity": "nonlinearity",
     "asymmetry": "asymmetry",
@@ -86,6 +91,8 @@ def found_quantities(analysis: Analysis) -> dict[str, Found]:
     sines = [response.id for response in analysis.frequency if response.id in analysis.errors]
     if sines and analysis.whole is not None:
         out["position_error"] = position_error(analysis.whole, sines)
+    if analysis.whole is not None and analysis.regulator is not None:
+        out |= least_margins(analysis.whole, analysis.regulator, analysis.delay)
     return out
 
 

@@ -29,6 +29,7 @@ from ident.bench.time_constant import DelayCheck, Dynamics, delay_check, dynamic
 from ident.errors import Unusable
 from ident.fit.levenberg_marquardt import Way
 from ident.parallel import each
+from ident.rig.regulator import PositionControl
 from ident.words.shown import Shown
 
 FIRST_T = 0.02  # s, where the search for T begins
@@ -69,6 +70,7 @@ class Analysis(Shown):
     missing: tuple[Missing, ...] = ()
     notes: tuple[str, ...] = ()
     seconds: float = 0.0
+    regulator: PositionControl | None = None
 
     @property
     def model(self) -> Model | None:
@@ -94,7 +96,11 @@ def analyse(bench: BenchSet) -> Analysis:
     found = _found(bench)
     doubts = (found.delay.doubt,) if found.delay is not None and found.delay.doubt else ()
     return replace(
-        found, missing=tuple(_missing(bench)), notes=(*bench.notes, *doubts), seconds=time.monotonic() - began
+        found,
+        missing=tuple(_missing(bench)),
+        notes=(*bench.notes, *doubts),
+        seconds=time.monotonic() - began,
+        regulator=bench.regulator,
     )
 
 

@@ -29,6 +29,7 @@ from ident.effects.second_lag import SECOND_LAG
 from ident.errors import Unusable
 from ident.fit.result import FitResult
 from ident.plain import written
+from ident.rig.regulator import Regulator
 from ident.words.message import Message, message
 from ident.words.shown import Listing, Shown
 
@@ -39,45 +40,6 @@ LOWEST, POINTS = 1e-2, 2000
 """[Hz], [frequencies] Where the loop is looked at, equally spaced by the logarithm; a crossing is then refined."""
 HIGHEST = 100.0
 """[of 1/(2πT)] Up to where a loop is looked at that nothing samples: the lag has turned by 89° there."""
-
-
-REGULATOR_UNITS = {"kp": "1/m", "ki": "1/(m*s)", "sample_time": "s", "delay": "s", "limit": "1"}
-"""SI units of a regulator's values; a current is counted in rated currents."""
-
-
-@dataclass(frozen=True)
-class Regulator:
-    """The regulator of a position: a current, in rated currents, from the error of the position.
-
-    `kp` in 1/m and `ki` in 1/(m·s), rated currents a metre; `sample_time` h and computation `delay` Dc in s, 0 where it
-    is analogue; its output is limited to ±`limit` rated currents, where one is stated. Raises Unusable for what is no
-    regulator.
-    """
-
-    kp: float
-    ki: float = 0.0
-    sample_time: float = 0.0
-    delay: float = 0.0
-    limit: float | None = None
-
-    def __post_init__(self) -> None:
-        for name in ("kp", "ki", "sample_time", "delay", "limit"):
-            value, may_be_zero = getattr(self, name), name in ("ki", "sample_time", "delay")
-            if value is not None and not (0 < value < math.inf or (may_be_zero and value == 0)):
-                wanted = "0 or above" if may_be_zero else "above 0"
-                raise Unusable("bad-regulator", f"{value:g} is no value of {name}", f"regulator {name}",
-                               f"give a number {wanted}")  # fmt: skip
-
-    def response(self, w: Array) -> tuple[Array, Array]:
-        """|C| and its phase (rad) at w (rad/s), the hold included, without delay and limit."""
-        half = 0.5 * w * self.sample_time
-        held = np.sinc(half / np.pi)
-        if not self.ki:
-            return self.kp * held, -half
-        sampled = self.sample_time > 0
-        summed = self.sample_time / (1.0 - np.exp(-2j * half)) if sampled else 1.0 / (1j * w)
-        law = self.kp + self.ki * summed
-        return np.abs(law) * held, np.angle(law) - half
 
 
 @dataclass(frozen=True)

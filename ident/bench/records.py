@@ -13,6 +13,7 @@ from ident.cached import cached_property
 from ident.errors import Unusable
 from ident.matrix import Matrix
 from ident.resolution import resolution
+from ident.rig.regulator import PositionControl
 from ident.run import BENCH, Run
 from ident.words.run_name import run_name
 
@@ -110,6 +111,7 @@ class BenchSet:
     unit: str
     supply_pressure: float
     notes: tuple[str, ...] = ()
+    regulator: PositionControl | None = None
 
     def of_kind(self, *kinds: str) -> tuple[Record, ...]:
         """The records of these kinds."""
@@ -128,7 +130,7 @@ def bench_set(matrix: Matrix, use: str | None = None) -> BenchSet:
         notes.append("supply_pressure of the actuator is not stated: the pressure available is not limited by it.")
     records = tuple(_record(run, rated) for run in runs)
     unit = runs[0].units.get("current", runs[0].units.get("command", "1"))
-    return BenchSet(records, rated, unit, np.inf if supply is None else supply, tuple(notes))
+    return BenchSet(records, rated, unit, np.inf if supply is None else supply, tuple(notes), matrix.regulator)
 
 
 def _rated(runs: Sequence[Run]) -> tuple[float, list[str]]:

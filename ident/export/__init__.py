@@ -6,6 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from ident.errors import Unusable
+from ident.export.blocks import as_blocks
 from ident.export.fmu import as_fmu
 from ident.export.header import as_header
 from ident.export.machine import USUAL_RATE, ExportedMachine, exported
@@ -25,7 +26,9 @@ class Format:
 
 FORMATS = {
     "c": Format("h", "text/x-c", "C header", lambda machine: as_header(machine).encode()),
-    "mat": Format("mat", "application/x-matlab-data", "Linear state space, MATLAB", as_mat),
+    "mat": Format(
+        "mat", "application/x-matlab-data", "Linear state space, or the blocks of a bench, MATLAB", as_blocks
+    ),
     "fmu": Format("fmu", "application/octet-stream", "FMU, FMI 2", as_fmu),
 }
 
@@ -39,6 +42,6 @@ def as_file(machine: ExportedMachine, name: str) -> bytes:
 
 
 __all__ = [
-    "FORMATS", "USUAL_RATE", "ExportedMachine", "LinearPart", "as_control", "as_file", "as_fmu", "as_header", "as_mat",
-    "exported", "linear_part",
+    "FORMATS", "USUAL_RATE", "ExportedMachine", "LinearPart", "as_blocks", "as_control", "as_file", "as_fmu",
+    "as_header", "as_mat", "exported", "linear_part",
 ]  # fmt: skip

@@ -72,12 +72,12 @@ def exported(
 ) -> ExportedMachine:  # fmt: skip
     """The machine of a fit with what it moves, its gain Kp (that of the model, or 1) and a sample rate (Hz).
 
-    Raises Unusable for a model without a chain, one that something beside a held command drives, conditions that are
-    not above 0, and values that are missing.
+    The current of a bench's actuator is counted in rated currents; without a stated supply pressure none limits it.
+
+    Raises Unusable for one that something beside a held command drives, conditions that are not above 0, and values
+    that are missing.
     """
     preset = preset_with(fit.model, fit.effects, tuple(fit.settings.get("custom", ())))
-    if preset.kind != "chain":
-        raise Unusable("no-export", f"{fit.model} is fitted to records of a bench", "fit", "give a fit of test runs")
     _check_driven(fit, preset, specimen)
     for name, value in (("gain", gain), ("sample_rate", sample_rate)):
         if value is not None and not 0 < value < np.inf:
@@ -86,12 +86,14 @@ def exported(
         if not 0 <= value < np.inf:
             raise Unusable("out-of-range", f"{name} is {value:g}", "export", "give 0 or more")
     actuator = fit.actuator or Actuator("")
-    if "Ps" in preset.core.symbols and actuator.supply_pressure is None:
+    if preset.kind == "bench":
+        _check_bench(specimen, gain, actuator)
+    elif "Ps" in preset.core.symbols and actuator.supply_pressure is None:
         raise Unusable("not-stated", "this model depends on the supply pressure", "actuator supply_pressure",
                        "state it in matrix.yaml and fit again")  # fmt: skip
     if any(name in fit.parameters for name, _ in (preset.without_area or {}).values()):
         actuator = replace(actuator, piston_area=None)  # the values are ratios to it
-    elif "A" in preset.chain.symbols and actuator.piston_area is None:
+    elif preset.kind == "chain" and "A" in preset.chain.symbols and actuator.piston_area is None:
         actuator = replace(actuator, piston_area=preset.search.bounds_hold_for)
     run = Run(
         "export", "", sample_rate, {}, specimen=specimen, gain=preset.data.gains.get("Kp") if gain is None else gain
@@ -103,6 +105,16 @@ def exported(
         raise Unusable("bad-fit", f"no value of {', '.join(missing)}", "fit", f"give a fit of model {fit.model}")
     values = {name: known[name] for name in preset.chain.symbols}
     return ExportedMachine(preset, values, sample_rate, _steps(preset, values, sample_rate))
+
+
+def _check_bench(specimen: Specimen, gain: float | None, actuator: Actuator) -> None:
+    """Refuse what the actuator of a bench has not: a loop of its own, a mass, a spring on an unknown area."""
+    if gain is not None or specimen.mass or specimen.damping:
+        raise Unusable("no-export", "an actuator of a bench has no loop, and moves no mass", "export",
+                       "leave gain, mass and damping out")  # fmt: skip
+    if specimen.stiffness and actuator.piston_area is None:
+        raise Unusable("not-stated", "a spring acts on the piston area", "actuator piston_area",
+                       "state it in matrix.yaml and fit again")  # fmt: skip
 
 
 def _check_driven(fit: FitResult, preset: Preset, specimen: Specimen) -> None:

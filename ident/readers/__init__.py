@@ -105,7 +105,7 @@ def read_source(source: Source, limits: Limits = LIMITS) -> Matrix:
         digest = hashlib.sha256(digest.encode() + profile).hexdigest()
     return Matrix(
         actuator, runs, digest, described.controller, described.limits, stated, notices, described.machine,
-        test=described.test,
+        test=described.test, regulator=described.regulator,
     )  # fmt: skip
 
 

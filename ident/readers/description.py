@@ -13,14 +13,16 @@ from ident.presets.description import described
 from ident.readers.fields import Fields
 from ident.readers.limits import Limits
 from ident.readers.provenance_description import describe_test
+from ident.readers.regulator_description import describe_regulator
 from ident.readers.rig import rig_of
 from ident.readers.run_description import RunDescription, describe_run
 from ident.readers.source import DESCRIPTION, inside
 from ident.readers.strict_yaml import read_yaml
 from ident.rig.provenance import UNSTATED, Provenance
+from ident.rig.regulator import PositionControl
 from ident.units.quantity import shown
 
-TOP = ("actuator", "runs", "controller", "machine", "limits", "rig", "test")
+TOP = ("actuator", "runs", "controller", "regulator", "machine", "limits", "rig", "test")
 ACTUATOR = ("serial", "name", "batch", "piston_area", "stroke", "volume", "supply_pressure", "servo_valve", "notes")
 
 
@@ -35,6 +37,7 @@ class Description:
     machine: str
     profile: str = ""
     test: Provenance = UNSTATED
+    regulator: PositionControl | None = None
 
 
 def describe(text: bytes, limits: Limits) -> Description:
@@ -62,7 +65,8 @@ def _described(data: Any, limits: Limits) -> Description:
     elif rig is not None:
         actuator = replace(actuator, rig=rig_of(rig))
     test = describe_test(top.data["test"]) if "test" in top else UNSTATED
-    return Description(actuator, runs, controller, bounds, machine, profile, test)
+    regulator = describe_regulator(top.data["regulator"]) if "regulator" in top else None
+    return Description(actuator, runs, controller, bounds, machine, profile, test, regulator)
 
 
 def describe_actuator(data: Any) -> Actuator:

@@ -27,6 +27,7 @@ kelvin = [temperature]; offset: 0 = K
 degree_Celsius = kelvin; offset: 273.15 = degC = celsius
 degree_Fahrenheit = 5 / 9 * kelvin; offset: 233.15 + 200 / 9 = degF = fahrenheit
 sample = [sample] = samples = Sa
+decibel = [level] = dB
 """
 
 DERIVED = """

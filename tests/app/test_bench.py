@@ -4,19 +4,27 @@ from __future__ import annotations
 
 import io
 import json
+import math
 import re
 import zipfile
 from pathlib import Path
 from typing import Any
 
 import pytest
+import scipy.io
+import yaml
 from fastapi.testclient import TestClient
 
+from ident.bench.outputs import model_of
+from ident.bench.position_loop import margins
 from ident.bench.synthesis import write_bench
+from ident.errors import Unusable
 from ident.presets import PRESETS
+from ident.readers.regulator_description import describe_regulator
 from tests.bench.sets import simulated
 
 API = "/api/v1"
+REGULATOR = "regulator: {kp: 8 %/mm, sample_time: 2 ms, delay: 1 ms, limit: 100 %, amplitudes: [2 %, 10 %]}"
 OPTIONS = {"population": 16, "generations": 2, "elite": 3}
 
 
@@ -36,6 +44,8 @@ def fit(service: TestClient, tmp_path_factory: pytest.TempPathFactory, full: boo
     (folder / "runs").mkdir()
     with simulated(full):
         write_bench(folder, PRESETS["kononykhin"], seed=5, noise=0.005)
+    with (folder / "matrix.yaml").open("a") as description:
+        description.write(f"\n{REGULATOR}\n")
     packed = io.BytesIO()
     with zipfile.ZipFile(packed, "w") as archive:
         for path in sorted(folder.rglob("*.*")):
@@ -168,3 +178,57 @@ def test_an_effect_in_another_unit_is_refused_at_once(service, fit):
     refused = service.post(f"{API}/fits/{fit}/effects", json={"effect": "dead_zone"})
     assert refused.status_code == 422
     assert "it redefines w in m, which is a plain number here" in refused.json()["detail"]
+
+
+def test_the_actuator_of_a_bench_is_exported(service: TestClient, fit: str) -> None:
+    """As C with its play, and as MAT with its blocks; a gain, which it has not, is refused."""
+    assert " *   B = " in service.get(f"{API}/fits/{fit}/export.h", params={"sample_rate": "1 kHz"}).text
+    held = service.get(f"{API}/fits/{fit}/export.mat").content
+    assert len(scipy.io.loadmat(io.BytesIO(held), squeeze_me=True)["Speeds"]) == 13
+    assert service.get(f"{API}/fits/{fit}/export.h", params={"gain": "2"}).json()["code"] == "no-export"
+
+
+def test_the_margin_of_a_produced_actuator_is_a_quantity_of_its_sheet(service: TestClient, fit: str) -> None:
+    """Of the stated regulator: as the position loop of the fit has it, with limits, a verdict, statistics, a query.
+
+    The margins of the fit's values are another way to the same number: the sheet is that of the procedures.
+    """
+    sheet = {line["name"]: line for line in service.get(f"{API}/fits/{fit}/sheet").json()["lines"]}
+    asked = {"kp": "8 %/mm", "sample_time": "2 ms", "delay": "1 ms", "limit": "100 %", "amplitudes": ["2 %", "10 %"]}
+    loop = service.post(f"{API}/fits/{fit}/position-loop", json=asked).json()
+    gain, phase = sheet["gain_margin"], sheet["phase_margin"]
+    assert (gain["unit"], phase["unit"]) == ("dB", "rad")
+    assert gain["value"] == pytest.approx(loop["gain_margin"], abs=0.1)
+    assert math.degrees(phase["value"]) == pytest.approx(loop["phase_margin"], abs=0.5)
+    assert 0 < gain["std_error"] < 0.5
+    true = model_of({p.in_equations: p.value for p in PRESETS["kononykhin"].parameters}, math.inf)
+    regulator = describe_regulator(yaml.safe_load(REGULATOR)["regulator"])
+    known = [margins(true, regulator.regulator, amplitude) for amplitude in regulator.amplitudes]
+    assert abs(gain["value"] - min(one.gain_margin for one in known)) < 4 * gain["std_error"]
+    assert abs(phase["value"] - math.radians(min(one.phase_margin for one in known))) < 4 * phase["std_error"]
+    limits = {"sheet.gain_margin": {"lower": 6, "unit": "dB"}, "sheet.phase_margin": {"lower": 30, "unit": "deg"}}
+    assert service.put(f"{API}/limits/kononykhin", json={"limits": limits}).status_code == 200
+    judged = {line["name"]: line for line in service.get(f"{API}/fits/{fit}/sheet").json()["lines"]}
+    assert judged["gain_margin"]["outcome"] == ("inside" if gain["value"] > 6 else "outside")
+    assert judged["phase_margin"]["lower"] == pytest.approx(math.radians(30))
+    assert service.post(f"{API}/fits/{fit}/approve", json={"why": "margin"}).json()["current"]
+    told = service.get(f"{API}/actuators/SIM-BENCH-0001/verdict").json()["reasons"]
+    assert any("sheet.gain_margin" in one and "dB" in one for one in told)
+    found = service.get(f"{API}/statistics", params={"parameter": "sheet.gain_margin", "model": "kononykhin"}).json()
+    assert (found["n"], found["unit"]) == (1, "dB")
+    service.post(f"{API}/fits/{fit}/withdraw")
+    service.put(f"{API}/limits/kononykhin", json={"limits": {}})
+
+
+@pytest.mark.parametrize(
+    ("block", "code"),
+    [("{ki: 1}", "missing-field"), ("{kp: 8 mm}", "wrong-dimension"), ("{kp: -1}", "bad-regulator"),
+     ("{kp: 8, kd: 1}", "unknown-key"), ("{kp: 8, amplitudes: 2 %}", "not-a-list"),
+     ("{kp: 8, amplitudes: [0 %]}", "bad-amplitude")],
+)  # fmt: skip
+def test_a_regulator_that_cannot_be_read_is_refused(block: str, code: str) -> None:
+    """With the field at fault."""
+    with pytest.raises(Unusable) as refused:
+        describe_regulator(yaml.safe_load(block))
+    assert refused.value.code == code
+    assert refused.value.where.startswith("regulator")
