@@ -12,7 +12,8 @@ Value = Finite | Short
 Case = Annotated[Short | dict[str, Any], Field(examples=["qian", "benchmark2020"])]
 """`qian`, `benchmark2020` (or `benchmark2020-1` to `-4`), or an object with what the YAML file of a case holds.
 
-No file is read: where its ground is a record, `text` holds it.
+No file is read: where its ground is a record, `text` holds it. Where `physical` is a list of parts, each may have a
+`fit`, the id of a stored one, and a `controller` as the request has it.
 """
 
 
@@ -70,13 +71,15 @@ class EarlierRequest(BeforeRequest):
 class ControllerRequest(_Asked):
     """A controller to be designed for a stored fit with the specimen, gain, sample rate and delay of a case.
 
-    `structure` is `feedback` or `two-degree`; `target` stands for eq. (19) of Qian et al. 2014; `seed` is that of the
-    draws from the fitted covariance, or from the `spread`. `before` is the loop when it was stable, by which the cause
-    is found where it no longer is. `at` moves the machine to another condition.
+    `part` names one of a case with several actuators. `structure` is `feedback` or `two-degree`; `target` stands for
+    eq. (19) of Qian et al. 2014; `seed` is that of the draws from the fitted covariance, or from the `spread`. `before`
+    is the loop when it was stable, by which the cause is found where it no longer is. `at` moves the machine to another
+    condition.
     """
 
     fit: str
     case: Case = "qian"
+    part: Short | None = None
     target: TargetRequest | None = None
     structure: str = "feedback"
     seed: int = Field(default=0, ge=0, lt=2**31)
@@ -111,9 +114,10 @@ class HybridRequest(_Asked):
 
     `controller` is `none`, `kalman` or another that has a name, the id of a stored one, or what its `.json` holds.
     `effects` are switched on at a fifth of their largest strength; `set` gives values by NAME or NAME.PARAM, with a
-    unit or in SI. With `map` there is also the map over the shares of mass and stiffness that are physical. With a
-    `spread` 100 machines that are drawn from it are simulated, too. `before` is the loop when it was stable, by which
-    the cause is found where it no longer is. `at` moves the machine to another condition.
+    unit or in SI. With `map` there is also the map over the shares of mass and stiffness that are physical, for
+    several actuators over the delays of two of them. With a `spread` 100 machines that are drawn from it are simulated,
+    too. `before` is the loop when it was stable, by which the cause is found where it no longer is. `at` moves the
+    machine to another condition.
     """
 
     fit: str

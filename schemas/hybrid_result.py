@@ -99,7 +99,7 @@ class ShareMapView(BaseModel):
     critical_delay: list[list[float | None]]
 
 
-class HybridResultView(BaseModel):
+class _OfOneActuator(BaseModel):
     """The verdict and the scores of a hybrid simulation, as `servoident hybrid --json` writes them.
 
     `ended` (s) is when it ran away; `largest_pole` the largest magnitude of a pole of the sampled loop, null where it
@@ -127,12 +127,38 @@ class HybridResultView(BaseModel):
     seconds: float
 
 
+class HybridPartView(_OfOneActuator):
+    """What one of several actuators gave, by the `name` of its part; what holds for the whole stands with each."""
+
+    name: str
+
+
+class DelayMapView(BaseModel):
+    """Whether the loop is stable over delays in samples of two `parts`: `first` (rows), `second` (columns).
+
+    `radius` is the largest magnitude of a pole of the sampled loop.
+    """
+
+    parts: list[str]
+    first: list[int]
+    second: list[int]
+    stable: list[list[bool]]
+    radius: list[list[float]]
+
+
+class HybridResultView(_OfOneActuator):
+    """As one actuator gives it; of several the largest of each score, and each of the `parts`."""
+
+    parts: list[HybridPartView] = Field(default_factory=list)
+    delay_map: DelayMapView | None = None
+
+
 class HybridView(HybridResultView):
     """A stored hybrid simulation; its id is that of its job.
 
     `without` is the same without a controller, `controller_id` the stored controller, `map` there where it was asked
     for, `feedforward` under that controller, `spread` where one was stated. Figures at
-    `…/figures/NAME.{json,svg,png,pdf}` have the names in `figures`.
+    `…/figures/NAME.{json,svg,png,pdf}` have the names in `figures`; of several actuators with `?part=NAME`.
     """
 
     id: str

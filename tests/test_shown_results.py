@@ -19,7 +19,10 @@ from ident.comparison.side_by_side import of_fits
 from ident.design.experiment import Experiment
 from ident.diagnosis.result import Diagnosis
 from ident.hybrid.changed_machine import Change
+from ident.hybrid.controller import no_controller
 from ident.hybrid.controller_design import design_controller
+from ident.hybrid.coupled_rig import machines_of, simulate_coupled
+from ident.hybrid.coupled_stability import delay_map
 from ident.hybrid.followed import Followed
 from ident.hybrid.rig import simulate_hybrid
 from ident.hybrid.share_map import share_map
@@ -30,6 +33,7 @@ from ident.residuals.survey import survey
 from ident.run import Specimen
 from ident.words.shown import MOST_ROWS, Listing, Shown, html, text
 from tests.hybrid.cases import fitted, of_qian
+from tests.hybrid.coupled_cases import beam as several
 
 LONGEST = 8000
 """Characters that a result may print, two screens: the fields of a matrix of 27 runs are more than 20,000."""
@@ -54,6 +58,8 @@ def results() -> dict[str, Shown]:
         Profile("tau", "s", (1e-3, 2e-3), (0.1, 0.2), (0.0, 9.0), 1e-3, None),
         what_if(of_area, Change(specimen=Specimen(5.0)), (2.0, 3.0)), simulate_hybrid(machine, case),
         share_map(machine, case, masses=[0.0, 0.5], stiffnesses=[0.0, 0.9]),
+        (beam := simulate_coupled((machine, machine), several(0.25)[0], [no_controller(4096.0)] * 2)),
+        delay_map(machines_of((machine, machine), beam.case), beam.case, [no_controller(4096.0)] * 2, (1, 2)),
         design_controller(machine, Specimen(8.75, 17.5e3), sample_rate=4096.0, gain=2.0, piston_area=497e-6, delay=1),
         Followed(gain=20.0, limit=40.0, draws=0, feedback_rms=1e-3, both_rms=1e-4, drawn_feedback_rms=None,
                  drawn_both_rms=None, drawn_ratio=None, t=curve, reference=curve, feedback=curve, both=curve,

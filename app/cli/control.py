@@ -30,6 +30,7 @@ def control(
     target: Annotated[
         Path | None, typer.Option(metavar="FILE", help="Open-loop target, YAML. Default: eq. (19) of Qian et al. 2014.")
     ] = None,
+    part: Annotated[str | None, typer.Option(metavar="NAME", help="Part of a case with several actuators.")] = None,
     structure: Annotated[
         str, typer.Option(metavar="NAME", help="feedback or two-degree (two degrees of freedom).")
     ] = "feedback",
@@ -52,11 +53,12 @@ def control(
     from dataclasses import replace
 
     from app.cli.tables import show
-    from ident.hybrid.case import read_case
     from ident.hybrid.controller_design import design_controller, on_case
+    from ident.hybrid.coupled_case import case_of_part
+    from ident.hybrid.coupled_reading import read_system
     from ident.hybrid.target import QIAN2014_TARGET
 
-    moved, given = moved_to(read_fit(fit), at, over, sets), read_case(case)
+    moved, given = moved_to(read_fit(fit), at, over, sets), case_of_part(read_system(case), part)
     result = moved.fit
     earlier = earlier_case(result, given, before, before_gain, before_case)
     wanted = QIAN2014_TARGET if target is None else _target(target)

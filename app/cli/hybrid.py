@@ -12,6 +12,7 @@ from app.cli.at_option import At, Over, Sets, moved_to
 from app.cli.before_option import CaseBefore, EarlierFit, EarlierGain, earlier_case
 from app.cli.figure_files import write_figures
 from app.cli.given import read_fit
+from app.cli.hybrid_parts import draw_parts, refuse_for_several, simulate_parts
 from app.cli.output import STANDARD_OUTPUT, check_target, write_json
 from app.cli.progress import shown
 from app.cli.rig_option import RigFile, rig_in
@@ -37,7 +38,10 @@ def hybrid(
         list[str] | None, typer.Option(metavar="NAME[.PARAM=VALUE]", help="Effect to add; may be repeated.")
     ] = None,
     shares: Annotated[
-        bool, typer.Option("--map", help="Also map stability over the physical/numerical split.")
+        bool,
+        typer.Option(
+            "--map", help="Also map stability: over the physical/numerical split, of several actuators over delays."
+        ),
     ] = False,
     at: At = None,
     over: Over = "temperature",
@@ -52,22 +56,38 @@ def hybrid(
 ) -> None:
     """Simulate a real-time hybrid simulation.
 
-    It couples a numerical substructure, a controller, the identified actuator and a specimen. Exit status 1 if it is
-    unstable: cause and remedies are listed.
+    It couples a numerical substructure, a controller, the identified actuator and a specimen. A case may have several
+    parts, each with its own fit and controller. Exit status 1 if it is unstable: cause and remedies are listed.
     """
     from dataclasses import replace
 
     from app.cli.tables import show
     from ident.hybrid.acting import controller_called, linear
-    from ident.hybrid.case import read_case
+    from ident.hybrid.controller import name_of
+    from ident.hybrid.coupled_case import CoupledCase
+    from ident.hybrid.coupled_reading import read_system
     from ident.hybrid.drawn_simulations import drawn_simulations
     from ident.hybrid.followed import followed_in
-    from ident.hybrid.rig import name_of, simulate_hybrid
+    from ident.hybrid.rig import simulate_hybrid
 
     check_target(json)
-    moved, of = moved_to(read_fit(fit), at, over, sets), read_case(case)
+    moved, of = moved_to(read_fit(fit), at, over, sets), read_system(case)
     result = moved.fit
     of = of if ground is None else of.with_ground(ground)
+    if isinstance(of, CoupledCase):
+        refuse_for_several(spread=spread, before=before, before_gain=before_gain, before_case=before_case)
+        of = of if rig is None else of.changed(rig=rig_in(rig))
+        on = effect_values(effect or [], result.model)
+        several = simulate_parts(result, of, Path(case).parent, controller, on, shares, drawn=out is not None)
+        if json is not None:
+            write_json(several.parts.to_json(), json)
+        if json != STANDARD_OUTPUT:
+            show(several.parts.listings())
+        if out is not None:
+            draw_parts(several, out)
+        if not several.parts.stable:
+            raise typer.Exit(1)
+        return
     of = of if rig is None else replace(of, rig=rig_in(rig))
     effects, wide = effect_values(effect or [], result.model), spread_in(spread, result.model)
     earlier = earlier_case(result, of, before, before_gain, before_case)

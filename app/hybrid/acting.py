@@ -8,8 +8,7 @@ from ident.errors import Unusable
 from ident.fit.result import FitResult
 from ident.hybrid.acting import NAMED, for_rate
 from ident.hybrid.case import Case
-from ident.hybrid.controller import SampledController
-from ident.hybrid.rig import Controller
+from ident.hybrid.controller import Controller, SampledController
 from ident.units.quantity import shown
 from ident.words.nearest import did_you_mean
 

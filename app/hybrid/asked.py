@@ -11,9 +11,11 @@ from pydantic import BaseModel, ValidationError
 from app.errors import Failure
 from ident.errors import Unusable
 from ident.fit.result import FitResult
-from ident.hybrid.case import BUILT_IN, NAMES, Case, case_of
+from ident.hybrid.case import BUILT_IN, NAMES, Case
 from ident.hybrid.changed_machine import SIZES, Change, model_of
-from ident.hybrid.ground import ground_of
+from ident.hybrid.coupled_case import CoupledCase, System, case_of_part
+from ident.hybrid.coupled_reading import system_of
+from ident.hybrid.ground import Ground, ground_of
 from ident.hybrid.peak_problem import Axes, PeakTarget
 from ident.presets import preset
 from ident.run import Specimen
@@ -38,19 +40,30 @@ class AskedCase:
     ground: str | dict[str, Any] | None
     text: str = ""
 
-    def read(self) -> Case:
-        """The case. Raises Unusable with the field at fault."""
+    def read(self, part: str | None = None) -> Case:
+        """The case of one actuator, of several that of a `part`. Raises Unusable with the field at fault."""
+        return case_of_part(self.system(), part)
+
+    def system(self) -> System:
+        """The case of one actuator or of several. Raises Unusable with the field at fault."""
         of = self._own()
-        if self.ground is None:
+        motion = self._motion(of.ground)
+        if motion is None:
             return of
+        return of.changed(ground=motion) if isinstance(of, CoupledCase) else replace(of, ground=motion)
+
+    def _motion(self, own: Ground) -> Ground | None:
+        """The motion in place of the case's own; None where there is none."""
+        if self.ground is None:
+            return None
         if isinstance(self.ground, str):
             if self.ground not in MOTIONS:
                 remedy = did_you_mean(self.ground, MOTIONS, f"give {' or '.join(MOTIONS)}, or a record as text")
                 raise Unusable("bad-ground", f"{shown(self.ground)!r} is no motion", "ground", remedy)
-            return replace(of, ground=replace(of.ground, kind=self.ground))
-        return replace(of, ground=ground_of(_with(self.ground, self.text), None, of.ground))
+            return replace(own, kind=self.ground)
+        return ground_of(_with(self.ground, self.text), None, own)
 
-    def _own(self) -> Case:
+    def _own(self) -> System:
         """The case with its own motion."""
         if isinstance(self.case, str):
             if self.case not in BUILT_IN:
@@ -60,7 +73,7 @@ class AskedCase:
         data, ground = self.case, self.case.get("ground")
         if isinstance(ground, dict):
             data = {**data, "ground": _with(ground, self.text if self.ground is None else "")}
-        return case_of(data, None, "own case")
+        return system_of(data, None, "own case")
 
 
 def _with(ground: dict[str, Any], text: str) -> dict[str, Any]:

@@ -37,7 +37,7 @@ _designs: LRU[ControllerDesign] = LRU(_MOST)
 def design(context: Context, request: ControllerRequest, controller: str) -> ControllerView:
     """Design a controller and keep it under this id. Raises Unusable, and Failure 404 where there is no such fit."""
     case = asked_case(request.case)
-    asked = request.model_dump(exclude_none=True) | {"case": case.case, "case_name": case.read().name}
+    asked = request.model_dump(exclude_none=True) | {"case": case.case, "case_name": _case_name(case, request.part)}
     asked |= {"before": stated(request.before)} if request.before else {}
     made = _designed(context, asked)
     about(f"controllers/{controller}")
@@ -51,11 +51,17 @@ def design(context: Context, request: ControllerRequest, controller: str) -> Con
     return get(context, controller)
 
 
+def _case_name(case: AskedCase, part: str | None) -> str:
+    """What the case is called, with the part where it has several. Raises Unusable."""
+    name = case.read(part).name
+    return f"{name}, {part}" if part else name
+
+
 def _designed(context: Context, asked: dict[str, Any]) -> ControllerDesign:
     """The design that is asked for."""
     moved = moved_to(context, _fit(context, asked["fit"]), AtRequest(**asked["at"]) if "at" in asked else None)
     fit = moved.fit
-    case = AskedCase(asked["case"], None).read()
+    case = AskedCase(asked["case"], None).read(asked.get("part"))
     asked_spread = SpreadRequest(**asked["spread"]) if "spread" in asked else None
     before = earlier_case(asked.get("before"), fit, case, lambda one: _fit(context, one))
     target = target_of(asked["target"]) if "target" in asked else QIAN2014_TARGET

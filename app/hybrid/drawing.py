@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from typing import Any
 
 import numpy as np
 
@@ -10,11 +11,14 @@ from app.context import Context
 from app.errors import Failure
 from app.hybrid import controllers, position_loop, service, tracking
 from app.hybrid import what_if as asked_machines
-from app.hybrid.records import unpacked
+from app.hybrid.records import of_part, unpacked
 from app.hybrid.work import WITHOUT
 from app.lru import LRU
 from ident.figures import MEDIA, drawings, figure, render
-from ident.figures.subjects import Designed, Simulated, Tracked
+from ident.figures.delay_map import DELAY_MAP
+from ident.figures.subjects import Coupled, Designed, Simulated, Tracked
+from ident.hybrid.coupled_case import CoupledCase, case_of_part
+from ident.hybrid.coupled_stability import DelayMap
 from ident.hybrid.followed import Followed
 from ident.hybrid.share_map import ShareMap
 from schemas.hybrid import PositionLoopRequest, WhatIfRequest
@@ -31,12 +35,18 @@ def of_controller(context: Context, controller: str, name: str, kind: str, style
     return _drawn(context, asked, lambda: Designed(*controllers.designed(context, controller)), name, kind, style)
 
 
-def of_simulation(context: Context, simulation: str, name: str, kind: str, style: Style) -> tuple[bytes, str]:
-    """A figure of a hybrid simulation."""
+def of_simulation(
+    context: Context, simulation: str, name: str, kind: str, style: Style, part: str | None = None
+) -> tuple[bytes, str]:
+    """A figure of a hybrid simulation; of several actuators that of a `part`, or of the whole."""
 
-    def subject() -> Simulated:
+    def subject() -> Simulated | Coupled:
         row = service.with_records(context, simulation)
-        case, held = service.case_of_row(row), row.result
+        case, held = service.system_of_row(row), row.result
+        if isinstance(case, CoupledCase):
+            return _of_parts(case, held, row.records, name, part)
+        if part:
+            case_of_part(case, part)
         main, without, worth = held["result"], held["without"], held.get("feedforward")
         results = {main["controller"]: main} | ({WITHOUT: without} if without else {})
         return Simulated(
@@ -44,7 +54,19 @@ def of_simulation(context: Context, simulation: str, name: str, kind: str, style
             Followed.from_json(worth) if worth else None,
         )  # fmt: skip
 
-    return _drawn(context, ("hybrid", simulation), subject, name, kind, style)
+    return _drawn(context, ("hybrid", simulation, part or ""), subject, name, kind, style)
+
+
+def _of_parts(case: CoupledCase, held: Any, records: bytes, name: str, part: str | None) -> Simulated | Coupled:
+    """A part of a simulation with several actuators, the first where none is named; the whole for what is of it."""
+    main, without = held["result"], held["without"]
+    if name == DELAY_MAP.name and main.get("delay_map"):
+        return Coupled(DelayMap.from_json(main["delay_map"]), case.name)
+    chosen = case.part(part) if part else case.parts[0]
+    number = case.parts.index(chosen)
+    result = main["parts"][number]
+    results = {result["controller"]: result} | ({WITHOUT: without["parts"][number]} if without else {})
+    return Simulated(unpacked(of_part(records, number), chosen.case, results), chosen.case)
 
 
 def of_what_if(

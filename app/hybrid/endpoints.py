@@ -28,6 +28,7 @@ Limit = Annotated[int, Query(ge=1, le=200)]
 Theme = Annotated[str, Query(max_length=20, description="light or dark")]
 Share = Annotated[float, Query(ge=0.2, le=4, description="Share of the usual width")]
 Run = Annotated[str | None, Query(max_length=200, description="Id of the run; without it the first")]
+Part = Annotated[str | None, Query(max_length=200, description="Of several actuators; without it the first")]
 Noise = Annotated[
     str | None,
     Query(max_length=60, description="Standard deviation of the sensor (0.12 mm); without it that of the record"),
@@ -118,10 +119,10 @@ def get_hybrid_simulation(here: Here, simulation: str) -> HybridView:
     responses=_IMAGES,
 )
 def draw_hybrid_simulation(
-    here: Here, simulation: str, name: str, kind: str, theme: Theme = "light", share: Share = 1.0
+    here: Here, simulation: str, name: str, kind: str, theme: Theme = "light", share: Share = 1.0, part: Part = None
 ) -> Response:
-    """The figures `displacement`, `response`, `map` and `feedforward` of a simulation as Vega-Lite, svg, png, pdf."""
-    content, media = drawing.of_simulation(here, simulation, name, kind, (theme, share))
+    """A figure of a simulation (its `figures` name them) as Vega-Lite, svg, png, pdf."""
+    content, media = drawing.of_simulation(here, simulation, name, kind, (theme, share), part)
     return Response(content, media_type=media)
 
 

@@ -34,6 +34,23 @@ def packed(runs: Mapping[str, HybridResult]) -> bytes:
     return held.getvalue()
 
 
+def packed_parts(parts: Mapping[str, HybridResult], alone: Mapping[str, HybridResult] | None) -> bytes:
+    """The displacements of several actuators: of each as :func:`packed`, also without a controller."""
+    held = io.BytesIO()
+    arrays: dict[str, Any] = {}
+    for number, (name, one) in enumerate(parts.items()):
+        runs = {"under": one} | ({"alone": alone[name]} if alone else {})
+        arrays[f"part{number}"] = np.frombuffer(packed(runs), dtype=np.uint8)
+    np.savez(held, **arrays)
+    return held.getvalue()
+
+
+def of_part(content: bytes, number: int) -> bytes:
+    """What :func:`packed` made of one of several actuators."""
+    with np.load(io.BytesIO(content), allow_pickle=False) as held:
+        return bytes(held[f"part{number}"].tobytes())
+
+
 def _thinned(signal: Any, every: int) -> Any:
     with np.errstate(over="ignore", invalid="ignore"):  # of what ran away
         return signal[::every].astype(np.float32)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import io
 import json
 from dataclasses import asdict
 from typing import Any
@@ -10,11 +9,12 @@ from typing import Any
 from app.context import Context
 from app.errors import missing
 from app.fits import service as fits
-from app.hybrid import repository
-from app.hybrid.acting import acting, named
+from app.hybrid import parts, repository
+from app.hybrid.acting import acting
 from app.hybrid.asked import AskedCase, asked_case, effects_of
 from app.hybrid.at_condition import moved_to
 from app.hybrid.before import earlier_case, stated
+from app.hybrid.keeping import kept_controller, kept_text
 from app.hybrid.spread import spread_of
 from app.jobs import service as jobs
 from app.paging import cursor, keys_of
@@ -23,9 +23,9 @@ from ident.errors import Unusable
 from ident.fit.result import FitResult
 from ident.hybrid.acting import FEEDFORWARD, linear
 from ident.hybrid.case import Case
-from ident.hybrid.controller import SampledController
+from ident.hybrid.controller import Controller, SampledController, name_of
+from ident.hybrid.coupled_case import CoupledCase, System
 from ident.hybrid.machine import machine
-from ident.hybrid.rig import Controller, name_of
 from ident.plain import written
 from schemas.fit import JobView
 from schemas.hybrid import HybridRequest
@@ -35,7 +35,6 @@ KIND = "hybrid simulation"
 FIGURES = ("displacement", "response")
 MOST_MAPPED = 500_000
 """Samples of a motion over which a map is made: minutes of computing."""
-_FILE_KEYS = ("name", "sample_rate", "A", "B", "C", "D")
 
 
 def submit(context: Context, request: HybridRequest, job: str) -> JobView:
@@ -44,8 +43,12 @@ def submit(context: Context, request: HybridRequest, job: str) -> JobView:
     moved = moved_to(context, FitResult.from_json(row.result), request.at)
     fit = moved.fit
     asked = asked_case(request.case, request.ground)
-    case, effects = asked.read(), effects_of(request, fit.model)
-    given, stored = _controller(context, request.controller)
+    system, effects = asked.system(), effects_of(request, fit.model)
+    if isinstance(system, CoupledCase):
+        settings = parts.settings(context, request, fit, system, asked, effects)
+        return jobs.record(context, job, row.matrix, settings, request.fit, KIND)
+    case = system
+    given, stored = kept_controller(context, request.controller)
     chosen = acting(given, fit, case)
     _check(fit, case, effects, chosen, request.map)
     spread = spread_of(context, request.spread, fit.model)
@@ -55,8 +58,8 @@ def submit(context: Context, request: HybridRequest, job: str) -> JobView:
         "model": fit.model, "effects": list(effects), "case": case.name, "controller": name_of(chosen),
         "ground": case.ground.name,
         "asked": {
-            **asdict(asked), "text": _kept(context, asked.text), "effects": effects, "map": request.map,
-            "controller": given if isinstance(given, str) else _kept(context, json.dumps(given)),
+            **asdict(asked), "text": kept_text(context, asked.text), "effects": effects, "map": request.map,
+            "controller": given if isinstance(given, str) else kept_text(context, json.dumps(given)),
             "inline": not isinstance(given, str), "controller_id": stored,
             "spread": None if spread is None else written(spread),
             "moved": [_kept(context, json.dumps(fit.to_json())), *moved.text] if moved.text else None,
@@ -64,19 +67,6 @@ def submit(context: Context, request: HybridRequest, job: str) -> JobView:
         },
     }  # fmt: skip
     return jobs.record(context, job, row.matrix, settings, request.fit, KIND)
-
-
-def _controller(context: Context, given: str | dict[str, Any]) -> tuple[str | dict[str, Any], str | None]:
-    """A controller by its name or as JSON, and the id of the stored one that it is; raises Failure 404."""
-    if isinstance(given, dict):
-        return {name: given.get(name) for name in _FILE_KEYS}, None
-    if named(given):
-        return given, None
-    with context.sessions() as session:
-        row = repository.controller(session, given)
-    if row is None:
-        raise missing("controller", given)
-    return {name: row.result[name] for name in _FILE_KEYS}, row.id
 
 
 def _before(context: Context, given: dict[str, Any] | None, fit: FitResult, case: Case) -> dict[str, Any] | None:
@@ -87,12 +77,7 @@ def _before(context: Context, given: dict[str, Any] | None, fit: FitResult, case
 
     if earlier_case(given, fit, case, find) is None or given is None or "fit" not in given:
         return given
-    return {**given, "fit": _kept(context, json.dumps(find(given["fit"]).to_json()))}
-
-
-def _kept(context: Context, text: str) -> str:
-    """The name of the blob that holds a text, "" for none: a job's record stays short."""
-    return context.storage.put(io.BytesIO(text.encode())) if text else ""
+    return {**given, "fit": kept_text(context, json.dumps(find(given["fit"]).to_json()))}
 
 
 def _check(fit: FitResult, case: Case, effects: dict[str, float], chosen: Controller, mapped: bool) -> None:
@@ -121,7 +106,8 @@ def listed(context: Context, fit: str | None, after: str | None, limit: int) -> 
         rows = repository.simulations(session, fit, keys_of(after, 2), limit)
     following = cursor(rows[-1].created_at, rows[-1].id) if len(rows) == limit else None
     return HybridPage(
-        items=[view(row).model_copy(update={"map": None, "feedforward": None}) for row in rows], next=following
+        items=[view(row).model_copy(update={"map": None, "feedforward": None, "delay_map": None}) for row in rows],
+        next=following,
     )
 
 
@@ -129,6 +115,7 @@ def view(row: HybridRow) -> HybridView:
     """A hybrid simulation as it is sent."""
     held = row.result
     names = [*FIGURES, *(name for name in ("map", "feedforward") if held.get(name))]
+    names += ["delay-map"] if held["result"].get("delay_map") else []
     return HybridView(
         **held["result"], id=row.id, fit=row.fit, matrix=row.matrix, serial=row.serial, created_at=row.created_at,
         controller_id=row.controller, without=held["without"], map=held["map"],
@@ -136,9 +123,9 @@ def view(row: HybridRow) -> HybridView:
     )  # fmt: skip
 
 
-def case_of_row(row: HybridRow) -> Case:
+def system_of_row(row: HybridRow) -> System:
     """The case that was simulated, its motion without the record."""
-    return AskedCase(row.asked["case"], row.asked["ground"]).read()
+    return AskedCase(row.asked["case"], row.asked["ground"]).system()
 
 
 def with_records(context: Context, simulation: str) -> HybridRow:

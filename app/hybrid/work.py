@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import base64
 import json
+from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any
 
@@ -13,7 +14,8 @@ from app.hybrid import repository
 from app.hybrid.acting import acting
 from app.hybrid.asked import AskedCase
 from app.hybrid.before import earlier_case
-from app.hybrid.records import packed
+from app.hybrid.parts import simulated
+from app.hybrid.records import packed, packed_parts
 from app.hybrid.service import KIND
 from app.hybrid.spread import kept
 from app.jobs.work import InOnePiece, Kind, State, Task
@@ -21,6 +23,7 @@ from app.tables import JobRow
 from ident.fit.result import FitResult
 from ident.hybrid.acting import FEEDFORWARD
 from ident.hybrid.controller import SampledController
+from ident.hybrid.coupled_case import CoupledCase
 from ident.hybrid.drawn_simulations import drawn_simulations
 from ident.hybrid.followed import followed_in
 from ident.hybrid.rig import simulate_hybrid
@@ -38,10 +41,12 @@ class HybridWork(InOnePiece):
     def finish(self, state: State) -> State:  # noqa: ARG002  nothing comes before it
         """What `servoident hybrid` writes, and the displacements for its figures."""
         asked, report, fit = self.task.settings["asked"], self.task.report, self.task.fit
-        case = AskedCase(asked["case"], asked["ground"], self._blob(asked["text"])).read()
+        case = AskedCase(asked["case"], asked["ground"], self._blob(asked["text"])).system()
         assert fit is not None
         moved = asked.get("moved") or []
         fit = self._fit(moved[0]) if moved else fit
+        if isinstance(case, CoupledCase):
+            return self._parts(asked, fit, case)
         given: Any = json.loads(self._blob(asked["controller"])) if asked["inline"] else asked["controller"]
         chosen, effects = acting(given, fit, case), asked["effects"]
         before = earlier_case(asked.get("before"), fit, case, self._fit)
@@ -64,6 +69,14 @@ class HybridWork(InOnePiece):
             "spread": drawn.to_json() if drawn else None,
             "records": base64.b85encode(packed(runs)).decode(),
         }
+
+    def _parts(self, asked: Mapping[str, Any], fit: FitResult, case: CoupledCase) -> State:
+        """The same of several actuators."""
+        main, alone = simulated(asked, fit, case, self._blob, self.task.report)
+        return {
+            "result": main.to_json(), "without": alone.to_json() if alone else None, "map": None,
+            "records": base64.b85encode(packed_parts(main.parts, alone.parts if alone else None)).decode(),
+        }  # fmt: skip
 
     def _fit(self, name: str) -> FitResult:
         return FitResult.from_json(json.loads(self._blob(name)))

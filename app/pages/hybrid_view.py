@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
+from urllib.parse import urlencode
 
 from app.pages.control_view import ControlView, Earlier, case_called, said_of
 from app.pages.job_view import JobPageView
@@ -12,6 +13,7 @@ from ident.custom.definition import preset_with
 from ident.effects import CATALOGUE
 from ident.effects.effect import Effect
 from ident.figures import DRAWINGS, subjects
+from ident.figures.delay_map import DELAY_MAP
 from ident.fit.result import FitResult
 from ident.hybrid.acting import NAMED
 from ident.hybrid.followed import Followed
@@ -29,7 +31,7 @@ _NAMED = {
     "kalman": "delay compensation from live estimates (Kalman)",
     "feedforward": "feedforward from the inverse of the model",
 }
-_FIGURES = {drawing.name: drawing.title for drawing in DRAWINGS if drawing.of is subjects.Simulated}
+_FIGURES = {drawing.name: drawing.title for drawing in DRAWINGS if drawing.of in (subjects.Simulated, subjects.Coupled)}
 _COMPARED = {
     "tracking_rms": ("Tracking, RMS", "measured against numerical"),
     "tracking_peak": ("Tracking, peak", "measured against numerical"),
@@ -37,6 +39,9 @@ _COMPARED = {
     "reference_peak": ("Reference, peak", "measured against reference"),
     "numerical_rms": ("Numerical, RMS", "numerical against reference"),
 }
+
+
+Figure = tuple[str, str, str, str]
 
 
 @dataclass(frozen=True)
@@ -64,7 +69,8 @@ class Simulated:
     """What a hybrid simulation gave: the verdict, scores (name, displacements compared, values), facts, figures.
 
     Scores are those under the controller and, where the same was simulated `without` one, those beside them.
-    `figures` are address, name and title of each.
+    `figures` are address, name, title and query of each. Of several actuators `by_part` has the scores of each of the
+    `parts`.
     """
 
     id: str
@@ -77,8 +83,10 @@ class Simulated:
     scores: tuple[tuple[str, str, str, str], ...]
     facts: tuple[tuple[str, str], ...]
     notes: tuple[str, ...]
-    figures: tuple[tuple[str, str, str], ...]
+    figures: tuple[Figure, ...]
     without: bool
+    parts: tuple[str, ...] = ()
+    by_part: tuple[tuple[str, str, tuple[str, ...]], ...] = ()
 
 
 @dataclass(frozen=True)
@@ -171,9 +179,30 @@ def _simulated(one: HybridView) -> Simulated:
         scores=tuple(_scores(found)),
         facts=tuple(_facts(found)),
         notes=tuple(one.notes),
-        figures=tuple((f"{at}/{name}", name, _FIGURES.get(name, name)) for name in one.figures),
-        without=one.without is not None,
+        figures=tuple(_figures(one, at)),
+        without=one.without is not None and not one.parts,
+        parts=tuple(part.name for part in one.parts),
+        by_part=tuple(_by_part(one)),
     )
+
+
+def _figures(one: HybridView, at: str) -> Iterator[Figure]:
+    """Address, name, title and query of each figure, of several actuators those of each part."""
+    for name in one.figures:
+        told = _FIGURES.get(name, name)
+        if not one.parts or name == DELAY_MAP.name:
+            yield f"{at}/{name}", name, told, ""
+            continue
+        for number, part in enumerate(one.parts, 1):
+            yield f"{at}/{name}", f"{name}-{number}", f"{told}, {part.name}", urlencode({"part": part.name})
+
+
+def _by_part(one: HybridView) -> Iterator[tuple[str, str, tuple[str, ...]]]:
+    """Of several actuators a score, what it compares, and its value for each part."""
+    found = [part.model_dump() for part in one.parts]
+    rows = [tuple(_scores({**part, "without": None})) for part in found]
+    for of_all in zip(*rows, strict=True):
+        yield of_all[0][0], of_all[0][1], tuple(row[2] for row in of_all)
 
 
 def _verdict(found: Mapping[str, Any]) -> str:

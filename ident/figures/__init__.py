@@ -53,6 +53,7 @@ _FILES = (
     "hybrid_time",
     "hybrid_response",
     "share_map",
+    "delay_map",
     "feedforward",
     "what_if_response",
     "root_locus",

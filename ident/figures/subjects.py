@@ -11,6 +11,7 @@ from ident.errors import Unusable
 from ident.fit.result import FitResult
 from ident.hybrid.case import Case
 from ident.hybrid.controller_design import ControllerDesign
+from ident.hybrid.coupled_stability import DelayMap
 from ident.hybrid.followed import Followed
 from ident.hybrid.rig import HybridResult
 from ident.hybrid.share_map import ShareMap
@@ -97,6 +98,14 @@ class Simulated:
     def controller(self) -> str:
         """Of the simulation that was asked for."""
         return next(iter(self.runs))
+
+
+@dataclass(frozen=True)
+class Coupled:
+    """What holds for all actuators of a hybrid simulation, and the name of its case."""
+
+    delay_map: DelayMap
+    case: str
 
 
 @dataclass(frozen=True)

@@ -10,10 +10,9 @@ from ident.errors import Unusable
 from ident.fit.result import FitResult
 from ident.hybrid.case import Case
 from ident.hybrid.compensation import Compensation
-from ident.hybrid.controller import SampledController
+from ident.hybrid.controller import Controller, SampledController, no_controller
 from ident.hybrid.feedforward import FeedforwardController
 from ident.hybrid.followed import plant_in
-from ident.hybrid.rig import Controller, no_controller
 from ident.hybrid.substructure import reference
 from ident.units.quantity import shown
 from ident.words.nearest import did_you_mean

@@ -1,7 +1,7 @@
 """The case of a hybrid simulation: the structure, what of it is physical, the actuator's loop, and the ground motion.
 
     structure:  {mass: 87.5 kg, stiffness: 87.5 kN/m, damping: 3.5 kN*s/m}
-    physical:   {mass: 8.75 kg, stiffness: 17.5 kN/m, damping: 0 N*s/m, storey: 1}
+    physical:   {mass: 8.75 kg, stiffness: 17.5 kN/m, damping: 0 N*s/m, storey: 1}   # a list: coupled_reading.py
     gain: 2                     # Kp of the actuator's loop, or 160 V/m where the loop's output is a voltage
     piston_area: 497 mm^2       # where the fit knew one: it is no parameter of the model; so supply_pressure
     ground:     {file: el_centro.txt, unit: g, step: 0.02 s, scale: 1}      # or the record itself: {text: ..., name}
@@ -42,6 +42,7 @@ _KEYS = (
     "name", "structure", "physical", "gain", "piston_area", "supply_pressure", "ground", "sample_rate", "delay",
     "noise", "rig",
 )  # fmt: skip
+_STRUCTURE = ("mass", "stiffness", "damping")
 _LARGEST, _STOREYS = 1_000_000, 12
 _LATEST = 500
 """Samples: the longest delay of a command; each is a state of the loop whose poles are sought."""
@@ -64,12 +65,13 @@ class Noise:
 class Case:
     """One hybrid simulation, SI.
 
-    M x'' + C x' + K x = −M 1 a(t) is the whole structure: `mass`, `stiffness`, `damping` (n, n) hold its physical part
-    too, x its displacements against the ground. `physical` is that part: mass, spring and damper between the ground and
-    storey `place` (0 is the lowest), which the actuator moves. `gain` is Kp of the actuator's loop, in V/m where its
-    output is a voltage; `delay` the samples from a measurement to the command that answers it, at least 1.
+    M x'' + C x' + K x = −M ι a(t) is the whole structure: `mass`, `stiffness`, `damping` (n, n) hold its physical part
+    too, x its displacements against the ground; ι says which of them the ground moves, all where `direction` is None.
+    `physical` is that part: mass, spring and damper between the ground and storey `place` (0 is the lowest), which the
+    actuator moves. `gain` is Kp of the actuator's loop, in V/m where its output is a voltage; `delay` the samples from
+    a measurement to the command that answers it, at least 1.
 
-    Raises Unusable where the matrices do not go together, or what is physical is more than there is.
+    Raises Unusable where the matrices do not go together.
     """
 
     name: str
@@ -86,10 +88,11 @@ class Case:
     delay: int = 1
     noise: Noise = field(default_factory=Noise)
     rig: RigLimits | None = None
+    direction: Array | None = None
 
     def __post_init__(self) -> None:
         n = len(self.mass)
-        for what in ("mass", "stiffness", "damping"):
+        for what in _STRUCTURE:
             given: Array = getattr(self, what)
             if given.shape != (n, n) or not 1 <= n <= _STOREYS or not np.allclose(given, given.T, rtol=1e-6):
                 raise Unusable("bad-case", f"{what} is no symmetric matrix of {n} rows", "structure",
@@ -106,9 +109,6 @@ class Case:
             raise Unusable(
                 "bad-case", "the structure does not stand by itself", "structure stiffness", "correct its stiffness"
             )
-        # A substructure without mass has no motion of its own to integrate.
-        if np.linalg.eigvalsh(self.numerical_mass).min() <= 0:
-            raise Unusable("bad-case", "no mass is left in the numerical part", "physical mass", "give less of it")
         if not 1 <= self.delay <= _LATEST:
             raise Unusable("bad-case", f"a delay of {self.delay:.6g} samples", "delay",
                            f"give 1, with which the command is computed before it acts, to {_LATEST}")  # fmt: skip
@@ -119,6 +119,21 @@ class Case:
     def storeys(self) -> int:
         """The number n of degrees of freedom."""
         return len(self.mass)
+
+    @property
+    def cases(self) -> tuple[Case, ...]:
+        """Itself, as a case of several actuators has one of each."""
+        return (self,)
+
+    @property
+    def places(self) -> tuple[int, ...]:
+        """The storey that is moved, as a case of several actuators has them."""
+        return (self.place,)
+
+    @property
+    def influence(self) -> Array:
+        """ι: how far each degree of freedom goes with the ground, (n,)."""
+        return np.ones(self.storeys) if self.direction is None else self.direction
 
     @property
     def numerical_mass(self) -> Array:
@@ -154,7 +169,7 @@ class Case:
         if str(given) in ("blwn", "sine"):
             return replace(self, ground=replace(self.ground, kind=str(given)))
         if path.suffix.lower() in (".yaml", ".yml"):
-            return replace(self, ground=ground_of(_yaml(path), path.parent, self.ground))
+            return replace(self, ground=ground_of(yaml_in(path), path.parent, self.ground))
         return replace(self, ground=replace(self.ground, kind="record", file=str(path)))
 
 
@@ -224,14 +239,21 @@ def read_case(given: str | Path) -> Case:
     """A case by its name (see :data:`BUILT_IN`) or from a YAML file. Raises Unusable with the field at fault."""
     if str(given) in BUILT_IN:
         return BUILT_IN[str(given)]()
+    path = case_in(given)
+    return case_of(yaml_in(path), path.parent, path.stem)
+
+
+def case_in(given: str | Path) -> Path:
+    """The file of a case that is not built in. Raises Unusable where there is none."""
     path = Path(given)
     if not path.is_file():
         remedy = did_you_mean(str(given), BUILT_IN, f"give {NAMES} or a YAML file")
         raise Unusable("no-such-case", f"no case {shown(given)!r}", "case", remedy)
-    return case_of(_yaml(path), path.parent, path.stem)
+    return path
 
 
-def _yaml(path: Path) -> Any:
+def yaml_in(path: Path) -> Any:
+    """The description in a file. Raises Unusable."""
     if not path.is_file():
         raise Unusable("no-such-file", "the file does not exist", str(path), "give its path")
     text = path.read_bytes()
@@ -245,12 +267,20 @@ def case_of(data: Any, base: Path | None = Path(), name: str = "case") -> Case:
 
     Raises Unusable with the field at fault.
     """
+    found = _case_of(data, base, name)
+    # A substructure without mass has no motion of its own to integrate.
+    if np.linalg.eigvalsh(found.numerical_mass).min() <= 0:
+        raise Unusable("bad-case", "no mass is left in the numerical part", "physical mass", "give less of it")
+    return found
+
+
+def _case_of(data: Any, base: Path | None, name: str) -> Case:
+    if isinstance(data, Mapping) and isinstance(data.get("physical"), list):
+        raise Unusable("several-parts", "the case has several parts", "physical", "name the one that is meant")
     top = Fields(data, "case", _KEYS)
-    structure = Fields(
-        top.need("structure", "give mass, stiffness, damping"), "structure", ("mass", "stiffness", "damping")
-    )
-    mass = _matrix(structure, "mass", "mass")
-    stiffness = _matrix(structure, "stiffness", "stiffness")
+    structure = Fields(top.need("structure", "give mass, stiffness, damping"), "structure", (*_STRUCTURE, "direction"))
+    mass = matrix(structure, "mass", "mass")
+    stiffness = matrix(structure, "stiffness", "stiffness")
     physical, place = _physical(top, mass, stiffness)
     delay = top.whole("delay", 1)
     rate, gain = sample_rate(top), loop_gain(top)
@@ -269,10 +299,23 @@ def case_of(data: Any, base: Path | None = Path(), name: str = "case") -> Case:
         delay=delay,
         noise=_noise(top.data["noise"]) if "noise" in top else Noise(),
         rig=rig_of(top.data["rig"]) if "rig" in top else None,
+        direction=_direction(structure, len(mass)),
     )
 
 
-def _matrix(fields: Fields, key: str, dimension: str) -> Array:
+def _direction(structure: Fields, count: int) -> Array | None:
+    """How far each degree of freedom goes with the ground, (n,); None where nothing is stated: all alike."""
+    if "direction" not in structure:
+        return None
+    given = structure.data["direction"]
+    numbers = [one for one in given if isinstance(one, int | float)] if isinstance(given, list) else []
+    if len(numbers) != count or not np.isfinite(numbers).all():
+        raise Unusable("bad-case", "not one number for each degree of freedom", "structure direction",
+                       f"give {count} numbers")  # fmt: skip
+    return np.array(numbers, dtype=float)
+
+
+def matrix(fields: Fields, key: str, dimension: str) -> Array:
     """A number, a diagonal or a matrix with units, (n, n)."""
     value, where = fields.need(key, f"give the structure's {key}"), fields.place(key)
     unit = ""
@@ -303,7 +346,7 @@ def _damping(structure: Fields, mass: Array, stiffness: Array) -> Array:
     if isinstance(value, Mapping) and "ratio" in value:
         ratio = Fields(value, "structure damping", ("ratio",)).number("ratio") or 0.0
         return modal_damping(mass, stiffness, ratio)
-    return _matrix(structure, "damping", "damping")
+    return matrix(structure, "damping", "damping")
 
 
 def _physical(top: Fields, mass: Array, stiffness: Array) -> tuple[Specimen, int]:

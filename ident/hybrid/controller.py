@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Protocol
 
 import numpy as np
 
@@ -52,3 +52,26 @@ class SampledController(StateSpace):
         except (KeyError, TypeError, ValueError, AttributeError) as error:
             raise Unusable("bad-controller", f"not the JSON of a controller: {error}", "controller",
                            "give the controller.json that `servoident control` wrote") from None  # fmt: skip
+
+
+class Compensator(Protocol):
+    """A controller that is no sampled linear one: what is wanted and what was measured in, the command out, all m."""
+
+    def step(self, d: float, y: float) -> float:
+        """The command u(k) that answers d(k) and y(k), called once a sample, in their order."""
+        ...
+
+
+Controller = SampledController | Compensator
+
+
+def no_controller(sample_rate: float) -> SampledController:
+    """u = d: the machine is told what is wanted."""
+    return SampledController(
+        np.zeros((0, 0)), np.zeros((0, 2)), np.zeros((1, 0)), np.array([[1.0, 0.0]]), sample_rate, "none"
+    )
+
+
+def name_of(controller: Controller) -> str:
+    """What a controller is called: by its own name, else by what it is."""
+    return getattr(controller, "name", "") or type(controller).__name__.lower()

@@ -12,13 +12,14 @@ from numpy.typing import NDArray
 
 from ident.fit.result import FitResult
 from ident.hybrid.case import Case
-from ident.hybrid.controller import SampledController
+from ident.hybrid.controller import SampledController, no_controller
 from ident.hybrid.draws import DRAWS, Covariance, Spread, drawn_parameters
 from ident.hybrid.hybrid_loop import HybridLoop
 from ident.hybrid.interval import Interval
 from ident.hybrid.loop import LANES
 from ident.hybrid.machine import Machine, machine
-from ident.hybrid.rig import RUNAWAY, no_controller, rig_of, run
+from ident.hybrid.rig import RUNAWAY
+from ident.hybrid.rig_assembly import rig_of, run
 from ident.hybrid.scores import rms
 from ident.hybrid.stability import spectral_radius
 from ident.hybrid.substructure import reference
@@ -116,8 +117,8 @@ def _with_values(fit: FitResult, values: Mapping[str, float]) -> FitResult:
 def _group(machines: tuple[Machine, ...], case: Case, acting: SampledController, ground: Array, wanted: Array) -> Array:
     """Stable, and the quantities of up to sixteen machines, (count, 1 + q); NaN where there is none."""
     cases = (case,) * len(machines)
-    _kept, rig = rig_of(machines, cases, acting, ground, RUNAWAY * float(np.abs(wanted).max()))
-    run(rig, acting)
+    _kept, rig = rig_of(machines, cases, (acting,), ground, np.full(len(cases), RUNAWAY * np.abs(wanted).max()))
+    run(rig, (acting,))
     rows = np.full((len(machines), 1 + len(QUANTITIES)), np.nan)
     for lane, of in enumerate(machines):
         kept = rig.ended[lane] >= len(ground)

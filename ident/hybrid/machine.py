@@ -9,9 +9,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ident.cached import cached_property
-from ident.chain.chain import Chain
+from ident.chain.chain import FORCE as INTERACTION
+from ident.chain.chain import INPUT, INPUT_RATE, MEASURED, STEP, Chain
 from ident.chain.conditions import conditions
 from ident.custom.definition import preset_with
+from ident.equations.grammar import TIME
 from ident.errors import Unusable
 from ident.fit.result import FitResult
 from ident.hybrid.case import Case
@@ -70,6 +72,19 @@ class Machine:
         on = [effect for effect in self.chain.effects if known[effect.added[0].in_equations][0]]
         return int(steps_needed(self.chain, fastest, "zoh", on, band, self.kinks)[0])
 
+    @property
+    def has_inertia(self) -> bool:
+        """Whether forces accelerate it: a machine without moves its specimen whatever that takes."""
+        return "a" in self.chain.units
+
+    def moved_mass(self, case: Case) -> float:
+        """The mass (kg) that a force on the specimen accelerates, rod and specimen; 0 where none does."""
+        if not self.has_inertia:
+            return 0.0
+        still = dict.fromkeys((*self.chain.states, *(f"{name}__old" for name in self.chain.memories)), 0.0)
+        still |= dict.fromkeys((INPUT, INPUT_RATE, *MEASURED, TIME), 0.0) | {STEP: 1.0}
+        return float(self.chain.signals_at({**self.at(case), **still})["M"])
+
     @cached_property
     def nonlinear(self) -> tuple[str, ...]:
         """What is not linear at small signals, so that poles do not tell: the effects that are on, the core itself."""
@@ -81,6 +96,28 @@ class Machine:
             for effect in self.chain.effects
             if self.values[effect.added[0].in_equations] and not core.with_effects((effect,)).is_linear
         )
+
+
+JOINED = ("specimen position", "specimen speed", "specimen acceleration")
+"""Channels of a machine whose specimen is joined to others, in addition to what is measured."""
+FELT = "fx"
+"""The symbol of what the others make it feel, N, where small signals are taken."""
+
+
+def joined(chain: Chain, felt: str = INTERACTION) -> Chain:
+    """The chain whose specimen is pushed back by an interaction `felt` (N), an input or a symbol, and shows its motion.
+
+    S = … + E, with E what the specimens of other actuators make it feel.
+    """
+    stages = tuple(_pushed(one, felt) if one.place == MASS_SPRING_DAMPER.place else one for one in chain.stages)
+    own = "a" if "a" in chain.units else "vL"
+    shown = dict(zip(JOINED, ("xL", "vL", own), strict=True))
+    return replace(chain, stages=stages, outputs={**chain.outputs, **shown})
+
+
+def _pushed(load: Stage, felt: str) -> Stage:
+    own = next(equation for equation in load.equations if equation.target == "S")
+    return load.with_equations((f"S = {own.python} + {felt}", f"{own.meaning}; what joins it to others"))
 
 
 def machine(fit: FitResult, case: Case, effects: Mapping[str, float] | None = None) -> Machine:

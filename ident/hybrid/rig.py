@@ -5,23 +5,22 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import asdict, dataclass, replace
 from time import perf_counter
-from typing import Any, Protocol
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ident.fit.result import FitResult
 from ident.hybrid.case import Case
-from ident.hybrid.controller import SampledController
+from ident.hybrid.controller import Controller, SampledController, name_of, no_controller
 from ident.hybrid.hybrid_loop import EarlierCase, judge_hybrid
-from ident.hybrid.loop import LANES, Rig, advance_under, close, read
-from ident.hybrid.machine import DISPLACEMENT, FORCE, Machine, machine
+from ident.hybrid.machine import Machine, machine
+from ident.hybrid.rig_assembly import rig_of, run
 from ident.hybrid.rig_limits import leaving
 from ident.hybrid.scores import Scores, scores
 from ident.hybrid.stability import critical_delay, spectral_radius
-from ident.hybrid.substructure import numerical, reference
-from ident.progress import Progress, Report, silent
-from ident.simulation.stepper import Stepper, stepper
+from ident.hybrid.substructure import reference
+from ident.progress import Report, silent
 from ident.stability.judgement import STABLE, UNSTABLE, Judgement
 from ident.words.engineering import quantity
 from ident.words.message import message
@@ -31,31 +30,6 @@ from ident.words.shown import Listing, Shown
 Array = NDArray[np.float64]
 RUNAWAY = 50.0
 """Times the largest displacement of the reference: beyond it a hybrid simulation has run away."""
-_CHUNK = 8192  # samples between two reports
-_STAGE = "hybrid simulation"
-
-
-class Compensator(Protocol):
-    """A controller that is no sampled linear one: what is wanted and what was measured in, the command out, all m."""
-
-    def step(self, d: float, y: float) -> float:
-        """The command u(k) that answers d(k) and y(k), called once a sample, in their order."""
-        ...
-
-
-Controller = SampledController | Compensator
-
-
-def no_controller(sample_rate: float) -> SampledController:
-    """u = d: the machine is told what is wanted."""
-    return SampledController(
-        np.zeros((0, 0)), np.zeros((0, 2)), np.zeros((1, 0)), np.array([[1.0, 0.0]]), sample_rate, "none"
-    )
-
-
-def name_of(controller: Controller) -> str:
-    """What a controller is called: by its own name, else by what it is."""
-    return getattr(controller, "name", "") or type(controller).__name__.lower()
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -174,8 +148,8 @@ def simulate_machine(
     acting = controller or no_controller(case.sample_rate)
     ground = case.ground.samples(case.sample_rate)
     wanted = reference(case, ground)
-    _kept, rig = rig_of((of,), (case,), acting, ground, RUNAWAY * float(np.abs(wanted).max()))
-    run(rig, acting, report)
+    _kept, rig = rig_of((of,), (case,), (acting,), ground, RUNAWAY * np.abs(wanted).max(keepdims=True))
+    run(rig, (acting,), report)
     ended = int(rig.ended[0])
     kept = ended >= len(ground)
     radius = None
@@ -199,11 +173,12 @@ def simulate_machine(
         reference=wanted,
         command=u,
         force=rig.f[:, 0],
-        notes=_notes(of),
+        notes=notes_of(of),
     )
 
 
-def _notes(of: Machine) -> tuple[str, ...]:
+def notes_of(of: Machine) -> tuple[str, ...]:
+    """What is to be known of a simulation of a machine."""
     found = []
     if of.nonlinear:
         names = ", ".join(of.nonlinear)
@@ -211,62 +186,3 @@ def _notes(of: Machine) -> tuple[str, ...]:
     if any(effect.of_specimen for effect in of.chain.effects):
         found.append("the reference is the structure as stated, without the effects of the specimen")
     return tuple(found)
-
-
-def run(rig: Rig, acting: Controller, report: Report = silent) -> None:
-    """Take a rig through its whole record, or until everything in it has run away."""
-    n = len(rig.ground)
-    for first in range(0, n, _CHUNK):
-        report(Progress(_STAGE, first, n))
-        last = min(first + _CHUNK, n)
-        if isinstance(acting, SampledController):
-            if not advance_under(first, last, rig):
-                break
-        elif not _under(first, last, rig, acting):
-            break
-    report(Progress(_STAGE, n, n))
-
-
-def _under(first: int, last: int, rig: Rig, acting: Compensator) -> bool:
-    """Samples under a controller that is asked sample by sample; whether the system is still there."""
-    step = acting.step
-    for k in range(first, last):
-        d, y = read(k, rig)
-        if rig.ended[0] <= k:
-            return False
-        close(k, 0, step(d, y), rig)
-    return True
-
-
-def rig_of(
-    machines: tuple[Machine, ...], cases: tuple[Case, ...], acting: Controller, ground: Array, limit: float
-) -> tuple[Stepper, Rig]:
-    """The rig of up to sixteen machines, each in its case, side by side, at rest.
-
-    The machines share their equations, and the cases all but their physical part. The stepper keeps the machine code
-    that the rig calls.
-    """
-    n, count, case, of = len(ground), len(cases), cases[0], machines[0]
-    known = [one.at(its) for one, its in zip(machines, cases, strict=True)]
-    values = {name: np.array([entry[name] for entry in known]) for name in of.chain.symbols}
-    steps = max(one.steps(its) for one, its in zip(machines, cases, strict=True))
-    built = stepper(of.chain, values, case.sample_rate, steps, (DISPLACEMENT, FORCE))
-    parts = [numerical(one) for one in cases]
-    linear = acting if isinstance(acting, SampledController) else no_controller(case.sample_rate)
-    rng = np.random.default_rng(case.noise.seed)
-    noise = rng.standard_normal((n, 2)) * [case.noise.displacement, case.noise.force]
-    return built, Rig(
-        code=built.code, buffer=built.buffer, command=built.command, displacement=built.shown[0], force=built.shown[1],
-        steps=built.steps, whole=built.whole, broken=built.share > 0, lanes=built.lanes,
-        window=np.zeros(LANES * built.steps), places=np.zeros(LANES, dtype=np.int64), spare=np.zeros(LANES),
-        delay=case.delay, held=np.zeros((n + case.delay, count)),
-        phi=np.array([part.phi for part in parts]),
-        drives=np.array([[part.force0, part.force1, part.ground0, part.ground1] for part in parts]),
-        place=case.place, z=np.zeros((count, 2 * case.storeys)), before=np.zeros(count),
-        A=linear.A, B=linear.B, C=linear.C, D=linear.D, x=np.zeros((count, linear.order)),
-        ground=ground, noise=noise,
-        quantum=np.array([case.noise.displacement_step, case.noise.force_step]),
-        d=np.zeros((n, count)), y=np.zeros((n, count)), f=np.zeros((n, count)),
-        limit=np.full(count, limit), ended=np.full(count, n, dtype=np.int64),
-        scratch=np.zeros(max(2 * case.storeys, linear.order)),
-    )  # fmt: skip

@@ -13,10 +13,11 @@ from numpy.typing import NDArray
 from ident.errors import Unusable
 from ident.fit.result import FitResult
 from ident.hybrid.case import Case
-from ident.hybrid.controller import SampledController
+from ident.hybrid.controller import SampledController, no_controller
 from ident.hybrid.loop import LANES
 from ident.hybrid.machine import Machine, machine
-from ident.hybrid.rig import RUNAWAY, no_controller, rig_of, run
+from ident.hybrid.rig import RUNAWAY
+from ident.hybrid.rig_assembly import rig_of, run
 from ident.hybrid.scores import rms
 from ident.hybrid.stability import critical_delay, spectral_radius
 from ident.hybrid.substructure import reference
@@ -114,8 +115,10 @@ def share_map(
 
 def _group(of: Machine, cases: tuple[Case, ...], acting: SampledController, ground: Array, wanted: Array) -> Array:
     """Stable, reference_rms, tracking_rms and critical delay of up to sixteen cases, (count, 4)."""
-    _kept, rig = rig_of((of,) * len(cases), cases, acting, ground, RUNAWAY * float(np.abs(wanted).max()))
-    run(rig, acting)
+    _kept, rig = rig_of(
+        (of,) * len(cases), cases, (acting,), ground, np.full(len(cases), RUNAWAY * np.abs(wanted).max())
+    )
+    run(rig, (acting,))
     rows = np.full((len(cases), 4), np.nan)
     for lane, case in enumerate(cases):
         kept = rig.ended[lane] >= len(ground)

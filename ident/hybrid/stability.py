@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any
+from collections.abc import Sequence
 
 import numpy as np
 import scipy.linalg
@@ -10,7 +10,9 @@ from numpy.typing import NDArray
 
 from ident.hybrid.case import Case
 from ident.hybrid.controller import SampledController
-from ident.hybrid.machine import DISPLACEMENT, FORCE, Machine
+from ident.hybrid.coupled_case import System
+from ident.hybrid.joint_machines import joint_machines
+from ident.hybrid.machine import Machine
 from ident.hybrid.substructure import numerical
 from ident.run import Specimen
 
@@ -96,30 +98,45 @@ def closed_loop(
 
     The numerical part is given `force` (b,) times what the load cell reads; the servo loop has `gain` (b,) times Kp.
     """
-    phi, drive, read, through = _held(of, case, gain)
-    part, delay = numerical(case), case.delay
-    sizes = (phi.shape[-1], len(part.phi), controller.order, delay, 1)
-    at = np.cumsum((0, *sizes))
-    s, z, x, held, before = (slice(at[i], at[i + 1]) for i in range(5))
+    return coupled_loop((of,), case, (controller,), force, gain)
+
+
+def coupled_loop(
+    machines: Sequence[Machine], system: System, controllers: Sequence[SampledController], force: Array = _ONE,
+    gain: Array = _ONE,
+) -> Array:  # fmt: skip
+    """As :func:`closed_loop`, of as many machines, each under its controller, as the system has parts."""
+    parts = range(len(machines))
+    phi, drive, read, through = _held(machines, system, gain)
+    part, delays = numerical(system), [case.delay for case in system.cases]
+    orders = [one.order for one in controllers]
+    sizes = (phi.shape[-1], len(part.phi), sum(orders), sum(delays), len(parts))
+    s, z, x, held, before = (slice(b - a, b) for a, b in zip(sizes, np.cumsum(sizes), strict=True))
+    own = [slice(x.start + sum(orders[:p]), x.start + sum(orders[: p + 1])) for p in parts]
+    line = [slice(held.start + sum(delays[:p]), held.start + sum(delays[: p + 1])) for p in parts]
+    first = [one.start for one in line]
     count = np.broadcast_shapes(force.shape, gain.shape)
-    row = np.zeros((3, *count, at[-1]))  # y, f and d of what is known at a sample
-    row[:2, :, s], row[:2, :, held.start] = read, through
-    row[1] *= force[:, None]
-    row[2, :, z.start + part.place] = 1.0
-    u = controller.D[0, 0] * row[2] + controller.D[0, 1] * row[0]
-    u[:, x] += controller.C[0]
-    system = np.zeros((*count, at[-1], at[-1]))
-    system[:, s, s], system[:, s, held.start] = phi, drive
-    system[:, z, z] = part.phi
-    system[:, z] += _outer(part.force0 + 2 * part.force1, row[1])
-    system[:, z, before.start] -= part.force1
-    system[:, x, x] = controller.A
-    system[:, x] += _outer(controller.B[:, 0], row[2]) + _outer(controller.B[:, 1], row[0])
-    for i in range(delay - 1):
-        system[:, held.start + i, held.start + i + 1] = 1.0
-    system[:, held.stop - 1] = u
-    system[:, before.start] = row[1]
-    return system
+    y, f, d = np.zeros((3, len(parts), *count, before.stop))  # of what is known at a sample
+    for p in parts:
+        y[p][:, s], y[p][:, first] = read[p], through[p]
+        f[p][:, s], f[p][:, first] = read[len(parts) + p], through[len(parts) + p]
+        f[p] *= force[:, None]
+        d[p][:, z.start + part.places[p]] = 1.0
+    system_matrix = np.zeros((*count, before.stop, before.stop))
+    system_matrix[:, s, s], system_matrix[:, s, first] = phi, drive
+    system_matrix[:, z, z] = part.phi
+    for p, K in enumerate(controllers):
+        system_matrix[:, z] += _outer(part.force0[p] + 2 * part.force1[p], f[p])
+        system_matrix[:, z, before.start + p] -= part.force1[p]
+        u = K.D[0, 0] * d[p] + K.D[0, 1] * y[p]
+        u[:, own[p]] += K.C[0]
+        system_matrix[:, own[p], own[p]] = K.A
+        system_matrix[:, own[p]] += _outer(K.B[:, 0], d[p]) + _outer(K.B[:, 1], y[p])
+        for i in range(line[p].start, line[p].stop - 1):
+            system_matrix[:, i, i + 1] = 1.0
+        system_matrix[:, line[p].stop - 1] = u
+        system_matrix[:, before.start + p] = f[p]
+    return system_matrix
 
 
 def _outer(column: Array, rows: Array) -> Array:
@@ -127,15 +144,14 @@ def _outer(column: Array, rows: Array) -> Array:
     return column[:, None] * rows[:, None, :]
 
 
-def _held(of: Machine, case: Case, gain: Array) -> tuple[Array, Array, Array, Array]:
-    """The machine from sample to sample under a held command, (b, n, n) and (b, n), and how y and f read it."""
-    known = of.at(case)
-    values: dict[str, Any] = {name: known[name] for name in of.chain.symbols}
-    values["Kp"] = known.get("Kp", 1.0) * gain
-    models = [of.chain.linearise(values, channel) for channel in (DISPLACEMENT, FORCE)]
-    A, B, n = models[0].A, models[0].B, models[0].A.shape[-1]
-    system = np.zeros((len(gain), n + 1, n + 1))
-    system[:, :n, :n], system[:, :n, n] = A, B
-    found = scipy.linalg.expm(system / case.sample_rate)
-    read, through = np.array([model.C for model in models]), np.array([model.D for model in models])
-    return found[:, :n, :n], found[:, :n, n], read, through
+def _held(machines: Sequence[Machine], system: System, gain: Array) -> tuple[Array, Array, Array, Array]:
+    """The machines from sample to sample under held commands, (b, n, n) and (b, n, P), and how y and f read them.
+
+    Both (2P, b, n) and (2P, b, P): first the displacements, then the forces.
+    """
+    A, B, C, D = joint_machines(machines, system, gain)
+    n, parts = B.shape[-2:]
+    block = np.zeros((len(gain), n + parts, n + parts))
+    block[:, :n, :n], block[:, :n, n:] = A, B
+    found = scipy.linalg.expm(block / system.sample_rate)
+    return found[:, :n, :n], found[:, :n, n:], np.moveaxis(C, 1, 0), np.moveaxis(D, 1, 0)

@@ -9,6 +9,7 @@ import scipy.linalg
 from numpy.typing import NDArray
 
 from ident.hybrid.case import Case
+from ident.hybrid.coupled_case import System
 from ident.simulation.jit import jit
 
 Array = NDArray[np.float64]
@@ -16,12 +17,12 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True, eq=False)
 class Substructure:
-    """M_n x'' + C_n x' + K_n x = −M 1 a(t) − e f(t) from sample to sample, z = [x, x'].
+    """M_n x'' + C_n x' + K_n x = −M ι a(t) − Σ e_p f_p(t) from sample to sample, z = [x, x'].
 
-    z(k+1) = Φ z(k) + F0 f(k) + F1 f̂(k+1) + G0 a(k) + G1 a(k+1), exact for straight lines between samples; the force of
-    the next sample is not measured yet, and f̂(k+1) = 2 f(k) − f(k−1) goes on as it came. The force of the ground acts
-    on the whole mass: the specimen stands still against the ground where the structure does, so its load cell knows
-    nothing of it. Φ (2n, 2n), the others (2n,); e picks storey `place`.
+    z(k+1) = Φ z(k) + Σ (F0_p f_p(k) + F1_p f̂_p(k+1)) + G0 a(k) + G1 a(k+1), exact for straight lines between samples;
+    the forces of the next sample are not measured yet, and f̂(k+1) = 2 f(k) − f(k−1) goes on as it came. The force of
+    the ground acts on the whole mass: the specimen stands still against the ground where the structure does, so its
+    load cell knows nothing of it. Φ (2n, 2n), forces (P, 2n), ground (2n,); e_p picks the storey `places[p]`.
     """
 
     phi: Array
@@ -29,12 +30,18 @@ class Substructure:
     force1: Array
     ground0: Array
     ground1: Array
-    place: int
+    places: tuple[int, ...]
+
+    @property
+    def drives(self) -> Array:
+        """What drives it, (2P + 2, 2n): of each f_p(k) and f̂_p(k+1), then of a(k) and a(k+1)."""
+        forces = [one for both in zip(self.force0, self.force1, strict=True) for one in both]
+        return np.array([*forces, self.ground0, self.ground1])
 
 
-def numerical(case: Case) -> Substructure:
+def numerical(of: System) -> Substructure:
     """The part that is left to the computer."""
-    return _sampled(case, case.numerical_mass, case.numerical_damping, case.numerical_stiffness)
+    return _sampled(of, of.numerical_mass, of.numerical_damping, of.numerical_stiffness)
 
 
 def reference(case: Case, ground: Array) -> Array:
@@ -59,19 +66,19 @@ def _recursion(phi: Array, now: Array, then: Array, drive: Array, place: int) ->
     return out
 
 
-def _sampled(case: Case, mass: Array, damping: Array, stiffness: Array) -> Substructure:
-    n = case.storeys
-    inverse, period = np.linalg.inv(mass), 1.0 / case.sample_rate
-    pushed = np.zeros((n, 2))
-    pushed[case.place, 0] = -1.0
-    pushed[:, 1] = -case.mass @ np.ones(n)
+def _sampled(of: System, mass: Array, damping: Array, stiffness: Array) -> Substructure:
+    n, parts = of.storeys, len(of.places)
+    inverse, period, drives = np.linalg.inv(mass), 1.0 / of.sample_rate, parts + 1
+    pushed = np.zeros((n, drives))
+    pushed[of.places, range(parts)] = -1.0
+    pushed[:, parts] = -of.mass @ of.influence
     # A ramp over one sample, and a constant, drive the system: one exponential holds both responses.
-    system = np.zeros((2 * n + 4, 2 * n + 4))
+    system = np.zeros((2 * n + 2 * drives, 2 * n + 2 * drives))
     system[:n, n : 2 * n] = np.eye(n)
     system[n : 2 * n, :n], system[n : 2 * n, n : 2 * n] = -inverse @ stiffness, -inverse @ damping
-    system[n : 2 * n, 2 * n : 2 * n + 2] = inverse @ pushed
-    system[2 * n : 2 * n + 2, 2 * n + 2 :] = np.eye(2) / period
+    system[n : 2 * n, 2 * n : 2 * n + drives] = inverse @ pushed
+    system[2 * n : 2 * n + drives, 2 * n + drives :] = np.eye(drives) / period
     found = scipy.linalg.expm(system * period)[: 2 * n]
-    constant, ramp = found[:, 2 * n : 2 * n + 2], found[:, 2 * n + 2 :]
-    first = constant - ramp
-    return Substructure(found[:, : 2 * n], first[:, 0], ramp[:, 0], first[:, 1], ramp[:, 1], case.place)
+    constant, ramp = found[:, 2 * n : 2 * n + drives], found[:, 2 * n + drives :]
+    first = (constant - ramp).T
+    return Substructure(found[:, : 2 * n], first[:-1], ramp.T[:-1], first[-1], ramp[:, -1], of.places)

@@ -48,6 +48,37 @@ contiguous.
 """
 
 
+def _typed_from(_typing: Any, code: Any, b: Any, b_from: Any, u: Any, fm: Any, u_at: Any, fm_at: Any, at_from: Any,
+                first: Any, last: Any, every: Any, out: Any, stride: Any) -> Any:  # fmt: skip
+    given = (code, b, b_from, u, fm, u_at, fm_at, at_from, first, last, every, out, stride)
+    taken = [types.int64 if isinstance(one, types.Integer) else one for one in given]
+
+    def generate(context: Any, builder: Any, signature: Any, values: Any) -> Any:
+        word, pointer = ir.IntType(64), ir.IntType(8).as_pointer()
+        kinds = [*[pointer] * _POINTERS, *[word] * _NUMBERS, pointer, word]
+        function = builder.inttoptr(values[0], ir.FunctionType(ir.VoidType(), kinds).as_pointer())
+        begins = {1: values[2], 5: values[7], 6: values[7]}
+
+        def place(i: int) -> Any:
+            made: Any = cgutils.create_struct_proxy
+            data = made(signature.args[i])(context, builder, value=values[i]).data
+            data = builder.gep(data, [begins[i]]) if i in begins else data
+            return builder.bitcast(data, pointer)
+
+        builder.call(function, [*map(place, (1, 3, 4, 5, 6)), *values[8:11], place(11), values[12]])
+        return context.get_dummy_value()
+
+    return types.void(*taken), generate
+
+
+advance_from: Any = intrinsic(_typed_from)
+"""As :data:`advance_at`, of a buffer that begins at `b_from` of b, and places at `at_from` of those arrays.
+
+``advance_from(code, b, b_from, u, fm, u_at, fm_at, at_from, first, last, every, out, stride)``: a loop that calls it
+each sample need not slice, which counts references.
+"""
+
+
 @jit(nogil=True)
 def advance_groups(
     code: int, groups: tuple[int, int], buffers: Array, u: Array, fm: Array, u_at: NDArray[np.int64],

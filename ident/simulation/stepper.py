@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ident.chain.chain import INPUT, STEP, Chain
+from ident.chain.chain import STEP, Chain
 from ident.errors import Unusable
 from ident.simulation.filters import pack_filter
 from ident.simulation.kernel import HELD, LANES, SHARE, WIDE, Kernel, constant, kernel
@@ -22,16 +22,16 @@ class Stepper:
 
     `code` is the address of the kernel's machine code for the first `lanes` lanes, for
     :func:`ident.simulation.machine_call.advance_at`; it lives as long as `kept` does. `buffer` (rows × 16,) holds the
-    states and is changed as they go on; `command` is the first of the three rows of the command (before, now, then),
-    `shown` are the rows of the channels, in their order. Each sample is divided into `steps`; a command acts `whole`
-    steps later, (16,), and the fraction `share` of one.
+    states and is changed as they go on; `inputs` has the first of the three rows (before, now, then) of the command and
+    of each other input, `shown` are the rows of the channels, in their order. Each sample is divided into `steps`; a
+    command acts `whole` steps later, (16,), and the fraction `share` of one.
     """
 
     code: int
     kept: object
     lanes: int
     buffer: Array
-    command: int
+    inputs: Mapping[str, int]
     shown: tuple[int, ...]
     steps: int
     whole: NDArray[np.int64]
@@ -53,12 +53,14 @@ class PackedKernel:
 
 
 def packed_kernel(
-    chain: Chain, values: Mapping[str, Array], sample_rate: float, steps: int, channels: tuple[str, ...]
-) -> PackedKernel:
+    chain: Chain, values: Mapping[str, Array], sample_rate: float, steps: int, channels: tuple[str, ...],
+    driven: tuple[str, ...] = (),
+) -> PackedKernel:  # fmt: skip
     """The kernel of a chain for `values` of every symbol, each (v,) with v at most 16, at `sample_rate` (Hz).
 
     `channels` are those whose readings are shown at the begin of each step. Raises Unusable where something measured
-    drives the chain beside its command: no loop knows it beforehand.
+    drives the chain in addition to its command, but for what the loop says that it is `driven` by: no loop knows it
+    beforehand.
     """
     count = max(np.size(value) for value in values.values())
     known = {name: np.array(values[name], dtype=np.float64) for name in chain.symbols}
@@ -66,7 +68,7 @@ def packed_kernel(
     lane = {name: _filled(np.broadcast_to(value, (count,))) for name, value in known.items()}
     exponents = {(name, float(lane[name][0])) for name in chain.exponents if np.ptp(lane[name]) == 0}
     built = kernel(chain, channels[0], frozenset(exponents), channels[1:])
-    if built.measured:
+    if set(built.measured) - set(driven):
         raise Unusable("no-loop", "its displacement depends on measured signals other than the command", "model",
                        "use a model that the command alone drives")  # fmt: skip
     delay = np.zeros(LANES)
@@ -84,17 +86,16 @@ def packed_kernel(
 
 
 def stepper(
-    chain: Chain, values: Mapping[str, Array], sample_rate: float, steps: int, channels: tuple[str, ...]
-) -> Stepper:
+    chain: Chain, values: Mapping[str, Array], sample_rate: float, steps: int, channels: tuple[str, ...],
+    driven: tuple[str, ...] = (),
+) -> Stepper:  # fmt: skip
     """The stepper of a chain; arguments and refusals are those of :func:`packed_kernel`."""
-    packed = packed_kernel(chain, values, sample_rate, steps, channels)
+    packed = packed_kernel(chain, values, sample_rate, steps, channels, driven)
     built, count = packed.kernel, max(np.size(value) for value in values.values())
     lanes = WIDE * -(-count // WIDE)
     code, kept = built.address(lanes)
     shown = (built.shown, *(built.beside[channel] for channel in channels[1:]))
-    return Stepper(
-        code, kept, lanes, packed.rows.ravel(), built.inputs[INPUT], shown, steps, packed.whole, packed.share
-    )
+    return Stepper(code, kept, lanes, packed.rows.ravel(), built.inputs, shown, steps, packed.whole, packed.share)
 
 
 def _filled(values: Array) -> Array:

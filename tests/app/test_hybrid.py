@@ -384,3 +384,36 @@ def test_a_target_of_one_s_own_and_one_that_no_loop_can_be(service, fitted):
     refused_by_service(service.post(f"{API}/controllers", json={"fit": "none"}), "no-such-fit", 404)
     late = {"fit": fitted, "case": OWN | {"delay": 65}}
     refused_by_service(service.post(f"{API}/controllers", json=late), "too-late")
+
+
+def test_two_actuators_over_http_have_their_own_fits_and_controllers(service, fitted, controller):
+    """A part with a stored controller, one with a stored fit: scores, figures of each, the map, and the page."""
+    case = {
+        "structure": {"mass": ["87.5 kg", "87.5 kg"], "damping": {"ratio": "5 %"},
+                      "stiffness": {"matrix": [[175, -87.5], [-87.5, 87.5]], "unit": "kN/m"}},
+        "physical": [{"name": "left", "storey": 1, "mass": "8 kg", "stiffness": "17.5 kN/m",
+                      "controller": controller["id"]},
+                     {"name": "right", "storey": 2, "stiffness": "10 kN/m", "gain": 5, "fit": fitted}],
+        "gain": 2, "piston_area": "497 mm^2",
+    }  # fmt: skip
+    body = {"fit": fitted, "case": case, "ground": RECORD, "map": True}
+    job = ended(service, service.post(f"{API}/hybrid-simulations", json=body))
+    assert job["state"] == "succeeded", job
+    found = service.get(f"{API}/hybrid-simulations/{job['id']}").json()
+    assert [part["name"] for part in found["parts"]] == ["left", "right"]
+    assert [part["controller"] for part in found["parts"]] == [controller["name"], "none"]
+    assert found["scores"]["tracking_rms"] == max(part["scores"]["tracking_rms"] for part in found["parts"])
+    assert len(found["without"]["parts"]) == 2
+    assert found["figures"] == ["displacement", "response", "delay-map"]
+    place = f"{API}/hybrid-simulations/{job['id']}/figures"
+    drawn = [service.get(f"{place}/displacement.json", params=query).json() for query in ({}, {"part": "right"})]
+    assert drawn[0]["datasets"] != drawn[1]["datasets"]
+    assert service.get(f"{place}/delay-map.svg").content.startswith(b"<svg")
+    refused_by_service(service.get(f"{place}/displacement.svg", params={"part": "middle"}), "unknown-part")
+    page = service.get(f"/fits/{fitted}/use", params={"simulation": job["id"]}).text
+    assert "Scores of each actuator" in page
+    assert "part=right" in page
+    part = {"fit": fitted, "case": case, "part": "left"}
+    assert service.post(f"{API}/controllers", json=part).json()["case"] == "own case, left"
+    refused_by_service(service.post(f"{API}/controllers", json={"fit": fitted, "case": case}), "several-parts")
+    refused_by_service(service.post(f"{API}/hybrid-simulations", json=body | {"before": {"gain": 2}}), "bad-option")

@@ -75,3 +75,44 @@ def test_bad_input_is_one_line(servoident, tmp_path):
         done = servoident("hybrid", FIT, *given)
         assert done.returncode == 2, done.stderr
         assert len(done.stderr.splitlines()[-1].split(";")) >= 2
+
+
+BEAM = """
+structure:
+  mass: [87.5 kg, 87.5 kg]
+  stiffness: {matrix: [[175, -87.5], [-87.5, 87.5]], unit: kN/m}
+  damping: {ratio: 5 %}
+physical:
+  - {name: left, storey: 1, mass: 8 kg, stiffness: 17.5 kN/m, controller: left/controller.json}
+  - {name: right end, storey: 2, mass: 6 kg, stiffness: 10 kN/m, gain: 5, fit: other.json, rig: {stroke: 0.1 mm}}
+gain: 7
+piston_area: 497 mm^2
+ground: {kind: blwn, band: 20 Hz, amplitude: 0.1 g, duration: 1 s}
+"""
+
+
+def test_two_actuators_have_their_own_fits_controllers_scores_and_figures(servoident, tmp_path):
+    """A controller for one part, its file named in the case; then both are simulated, with the map of their delays."""
+    case, out, fit = (tmp_path / name for name in ("beam.yaml", "figures", "fit.json"))
+    fit.write_text(json.dumps(fitted().to_json()))
+    case.write_text(BEAM)
+    (tmp_path / "other.json").write_text(json.dumps(fitted(tau=2e-3).to_json()))
+    made = servoident("control", fit, "--case", case, "--part", "left", "--out", tmp_path / "left")
+    assert made.returncode == 0, made.stderr
+    asked = servoident("control", fit, "--case", case, "--out", tmp_path / "none")
+    assert asked.returncode == 2
+    assert "left, right end" in asked.stderr
+    done = servoident("hybrid", fit, "--case", case, "--map", "--json", tmp_path / "scores.json", "--out", out)
+    assert done.returncode == 0, done.stderr
+    data = json.loads((tmp_path / "scores.json").read_text())
+    assert [part["name"] for part in data["parts"]] == ["left", "right end"]
+    assert data["parts"][0]["controller"] != data["parts"][1]["controller"] == "none"
+    assert data["scores"]["reference_rms"] == max(part["scores"]["reference_rms"] for part in data["parts"])
+    assert data["delay_map"]["parts"] == ["left", "right end"]
+    assert (out / "left" / "displacement.svg").is_file()
+    assert (out / "right-end" / "response.pdf").is_file()
+    assert (out / "delay-map.svg").is_file()
+    assert "right end: " in done.stdout  # its stroke is too short
+    assert servoident("hybrid", fit, "--case", case, "--spread", "20 %").returncode == 2
+    refused = servoident("hybrid", FIT, "--case", case, "--map")
+    assert "dead_zone has no poles" in refused.stderr

@@ -9,10 +9,11 @@ import pytest
 
 from ident.errors import Unusable
 from ident.hybrid.case import Case, qian
+from ident.hybrid.controller import no_controller
 from ident.hybrid.controller_design import design_controller
 from ident.hybrid.hybrid_loop import EarlierCase, judge_hybrid
 from ident.hybrid.machine import machine
-from ident.hybrid.rig import no_controller, simulate_hybrid
+from ident.hybrid.rig import simulate_hybrid
 from ident.run import Specimen
 from ident.words.engineering import quantity
 from tests.hybrid.cases import fitted, noise

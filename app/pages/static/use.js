@@ -81,6 +81,7 @@ async function controller(form) {
   const fields = new FormData(form);
   const asked = { fit: fields.get("fit"), structure: fields.get("structure"), seed: Number(fields.get("seed")) };
   asked.case = await caseOf(fields);
+  if (fields.get("part")?.trim()) asked.part = fields.get("part").trim();
   if (fields.get("target") === "own") {
     const target = await read(fields.get("own-target"), "target");
     for (const name of ["numerator", "denominator"]) target[name] = target[name]?.map?.(Number) ?? target[name];

@@ -1,0 +1,81 @@
+"""The linear part of several machines at once, whose specimens may be joined: commands to displacements and forces."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+import scipy.linalg
+from numpy.typing import NDArray
+
+from ident.hybrid.case import Case
+from ident.hybrid.coupled_case import CoupledCase, System
+from ident.hybrid.machine import DISPLACEMENT, FELT, FORCE, JOINED, Machine, joined
+
+Array = NDArray[np.float64]
+_ONE = np.ones(1)
+
+
+def joint_machines(
+    machines: Sequence[Machine], system: System, gain: Array = _ONE
+) -> tuple[Array, Array, Array, Array]:
+    """A, B, C, D of machines side by side, (b, n, n), (b, n, P), (b, 2P, n), (b, 2P, P), with `gain` (b,) times Kp.
+
+    They give the displacements that are measured, then the forces. A specimen that joins them adds what each feels of
+    the others, E = K x + C x' + M x'' of the matrices beside the diagonals: a feedback, closed here.
+    """
+    felt = isinstance(system, CoupledCase) and system.joined
+    blocks = [_alone(of, case, gain, felt) for of, case in zip(machines, system.cases, strict=True)]
+    parts, b = len(blocks), len(gain)
+    A = np.array([scipy.linalg.block_diag(*(block["A"][i] for block in blocks)) for i in range(b)])
+    rows = {name: _stacked(blocks, name, b) for name in (DISPLACEMENT, FORCE, *(JOINED if felt else ()))}
+    B, felt_by = _columns(blocks, "B", b), _columns(blocks, "E", b)
+    C = np.concatenate([rows[DISPLACEMENT][0], rows[FORCE][0]], axis=1)
+    D = np.concatenate([rows[DISPLACEMENT][1], rows[FORCE][1]], axis=1)
+    if not (felt and isinstance(system, CoupledCase)):
+        return A, B, C, D
+    mass, damping, stiffness = system.coupling
+    x, v, a = (rows[name] for name in JOINED)
+    of_state = stiffness @ x[0] + damping @ v[0] + mass @ a[0]
+    of_itself = stiffness @ x[2] + damping @ v[2] + mass @ a[2]
+    of_command = stiffness @ x[1] + damping @ v[1] + mass @ a[1]
+    inverse = np.linalg.inv(np.eye(parts) - of_itself)
+    state, command = inverse @ of_state, inverse @ of_command
+    shown = np.concatenate([rows[DISPLACEMENT][2], rows[FORCE][2]], axis=1)
+    return A + felt_by @ state, B + felt_by @ command, C + shown @ state, D + shown @ command
+
+
+def _alone(of: Machine, case: Case, gain: Array, felt: bool) -> dict[str, Any]:
+    """Of one machine: A, B by its command, E by what it feels, and by each channel (C, D, by what it feels)."""
+    chain, known = joined(of.chain, FELT) if felt else of.chain, of.at(case)
+    values: dict[str, Any] = {name: known.get(name, 0.0) for name in chain.symbols}
+    values["Kp"] = known.get("Kp", 1.0) * gain
+    found: dict[str, Any] = {}
+    for channel in (DISPLACEMENT, FORCE, *(JOINED if felt else ())):
+        model = chain.linearise(values, channel)
+        found |= {"A": model.A, "B": model.B}
+        n, beside = model.A.shape[-1], np.zeros(len(gain))
+        if felt:
+            still = [0.0] * n
+            rest, pushed = (chain.evaluator(channel)(0.0, still, {**values, FELT: force}) for force in (0.0, 1.0))
+            column = [np.broadcast_to(one - zero, len(gain)) for one, zero in zip(pushed[0], rest[0], strict=True)]
+            found["E"], beside = np.array(column).T, np.broadcast_to(pushed[1] - rest[1], len(gain))
+        found[channel] = model.C, model.D, beside
+    return found
+
+
+def _columns(blocks: Sequence[dict[str, Any]], name: str, b: int) -> Array:
+    """What drives each block by itself, (b, n, P)."""
+    given = [block.get(name, np.zeros((b, block["A"].shape[-1]))) for block in blocks]
+    return np.array([scipy.linalg.block_diag(*(one[i][:, None] for one in given)) for i in range(b)])
+
+
+def _stacked(blocks: Sequence[dict[str, Any]], channel: str, b: int) -> tuple[Array, Array, Array]:
+    """A channel of each block by states, commands and what is felt: (b, P, n), (b, P, P), (b, P, P)."""
+    states = np.array([scipy.linalg.block_diag(*(block[channel][0][i][None] for block in blocks)) for i in range(b)])
+    through, felt = (
+        np.array([np.diag([np.broadcast_to(block[channel][at], b)[i] for block in blocks]) for i in range(b)])
+        for at in (1, 2)
+    )
+    return states, through, felt
