@@ -12,7 +12,7 @@ from app.cli.at_option import At, Over, Sets, moved_to
 from app.cli.before_option import CaseBefore, EarlierFit, EarlierGain, earlier_case
 from app.cli.figure_files import write_figures
 from app.cli.given import read_fit
-from app.cli.hybrid_parts import draw_parts, refuse_for_several, simulate_parts
+from app.cli.hybrid_parts import refuse_for_several, simulate_parts, tell_of_parts
 from app.cli.output import STANDARD_OUTPUT, check_target, write_json
 from app.cli.progress import shown
 from app.cli.rig_option import RigFile, rig_in
@@ -75,19 +75,11 @@ def hybrid(
     result = moved.fit
     of = of if ground is None else of.with_ground(ground)
     if isinstance(of, CoupledCase):
-        refuse_for_several(spread=spread, before=before, before_gain=before_gain, before_case=before_case)
+        refuse_for_several(at=at, spread=spread, before=before, before_gain=before_gain, before_case=before_case)
         of = of if rig is None else of.changed(rig=rig_in(rig))
         on = effect_values(effect or [], result.model)
         several = simulate_parts(result, of, Path(case).parent, controller, on, shares, drawn=out is not None)
-        if json is not None:
-            write_json(several.parts.to_json(), json)
-        if json != STANDARD_OUTPUT:
-            show(several.parts.listings())
-        if out is not None:
-            draw_parts(several, out)
-        if not several.parts.stable:
-            raise typer.Exit(1)
-        return
+        return tell_of_parts(several, json, out)
     of = of if rig is None else replace(of, rig=rig_in(rig))
     effects, wide = effect_values(effect or [], result.model), spread_in(spread, result.model)
     earlier = earlier_case(result, of, before, before_gain, before_case)
@@ -114,6 +106,7 @@ def hybrid(
         write_figures(Simulated(runs, of, found, worth), out)
     if not main.stable:
         raise typer.Exit(1)
+    return None
 
 
 def _map(asked: bool, acting: Any, *rest: Any) -> ShareMap | None:

@@ -7,8 +7,11 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+import typer
+
 from app.cli.figure_files import write_figures
 from app.cli.given import read_fit
+from app.cli.output import STANDARD_OUTPUT, write_json
 from app.cli.progress import shown
 from ident.errors import Unusable
 
@@ -69,7 +72,21 @@ def _inside(given: object, folder: Path, names: Mapping[str, object]) -> str:
     return str(folder / given) if given and given not in names else given
 
 
-def draw_parts(found: Parts, out: Path) -> None:
+def tell_of_parts(found: Parts, json: Path | None, out: Path | None) -> None:
+    """Write, show and draw what was simulated. Raises Exit 1 where it is unstable."""
+    from app.cli.tables import show
+
+    if json is not None:
+        write_json(found.parts.to_json(), json)
+    if json != STANDARD_OUTPUT:
+        show(found.parts.listings())
+    if out is not None:
+        _draw(found, out)
+    if not found.parts.stable:
+        raise typer.Exit(1)
+
+
+def _draw(found: Parts, out: Path) -> None:
     """The figures of each part in a folder of its name, and those of the whole."""
     from ident.figures.subjects import Coupled, Simulated
 

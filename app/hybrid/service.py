@@ -62,7 +62,7 @@ def submit(context: Context, request: HybridRequest, job: str) -> JobView:
             "controller": given if isinstance(given, str) else kept_text(context, json.dumps(given)),
             "inline": not isinstance(given, str), "controller_id": stored,
             "spread": None if spread is None else written(spread),
-            "moved": [_kept(context, json.dumps(fit.to_json())), *moved.text] if moved.text else None,
+            "moved": [kept_text(context, json.dumps(fit.to_json())), *moved.text] if moved.text else None,
             "before": _before(context, stated(request.before), fit, case),
         },
     }  # fmt: skip

@@ -43,10 +43,10 @@ class HybridWork(InOnePiece):
         asked, report, fit = self.task.settings["asked"], self.task.report, self.task.fit
         case = AskedCase(asked["case"], asked["ground"], self._blob(asked["text"])).system()
         assert fit is not None
-        moved = asked.get("moved") or []
-        fit = self._fit(moved[0]) if moved else fit
         if isinstance(case, CoupledCase):
             return self._parts(asked, fit, case)
+        moved = asked.get("moved") or []
+        fit = self._fit(moved[0]) if moved else fit
         given: Any = json.loads(self._blob(asked["controller"])) if asked["inline"] else asked["controller"]
         chosen, effects = acting(given, fit, case), asked["effects"]
         before = earlier_case(asked.get("before"), fit, case, self._fit)
