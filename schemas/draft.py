@@ -52,6 +52,9 @@ class AnswersRequest(BaseModel):
     dialect: DialectRequest = Field(default_factory=DialectRequest, description="Of texts: how they are laid out")
     output: str = Field(default="", max_length=_LINE, description="Channel that a model is to reproduce")
     verify: list[str] = Field(default_factory=list, description="Files whose runs only verify")
+    validation: float = Field(
+        default=0.0, ge=0, lt=1, description="Share of every run, at its end, that is validation data behind a gap"
+    )
     area: str = Field(default="", max_length=_LINE, description="Piston area, such as 497 mm^2")
     gain: str = Field(default="", max_length=_LINE, description="Gain Kp of the loop in every run")
     hold: str = Field(

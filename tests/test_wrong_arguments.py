@@ -33,6 +33,7 @@ STATED = {
     "time": ["t", 5], "actuator": ["SW-1", 5], "specimen": ["1 kg", 5, {"mass": []}], "gain": [[], {}],
     "amplitude": [5, []], "kind": [5], "hold": [5, []], "output": [5, {}, [5]], "use": [5, []], "id": [[], {}],
     "skip_rows": ["two", 1.5], "dialect": ["semicolon", {"sign": ";"}], "rows": [5, "1:5", (1, "2")],
+    "split": [0.3, [1, 2], {"validation": 5}], "trend": [5],
 }  # fmt: skip
 
 

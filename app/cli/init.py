@@ -68,6 +68,11 @@ def init(
     output: Annotated[str, typer.Option(metavar="NAME", help="Output channel of the model.")] = "",
     verify: Annotated[_Texts, typer.Option(metavar="FILE", help="A validation run, with or without its suffix; may be "
                                                       "repeated.")] = None,
+    validation: Annotated[
+        float,
+        typer.Option(metavar="SHARE", help="Share of each run, at its end, for validation, such as 0.3; a gap as long "
+                     "as the response stays before it."),
+    ] = 0.0,
     area: Annotated[str, typer.Option(metavar="AREA", help="Piston area, such as '497 mm^2'.")] = "",
     gain: Annotated[str, typer.Option(metavar="KP", help="Loop gain of all runs.")] = "",
     hold: Annotated[str, typer.Option(metavar="NAME", help="Command between samples: linear, zoh, band-limited.")] = "",
@@ -97,6 +102,7 @@ def init(
         serial=serial, channels=of_all.channels, time=of_all.time, rate=of_all.rate, dialect=of_all.dialect,
         files=of_some,
         output=output, verify=tuple(_among(names, name, "--verify") for name in verify or []),
+        validation=validation,
         actuator={"piston_area": area} if area else {}, common={name: text for name, text in given.items() if text},
     )  # fmt: skip
     draft = Draft(found, answers)
@@ -104,8 +110,8 @@ def init(
         draft = _asked(draft, NONE)
     if draft.missing:
         said = {"--out": out, "--serial": serial, "--channel": channel, "--time": time, "--rate": rate,
-                "--dialect": dialect, "--output": output, "--verify": verify, "--area": area, "--gain": gain,
-                "--hold": hold}  # fmt: skip
+                "--dialect": dialect, "--output": output, "--verify": verify,
+                "--validation": validation, "--area": area, "--gain": gain, "--hold": hold}  # fmt: skip
         raise _with_command(draft, files, said)
     made = gathered(draft, contents)
     _made(draft, made, _free(out or _of_serial(draft.answers.serial)))

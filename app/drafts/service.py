@@ -157,7 +157,8 @@ def answers(asked: AnswersRequest) -> Answers:
     return Answers(
         serial=asked.serial.strip(), channels=of_all.channels, time=of_all.time, rate=of_all.rate,
         dialect=of_all.dialect, output=asked.output,
-        verify=tuple(asked.verify), actuator={"piston_area": asked.area} if asked.area else {},
+        verify=tuple(asked.verify), validation=asked.validation,
+        actuator={"piston_area": asked.area} if asked.area else {},
         common={name: text for name, text in common.items() if text},
         files={name: _of_file(of_one) for name, of_one in asked.files.items()},
     )  # fmt: skip

@@ -26,6 +26,7 @@ from ident.matrix import Actuator, Matrix
 from ident.preprocessing import screen
 from ident.readers.limits import LIMITS
 from ident.readers.source import DESCRIPTION, inside
+from ident.readers.split import VALIDATION
 from ident.readers.strict_yaml import read_yaml
 from ident.run import Run, output_id
 from ident.words.nearest import did_you_mean
@@ -115,14 +116,13 @@ def revise(context: Context, matrix: str, revision: Revision) -> tuple[MatrixVie
 
 
 def _record_of(run: str, records: Mapping[str, Mapping[str, Any]]) -> str:
-    """The record that a run is an output of; the run itself where it is a record."""
-    outputs = {
-        output_id(name, str(output)): name
-        for name, record in records.items()
-        if isinstance(record.get("output"), list)
-        for output in record["output"]
-    }
-    return outputs.get(run, run)
+    """The record that a run is an output or the validation data of; the run itself where it is a record."""
+    found: dict[str, str] = {}
+    for name, record in records.items():
+        outputs = record["output"] if isinstance(record.get("output"), list) else ()
+        for part in (name, f"{name}.{VALIDATION}") if "split" in record else (name,):
+            found |= {part: name} | {output_id(part, str(output)): name for output in outputs}
+    return run if run in records else found.get(run, run)
 
 
 def description(context: Context, matrix: str) -> dict[str, Any]:

@@ -64,7 +64,8 @@ class Answers:
     """What a person says of raw files. `common` are further entries of every run, as they stand in matrix.yaml.
 
     `channels`, `time`, `rate` and `dialect` hold for every file, but for what `files` says of one of them, by its name.
-    Raises Unusable: ``unknown-channel``.
+    `validation` is the share of every run, at its end, that is validation data; 0 for none.
+    Raises Unusable: ``unknown-channel``, ``bad-split``.
     """
 
     serial: str = ""
@@ -74,12 +75,16 @@ class Answers:
     dialect: Dialect = FOUND
     output: str = ""
     verify: tuple[str, ...] = ()
+    validation: float = 0.0
     actuator: Mapping[str, str] = field(default_factory=dict)
     common: Mapping[str, Any] = field(default_factory=dict)
     files: Mapping[str, FileAnswers] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         _ = self.of_all
+        if not 0.0 <= self.validation < 1.0:
+            what = f"a share of {self.validation:g} of every run cannot be validation data"
+            raise Unusable("bad-split", what, "validation", "give a share from 0 to below 1, as 0.3")
         if self.output:
             _check(self.output)
 

@@ -271,6 +271,9 @@ class Draft:
             "use": "verify" if file_name(file) in self.answers.verify else "fit",
             **self.answers.common,
         }
+        if self.answers.validation and run["use"] == "fit":
+            rows = len(file.samples(file.columns[0].number))
+            run["split"] = {"validation": [round((1.0 - self.answers.validation) * rows), rows]}
         channels = sorted(known.channels.items(), key=lambda item: CHANNELS.index(item[0]))
         return run | {"channels": {name: {"column": file.stated(a.column), "unit": a.unit} for name, a in channels}}
 

@@ -125,7 +125,8 @@ def read_runs(
     Behind a run file stand the files beside it that it names.
     """
     digest = hashlib.sha256(text)
-    runs: dict[int, Run] = {}
+    runs: dict[int, tuple[Run, ...]] = {}
+    splits: list[str] = []
     notices: dict[str, list[str]] = {}  # alike but for the file's name
     read, in_memory = 0, 0
     for name, wanted in by_file(described.runs).items():
@@ -140,18 +141,20 @@ def read_runs(
                 tables[run.dialect] = read_table(parts[0], name, run.dialect, limits, of_run, near)
                 for notice in tables[run.dialect].notices:
                     notices.setdefault(notice.replace(name, "", 1), []).append(notice)
-            runs[number] = read_run(run, tables[run.dialect])
-            in_memory += sum(samples.nbytes for samples in runs[number].channels.values())
+            runs[number], told_of_split = read_run(run, tables[run.dialect])
+            splits += told_of_split
+            in_memory += sum(samples.nbytes for part in runs[number] for samples in part.channels.values())
             check_size(in_memory, limits.samples, "all samples together", name)
         read += sum(map(len, parts[1:]))
         for part in parts:
             digest.update(part)
-    held, chosen = with_hold([runs[n] for n in range(len(runs))], [of.hold_stated for of in described.runs])
-    outputs = (one for run, of in zip(held, described.runs, strict=True) for one in run.of_outputs(of.outputs))
+    made = [(run, of) for n, of in enumerate(described.runs) for run in runs[n]]
+    held, chosen = with_hold([run for run, _ in made], [of.hold_stated for _, of in made])
+    outputs = (one for run, (_, of) in zip(held, made, strict=True) for one in run.of_outputs(of.outputs))
     told = [
         one if not more else f"{one}; so it was with {count(len(more), 'more file')}" for one, *more in notices.values()
     ]
-    return tuple(outputs), (*told, *chosen), digest.hexdigest()
+    return tuple(outputs), (*told, *splits, *chosen), digest.hexdigest()
 
 
 def by_file(runs: tuple[RunDescription, ...]) -> dict[str, list[tuple[int, RunDescription]]]:

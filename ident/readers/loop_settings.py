@@ -46,3 +46,15 @@ def sample_rate(fields: Fields, key: str = "sample_rate") -> float | None:
         remedy = "give the number of samples a second"
         raise Unusable("not-positive", f"{shown(fields.data[key])} is not above 0", place, remedy)
     return rate
+
+
+def seconds_or_samples(fields: Fields, key: str, time_unit: str) -> float | None:
+    """A time of 0 or more in s, or in samples where the clock is unknown; None where it is not given.
+
+    Raises Unusable: ``negative-KEY`` and what reading a quantity does.
+    """
+    if key not in fields:
+        return None
+    if time_unit == "s":
+        return fields.not_negative(key, "time")
+    return float(fields.whole(key))

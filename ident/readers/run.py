@@ -10,6 +10,7 @@ from ident.errors import Unusable
 from ident.readers.clock import evened, read_clock
 from ident.readers.past import with_past
 from ident.readers.run_description import RunDescription, TimeColumn
+from ident.readers.split import split
 from ident.readers.table import Array, Table, numeric
 from ident.readers.trend import without_trend
 from ident.run import Run, Samples
@@ -21,12 +22,26 @@ SHORTEST = 8  # samples; below, not even the straight line of the clock and a me
 LARGEST = 1e100  # SI; squares beyond overflow
 
 
-def read_run(described: RunDescription, table: Table) -> Run:
-    """The run with its samples, float64, contiguous, its own memory.
+def read_run(described: RunDescription, table: Table) -> tuple[tuple[Run, ...], tuple[str, ...]]:
+    """The run with its samples, float64, contiguous, its own memory; estimation and validation data where it is split.
 
+    With what is to be said of it. Without the trend that is asked to be left out, of each part by itself.
     Raises Unusable: ``missing-column``, ``not-numeric``, ``unequal-lengths``, ``rows-outside``, ``too-short``,
-    ``not-finite``, ``zero-variance``, ``time-not-monotonic``, ``nothing-left``.
+    ``not-finite``, ``zero-variance``, ``time-not-monotonic``, ``nothing-left``, ``bad-split``.
     """
+    run, count = _whole(described, table)
+    parts, told = ((run,), ()) if described.split is None else _split(run, described, count)
+    return tuple(without_trend(part, described.trend, described.outputs) for part in parts), told
+
+
+def _split(run: Run, described: RunDescription, count: int) -> tuple[tuple[Run, ...], tuple[str, ...]]:
+    assert described.split is not None
+    parts, told = split(run, described.split, described.rows or (0, count))
+    return parts, (told,)
+
+
+def _whole(described: RunDescription, table: Table) -> tuple[Run, int]:
+    """The run before it is split, and how many rows its file has."""
     labels = described.labels
     places = {name: f"{run_name(labels.id)} channels.{name}" for name in described.channels}
     wanted = {name: channel.column for name, channel in described.channels.items()}
@@ -44,7 +59,7 @@ def read_run(described: RunDescription, table: Table) -> Run:
         if name != "command" or not channels[name][0]:  # one that is held is a step from nothing at its first sample
             check_moves(channels[name], places[name])
     if described.time is None:
-        return _without_trend(with_past(replace(labels, channels=channels), raw, described, LARGEST), described)
+        return with_past(replace(labels, channels=channels), raw, described, LARGEST), len(next(iter(raw.values())))
     _check_stamps(table, described.time, places["time"])
     scale = Scale(described.time.factor, 0.0, "s")
     time = in_si(part(raw["time"], described, places["time"]), scale, places["time"])
@@ -58,11 +73,7 @@ def read_run(described: RunDescription, table: Table) -> Run:
     run = replace(
         labels, channels=channels, sample_rate=rate, clock_jitter=clock.jitter, gaps=clock.gaps, evened=not even
     )
-    return _without_trend(with_past(run, raw, described, LARGEST), described)
-
-
-def _without_trend(run: Run, described: RunDescription) -> Run:
-    return without_trend(run, described.trend, described.outputs)
+    return with_past(run, raw, described, LARGEST), len(raw["time"])
 
 
 def _check_stamps(table: Table, time: TimeColumn, where: str) -> None:

@@ -12,6 +12,7 @@ from ident.readers.dialect import Dialect, describe_dialect
 from ident.readers.fields import Fields
 from ident.readers.loop_settings import loop_gain, sample_rate
 from ident.readers.source import inside
+from ident.readers.split import Split, describe_split
 from ident.readers.trend import TRENDS
 from ident.run import BENCH, HOLDS, KINDS, MOTIONS, USES, Run, Specimen
 from ident.units.quantity import quantity, shown, split, unit_scale
@@ -20,7 +21,7 @@ from ident.words.run_name import run_name
 
 RUN = (
     "id", "file", "sample_rate", "time", "specimen", "gain", "amplitude", "kind", "hold", "output", "use", "skip_rows",
-    "dialect", "rows", "trend", "channels", "disturbance", "position_range", "frequency", "rated_current",
+    "dialect", "rows", "split", "trend", "channels", "disturbance", "position_range", "frequency", "rated_current",
     "closed_loop",
 )  # fmt: skip
 
@@ -54,6 +55,7 @@ class RunDescription:
     rows: tuple[int, int] | None
     hold_stated: bool = True
     trend: str = "none"
+    split: Split | None = None
 
 
 def describe_run(data: Any, where: str) -> RunDescription:
@@ -93,7 +95,8 @@ def describe_run(data: Any, where: str) -> RunDescription:
     rows, hold_stated = describe_rows(fields), "hold" in fields
     trend = describe_trend(fields, kind)
     dialect = describe_dialect(fields.data.get("dialect"), fields.place("dialect"), fields.whole("skip_rows"))
-    return RunDescription(labels, outputs, channels, time, dialect, rows, hold_stated, trend)
+    split = describe_split(fields, kind, labels.use, time_unit)
+    return RunDescription(labels, outputs, channels, time, dialect, rows, hold_stated, trend, split)
 
 
 def _driven_unit(units: dict[str, str]) -> str:

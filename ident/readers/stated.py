@@ -112,10 +112,11 @@ def from_table(table: Any, **stated: Unpack[Stated]) -> Matrix:
 
 def _matrix(run: RunDescription, table: Table, stated: Mapping[str, Any], parts: Sequence[bytes] = ()) -> Matrix:
     """The run as a matrix, hashed by the `parts` of its file, else by its samples."""
-    read = read_run(run, table)
+    read, told = read_run(run, table)
     actuator = describe_actuator({"serial": "unnamed", **(stated.get("actuator") or {})})
     digest = hashlib.sha256(json.dumps(stated, sort_keys=True, default=str).encode())
-    for part in parts or [samples.tobytes() for samples in read.channels.values()]:
+    for part in parts or [samples.tobytes() for one in read for samples in one.channels.values()]:
         digest.update(part)
-    (held,), chosen = with_hold([read], [run.hold_stated])
-    return Matrix(actuator, held.of_outputs(run.outputs), digest.hexdigest(), notices=(*table.notices, *chosen))
+    held, chosen = with_hold(read, [run.hold_stated] * len(read))
+    runs = tuple(output for part in held for output in part.of_outputs(run.outputs))
+    return Matrix(actuator, runs, digest.hexdigest(), notices=(*table.notices, *told, *chosen))

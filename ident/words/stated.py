@@ -30,3 +30,5 @@ class Stated(TypedDict, total=False):
     skip_rows: int
     dialect: Mapping[str, str | int]
     rows: tuple[int, int]
+    split: Mapping[str, Any]
+    trend: str

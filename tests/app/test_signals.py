@@ -45,3 +45,18 @@ def test_a_range_and_a_trend_of_a_run_are_a_revision(service, matrix):
     assert made.json()["runs"][0]["samples"] == 1400
     entry = service.get(f"{API}/matrices/{made.json()['id']}/description").json()["runs"][0]
     assert (entry["rows"], entry["trend"]) == ([100, 1500], "line")
+
+
+def test_a_run_is_split_by_a_revision_and_the_split_is_taken_back_from_either_part(service, matrix):
+    """Its validation data are a run of their own, which no fit uses; the notice says the gap."""
+    name = service.get(f"{API}/matrices/{matrix}").json()["runs"][0]["id"]
+    split = {"split": {"validation": [1400, 2048], "gap": "20 ms"}}
+    made = service.post(f"{API}/matrices/{matrix}/revisions", json={"runs": {name: split}}).json()
+    runs = {run["id"]: (run["use"], run["samples"]) for run in made["runs"]}
+    assert runs[f"{name}.validation"] == ("verify", 648)
+    assert runs[name] == ("fit", 1400 - round(0.02 * 4096))
+    assert any("a gap of 0.02 s" in notice for notice in made["notices"])
+    back = service.post(
+        f"{API}/matrices/{made['id']}/revisions", json={"runs": {f"{name}.validation": {"split": None}}}
+    )
+    assert [run["samples"] for run in back.json()["runs"] if run["id"].startswith(name)] == [2048]

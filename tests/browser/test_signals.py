@@ -41,3 +41,29 @@ def test_a_range_is_chosen_with_the_mouse_and_loses_its_trend(page, site, matrix
     page.wait_for_url(lambda url: "/signals" not in url)
     expect(page.get_by_text("· revision of")).to_be_visible()
     expect(page.locator("#run-0")).to_contain_text("0.2561 s at 4096 Hz")
+
+
+def test_a_range_chosen_with_the_mouse_is_validation_data(page, site, matrix):
+    """The end of the record, with a stated gap; the page of the data set lists both parts and edits the split."""
+    page.goto(f"{site.address}/matrices/{matrix}")
+    page.locator("#run-0 a").click()
+    figure = page.locator("#figure-signals")
+    canvas = figure.locator("canvas")
+    expect(canvas).to_be_visible(timeout=120_000)
+    canvas.scroll_into_view_if_needed()
+    box = canvas.bounding_box()
+    page.mouse.move(box["x"] + 0.95 * box["width"], box["y"] + 0.4 * box["height"])
+    for _ in range(6):
+        page.mouse.wheel(0, -100)
+    expect(figure.get_by_label("Length (s)")).to_have_value(re.compile(r"^0\.131"))  # 0.5 s / 1.25⁶
+    page.get_by_label("Gap to estimation data").fill("20 ms")
+    page.get_by_role("button", name="Use the range shown for validation").click()
+    page.wait_for_url(lambda url: "/signals" not in url)
+    expect(page.locator("#run-1")).to_contain_text("validation")
+    page.get_by_role("button", name=re.compile(r"^Edit .*\.validation$")).click()
+    expect(page.get_by_label("Gap before them")).to_have_value("20 ms")
+    expect(page.get_by_label("Validation samples, from and to")).to_have_value(re.compile(r"^\d+, \d+$"))
+    page.get_by_label("Validation samples, from and to").fill("")
+    page.get_by_label("Gap before them").fill("")
+    page.get_by_role("button", name="Save as new revision").click()
+    expect(page.get_by_role("button", name=re.compile(r"^Edit .*\.validation$"))).to_have_count(0, timeout=60_000)

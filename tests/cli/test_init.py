@@ -167,3 +167,14 @@ def test_the_layout_of_a_text_is_stated_as_an_option(servoident, tmp_path):
         refused = servoident("init", tmp_path / "a.csv", "--serial", "A", "--dialect", stated)
         assert refused.returncode == 2
         assert said in refused.stderr
+
+
+def test_a_share_of_each_run_is_validation_data(servoident, record, tmp_path):
+    given = ("--serial", "SW-1", *KNOWN, "--out", tmp_path / "m", "--validation")
+    done = servoident("init", record, *given, "0.25")
+    assert done.returncode == 0, done.stderr
+    assert "split: {validation: [300, 400]}" in (tmp_path / "m" / "matrix.yaml").read_text()
+    assert [(run.id, run.use) for run in read_matrix(tmp_path / "m").runs] == [("a", "fit"), ("a.validation", "verify")]
+    refused = servoident("init", record, *given[:-3], "--validation", "30")
+    assert refused.returncode == 2
+    assert "a share of 30 of every run cannot be validation data" in refused.stderr

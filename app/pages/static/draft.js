@@ -54,7 +54,7 @@ function answers() {
   const fields = new FormData(form), files = {};
   for (const layout of layouts) for (const name of layout.names) files[name] = described(layout);
   const of = (name) => fields.get(name).trim();
-  return { serial: of("serial"), files, output: of("output"), hold: of("hold"), gain: of("gain"), area: of("area"), verify: fields.getAll("verify") };
+  return { serial: of("serial"), files, output: of("output"), hold: of("hold"), gain: of("gain"), area: of("area"), verify: fields.getAll("verify"), validation: Number(of("validation")) / 100 };
 }
 
 function list(place, items) {

@@ -6,7 +6,8 @@ const dialog = document.querySelector("#mend");
 const form = dialog.querySelector("form");
 const problem = form.querySelector("[role=alert]");
 const channels = form.querySelector("tbody");
-const LABELS = ["use", "gain", "amplitude", "specimen.mass", "specimen.stiffness", "specimen.damping", "rows", "trend"];
+const LABELS = ["use", "gain", "amplitude", "specimen.mass", "specimen.stiffness", "specimen.damping", "rows", "split.validation", "split.gap", "trend"];
+const RANGES = ["rows", "split.validation"]; // two sample numbers
 const ABSENT = { use: "fit", trend: "none" }; // what a label is that the description does not state
 let description, run;
 
@@ -15,6 +16,9 @@ const text = (value) => (value === undefined || value === null ? "" : [value].fl
 const label = (entry, path) => text(inside(entry, path)) || (ABSENT[path] ?? "");
 
 const inverted = (channel) => ["true", "yes"].includes(text(channel.invert).toLowerCase()); // a description holds words, but for whole numbers
+
+// The record of a run: itself, or the one that it is an output or the validation data of.
+const record = (name) => description.runs.find(({ id }) => String(id) === name) ?? description.runs.find(({ id }) => name.startsWith(`${id}.`));
 
 function fill(entry) {
   run = entry;
@@ -41,8 +45,9 @@ function changes() {
   const found = {};
   for (const path of LABELS) {
     const now = form.elements[path].value.trim(), before = label(run, path);
-    if (now !== before) put(found, path, path === "rows" && now ? now.split(/[\s,;]+/).map(Number) : now || null);
+    if (now !== before) put(found, path, RANGES.includes(path) && now ? now.split(/[\s,;]+/).map(Number) : now || null);
   }
+  if (found.split && found.split.validation === null) found.split = null; // without validation data there is no gap
   for (const each of channels.rows) {
     const [unit, invert] = each.querySelectorAll("input");
     const name = each.dataset.channel, before = run.channels[name];
@@ -70,7 +75,7 @@ for (const button of document.querySelectorAll("button[data-run]")) {
     dialog.showModal();
     await guarded(button, problem, async () => {
       description ??= (await send("GET", `${dialog.dataset.matrix}/description`)).data;
-      fill(description.runs.find((entry) => String(entry.id) === button.dataset.run));
+      fill(record(button.dataset.run));
     });
   });
 }

@@ -66,20 +66,24 @@ plot.addEventListener("keydown", ({ key }) => {
   if (key === "0") show(0, whole);
 });
 
-// What is shown becomes the rows of the run in its file: counted on from the rows that it has.
+// What is shown becomes the rows of the run in its file, or its validation data: counted on from the rows that it has.
 const form = document.querySelector("#keep-range");
 form?.addEventListener("submit", (event) => {
   event.preventDefault();
-  guarded(form.querySelector("button"), form.querySelector("[role=alert]"), async () => {
+  const splits = event.submitter?.value === "split";
+  guarded(event.submitter ?? form.querySelector("button"), form.querySelector("[role=alert]"), async () => {
     const { run, rate, samples, description, revisions } = form.dataset;
     const { data } = await send("GET", description);
-    const entry = data.runs.find(({ id }) => String(id) === run);
+    const entry = data.runs.find(({ id }) => String(id) === run) ?? data.runs.find(({ id, split }) => split && run.startsWith(`${id}.`));
     if (!entry) throw new Error("This run is one output of a record. Edit the record on the page of the data set.");
     if (entry.time?.resample) throw new Error("This run is resampled. Edit its samples on the page of the data set.");
+    if (entry.split) throw new Error("This run is split already. Edit its validation samples on the page of the data set.");
     const { start, seconds } = shown();
     const before = Number(entry.rows?.[0] ?? 0);
     const first = Math.round(start * rate), end = Math.min(Number(samples), Math.round((start + seconds) * rate));
-    const change = { rows: [before + first, before + end], trend: form.elements.trend.value };
+    const range = [before + first, before + end], gap = form.elements.gap.value.trim();
+    const change = splits ? { split: { validation: range, ...(gap && { gap }) } } : { rows: range };
+    change.trend = form.elements.trend.value;
     const made = await send("POST", revisions, { runs: { [run]: change } });
     location.assign(`/matrices/${made.data.id}`);
   });
