@@ -20,6 +20,10 @@ COARSEST = 0.1  # of the record's standard deviation: a coarser step is one of t
 DRIVEN = 0.05  # of the command's standard deviation: a first value beyond it is a step at the first sample
 STEP_ANSWER = 0.05  # of the record's standard deviation: what a record of a single step may begin at
 LEAST_HELD = 16  # samples that a command is held
+SETS_OUT, SLOWLY = 1e-3, 0.1
+"""[of the record's standard deviation], [of the typical speed] A motion that begins nearer to zero than the first, and
+slower than the second, sets out from rest there; by chance about one record in ten thousand begins so.
+Test: tests/fit/test_known_zeros.py::test_rest_tells_the_zero_and_its_standard_error"""
 LOOKED_AT = 0.001  # s: the first samples, by which a speed is told, at least FEWEST
 FEWEST = 4
 
@@ -68,6 +72,26 @@ def standing_for(x: Samples, command: Samples | None, sample_rate: float) -> int
     parts = (x[: _first(x, sample_rate)], *np.array_split(x[:count], 4))
     means, errors = [part.mean() for part in parts], [part.std() / np.sqrt(len(part)) for part in parts]
     return count if np.ptp(means) <= AT_ZERO * np.std(x) + ERRORS * max(errors) else 0
+
+
+def zero_at_rest(x: Samples, begins: Beginning, sample_rate: float) -> tuple[float, float] | None:
+    """What a transducer reads where the machine is at zero, and its standard error, by how its record x (n,) begins.
+
+    At rest it is the mean of the first samples, known as well as noise and resolution let it; of a step's answer, and
+    of a motion that sets out from zero, it is the first sample. The last is as far off as it reads: it set out a moment
+    before. None where neither is so.
+    """
+    if len(x) <= FEWEST + 4:
+        return None
+    step, noise, n = resolution(x), noise_of(x), _first(x, sample_rate)
+    least = max(ROUNDING * float(np.abs(x).max()), 1e-300)
+    if begins == "at rest":
+        n = n if abs(x[n - 1] - x[0]) <= ERRORS * noise + step else 1
+        return float(x[:n].mean()), float(max(np.hypot(noise / np.sqrt(n), step / np.sqrt(12.0)), least))
+    size, typical = float(np.std(x)), float(np.std(x[n:] - x[:-n]))
+    if begins == "moving" and abs(x[0]) <= SETS_OUT * size and abs(x[n] - x[0]) <= SLOWLY * typical:
+        return 0.0, float(max(np.hypot(abs(x[0]), noise), least))
+    return None
 
 
 def _first(x: Samples, sample_rate: float) -> int:

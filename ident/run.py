@@ -9,7 +9,7 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ident.beginning import ROUNDING, Beginning, beginning, standing_for
+from ident.beginning import ROUNDING, Beginning, beginning, standing_for, zero_at_rest
 from ident.cached import cached_property
 from ident.slopes import slopes
 from ident.words.run_name import run_name
@@ -245,6 +245,16 @@ class Run(Shown):
     def _shown_by(self) -> Samples:
         """The channel by which the beginning is told: of many outputs the position, where it was recorded."""
         return self.channels.get("displacement", self.measured) if self.record else self.measured
+
+    @cached_property
+    def zero_at_rest(self) -> tuple[float, float] | None:
+        """What the transducer of the output reads where the machine is at zero, and its standard error; None: unknown.
+
+        Nothing of it is told where its zero was set for this run alone.
+        """
+        if self.zeroed.get(self.output):
+            return None
+        return zero_at_rest(self.measured, self.begins, self.sample_rate)
 
     @cached_property
     def mean(self) -> float:

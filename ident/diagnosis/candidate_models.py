@@ -21,6 +21,7 @@ from ident.effects import CATALOGUE
 from ident.effects.effect import Effect, off_values
 from ident.errors import Unusable
 from ident.fit.given import of_model
+from ident.fit.known_zeros import with_known_zeros
 from ident.fit.levenberg_marquardt import Way
 from ident.fit.reduction import excited_band
 from ident.fit.settings import Settings
@@ -83,7 +84,8 @@ class CandidateModels:
         memory: float | None = None,
     ) -> CandidateModels:  # fmt: skip
         """The models of the settings' preset with every effect that it has a place for."""
-        preset, matrix = prepare(preset_named(given.model), matrix, given.load, given.preprocessing)
+        preset, prepared = prepare(preset_named(given.model), matrix, given.load, given.preprocessing)
+        matrix = with_known_zeros(prepared, given.known_zeros)
         listed = (*(effect for effect in CATALOGUE if _has_specimen(preset, matrix) or not effect.of_specimen), *custom)
         known = {
             effect.name: about(effect, preset.middle)

@@ -272,6 +272,7 @@ class _FittedStructure:
         self.matrix, self.settings = matrix, Settings(model=model.name, preprocessing=off_steps(preprocessing))
         work = Identification(matrix, self.settings, report)
         self.fit, self.parameters = completed(work), len(work.objective.space.axes)
+        self.settings = replace(self.settings, known_zeros=tuple(self.fit.settings.get("known_zeros", ())))
 
     def judged(self, window: Window | None) -> _JudgedStructure:
         """By its error on held-out data, over windows where such are given."""

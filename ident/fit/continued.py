@@ -162,7 +162,7 @@ def told_of_start(start: Start, result: FitResult) -> str:
 def _error(fitness: Fitness, point: Array) -> float:
     """Eq. (17) averaged over the runs, of first states that are found for this point; infinite where unstable."""
     found = fitness.fresh(fitness.runs).exact(point, sensitivities=False).runs
-    return float(over_runs([run.error for run in found], fitness.runs))
+    return float(over_runs([run.loss for run in found], fitness.runs))
 
 
 def settings_from(found: FitResult, search: bool = False) -> Settings:

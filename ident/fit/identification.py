@@ -20,6 +20,7 @@ from ident.fit.bulk_modulus import with_bulk_modulus
 from ident.fit.ends import distinct
 from ident.fit.fitness import Fitness
 from ident.fit.given import of_model, with_candidates
+from ident.fit.known_zeros import contradicted_zeros, with_known_zeros
 from ident.fit.linear_fitness import LinearFitness
 from ident.fit.multistart import Optimum, multistart
 from ident.fit.reduction import Basis, excited_band
@@ -64,8 +65,8 @@ class Identification:
             what = "every run is to verify, none to fit"
             raise Unusable("no-fit-runs", what, "runs", "mark at least one run use: fit")
         named = preset_with(settings.model, settings.effects, settings.custom)
-        self.preset, self.matrix = prepare(named, matrix, settings.load, settings.preprocessing)
-        matrix = self.matrix
+        self.preset, prepared = prepare(named, matrix, settings.load, settings.preprocessing)
+        matrix = self.matrix = with_known_zeros(prepared, settings.known_zeros)
         _refuse_undriven(self.preset, matrix)
         self._runs = matrix.of_use("fit")
         self._integrates = integrates(self.preset.chain, self._runs, matrix.actuator)
@@ -155,7 +156,16 @@ class Identification:
 
     def finish(self, state: State) -> FitResult:
         """Polish (all methods but the paper's), errors of every run, uncertainty."""
-        return self.told(self.optimum(state), state)
+        found = self.optimum(state)
+        contradicted = () if self.settings.method == "paper-ga" else contradicted_zeros(found.here, found.fitness.runs)
+        return self._with_known_zeros(contradicted) if contradicted else self.told(found, state)
+
+    def _with_known_zeros(self, channels: tuple[str, ...]) -> FitResult:
+        """The same fit where the means of these channels count, too."""
+        known = tuple(sorted({*self.settings.known_zeros, *channels}))
+        again = type(self)(self.matrix, replace(self.settings, known_zeros=known), self.report)
+        again._started = self._started
+        return completed(again)
 
     def optimum(self, state: State) -> Optimum:
         """Where the polish of the best of a search ends."""

@@ -37,7 +37,8 @@ class NormalMatrices:
     does so, (q, p+1), see :func:`ident.fit.products.removal`; `share` is what the run counts in a mean over runs.
     `transducer` is the channel whose offset the run shares with others, "" where its zero is its own; where the mean is
     `counted`, it counts in what is fitted, and `mean_power` is its part of the residual's power: see
-    :mod:`ident.fit.transducer`.
+    :mod:`ident.fit.transducer`. `rest` is what is known of the offset where the run begins: a value, and its standard
+    error.
     """
 
     gram: Array
@@ -53,6 +54,7 @@ class NormalMatrices:
     transducer: str = ""
     counted: bool = False
     mean_power: float = 0.0
+    rest: tuple[float, float] | None = None
 
     @cached_property
     def error(self) -> float:
@@ -184,6 +186,7 @@ def normal_matrices_of(runs: Sequence[Run], blocks: Array, p: int) -> list[Norma
             projected[i], scores[i], float(totals[i]), float(release[i, -1, -1] / np.sqrt(totals[i] / run.length)),
             release[i, :-1, -1], release[i, -1], run.length, blocks[i], remove[i], run.share,
             "" if run.zeroed.get(run.output) else run.output, run.zeroed.get(run.output) is False,
+            rest=run.zero_at_rest if run.zeroed.get(run.output) is False else None,
         )
         for i, run in enumerate(runs)
     ]  # fmt: skip

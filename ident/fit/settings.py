@@ -24,7 +24,8 @@ class Settings:
     held at, all SI. With every parameter fixed nothing is searched and the result is the error of that model. Without a
     `model` ("") that which fits is taken, of those that the channels allow. The search ends with the generation that
     goes beyond `budget`, s; with one, two fits need not be the same. `preprocessing` has false for each step that is
-    switched off, see :data:`ident.preprocessing.STEPS`. With a `start` the fit begins where an earlier one
+    switched off, see :data:`ident.preprocessing.STEPS`. `known_zeros` are channels of which rest tells the zero, and
+    whose mean counts in the fit: see :mod:`ident.fit.known_zeros`. With a `start` the fit begins where an earlier one
     ended, and nothing is searched unless that asks for it.
     """
 
@@ -39,6 +40,7 @@ class Settings:
     custom: tuple[Mapping[str, Any], ...] = ()
     budget: float | None = None
     preprocessing: Mapping[str, bool] = field(default_factory=dict, metadata=WHERE_KNOWN)
+    known_zeros: tuple[str, ...] = field(default=(), metadata=WHERE_KNOWN)
     start: Start | None = field(default=None, metadata=WHERE_KNOWN)
 
     def to_json(self) -> dict[str, Any]:

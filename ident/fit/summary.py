@@ -27,7 +27,7 @@ from ident.fit.settings import Settings
 from ident.fit.simulated_fitness import SimulatedFitness
 from ident.fit.slow_answer import slow_lag
 from ident.fit.space import Space
-from ident.fit.transducer import Offset, offset_at, offsets_that_count
+from ident.fit.transducer import Offset, offset_at, offsets_that_count, rest_of
 from ident.fit.uncertainty import COMBINED, DETERMINED, Covariance, covariance
 from ident.matrix import Matrix
 from ident.noise.floor import Floors
@@ -153,7 +153,8 @@ def summarise(
         data_hash=matrix.data_hash,
         notes=(
             *_notes(settings, objective, floors, fit_errors),
-            *_read_offsets(offsets, matrix),
+            *_known_zeros(settings, objective.runs, offsets),
+            *_read_offsets({name: one for name, one in offsets.items() if name not in settings.known_zeros}, matrix),
             *_beyond(optimum, values, label),
             *told,
             *_alone(optimum.starts),
@@ -355,6 +356,18 @@ def _read_offsets(offsets: Mapping[str, Offset], matrix: Matrix) -> Iterator[str
         size, error = (quantity(value, _unit_of(name, matrix)) for value in (abs(one.value), one.std_error))
         side = "above" if one.value >= 0 else "below"
         yield str(message("transducer_offset", channel=name, offset=size, error=error, side=side))
+
+
+def _known_zeros(settings: Settings, runs: Sequence[Run], offsets: Mapping[str, Offset]) -> Iterator[str]:
+    """Which means count because rest tells the zero of a transducer, and whether the model explains them."""
+    for name in settings.known_zeros:
+        own = [run for run in runs if run.output == name]
+        if (rest := rest_of(run.zero_at_rest for run in own)) is None:
+            continue
+        value, error = (quantity(one, own[0].units.get(name, "1")) for one in rest)
+        yield str(message("known_zero", channel=name, value=value, error=error))
+        if name in offsets and offsets[name].large:
+            yield str(message("known_zero.left", channel=name))
 
 
 def _unrecorded(runs: Sequence[Run]) -> Iterator[str]:

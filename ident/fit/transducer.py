@@ -8,12 +8,15 @@ of ∂y/∂θ, n the number of samples that tell the mean, and P the sum of squa
 and b is at the minimum of F. With one run b is r̄, and F is eq. (17). Where the mean counts (``zeroed: false``), F is
 what is fitted: its gradient at the best b is that in θ alone, and its Gauss-Newton matrix has b eliminated, so that
 J̄ counts less its mean over the runs, weighted as they are. Elsewhere eq. (17) is fitted, and b is found afterwards.
+
+Where runs begin at rest, their first samples tell b₀ with a standard error σ. That is one more observation, the prior
+of b. Of N samples in all the likelihood is a power of F, so with it F is multiplied by exp((b − b₀)²/(2 N σ²)).
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
 from typing import Protocol
 
 import numpy as np
@@ -87,23 +90,66 @@ def with_means(runs: Sequence[NormalMatrices]) -> tuple[NormalMatrices, ...]:
     found = list(runs)
     for numbers in _by_transducer(runs, [run.counted for run in runs]).values():
         own = [runs[i] for i in numbers]
-        b = offset_of(own)
-        centre = np.average([run.means for run in own], axis=0, weights=[_weight(run, b) for run in own])
+        b, prior = offset_of(own), _Prior.of(own)
+        weights = [_weight(run, b) for run in own]
+        centre = np.average([run.means for run in own], axis=0, weights=weights)
+        centre *= 1.0 - prior.share(weights, own, b)
         centre[-1] = b
         for i in numbers:
-            found[i] = runs[i].about(runs[i].means - centre)
+            found[i] = prior.on(runs[i].about(runs[i].means - centre), centre)
     return tuple(found)
 
 
 def offset_of(runs: Sequence[NormalMatrices]) -> float:
     """The offset b of the transducer of these runs, at the minimum of F: the mean of r̄, reweighted until it holds."""
-    means = np.array([run.means[-1] for run in runs])
+    means, prior = np.array([run.means[-1] for run in runs]), _Prior.of(runs)
     b = float(np.median(means))
-    for _ in range(_ROUNDS if len(runs) > 1 else 0):
-        last, b = b, float(np.average(means, weights=[_weight(run, b) for run in runs]))
+    for _ in range(_ROUNDS if len(runs) > 1 or prior.std_error < np.inf else 0):
+        weights = [_weight(run, b) for run in runs]
+        told = prior.share(weights, runs, b)
+        last, b = b, (1.0 - told) * float(np.average(means, weights=weights)) + told * prior.value
         if abs(b - last) <= _SETTLED * float(np.abs(means).max()):
             break
     return b
+
+
+def rest_of(known: Iterable[tuple[float, float] | None]) -> tuple[float, float] | None:
+    """What runs that begin at rest tell of the offset of their transducer together, and its standard error."""
+    told = np.array([one for one in known if one is not None])
+    if not len(told):
+        return None
+    weights = told[:, 1] ** -2.0
+    return float(np.average(told[:, 0], weights=weights)), float(weights.sum() ** -0.5)
+
+
+@dataclass(frozen=True)
+class _Prior:
+    """What is known of an offset by how its runs begin: b₀, its standard error σ (infinite: nothing), and N σ²."""
+
+    value: float = 0.0
+    std_error: float = np.inf
+    spread: float = np.inf
+
+    @classmethod
+    def of(cls, runs: Sequence[NormalMatrices]) -> _Prior:
+        """The prior of the transducer of these runs."""
+        known = rest_of(run.rest for run in runs if run.counted)
+        return cls() if known is None else cls(*known, sum(run.informing for run in runs) * known[1] ** 2)
+
+    def share(self, weights: Sequence[float], runs: Sequence[NormalMatrices], b: float) -> float:
+        """What the prior counts in b, of it and the means of the runs with their weights."""
+        own = sum(run.share * float(np.sqrt(_power(run, b) / run.total)) for run in runs) / self.spread
+        return own / (own + sum(weights))
+
+    def on(self, run: NormalMatrices, centre: Array) -> NormalMatrices:
+        """A run about an offset (the last of the `centre`), with the prior: F times its factor, and its own slope."""
+        if not self.spread < np.inf:
+            return run
+        away = np.append(-centre[:-1], self.value - centre[-1])
+        left = float(run.gram[-1, -1] * np.exp(away[-1] ** 2 / self.spread))
+        gram = run.gram * (left / run.gram[-1, -1]) + left / self.spread * np.outer(away, away)
+        gram[-1, -1] = left
+        return replace(run, gram=gram, mean_power=left - run.centred)
 
 
 def offsets(here: Optimal) -> dict[str, Offset]:
@@ -131,8 +177,10 @@ def offset_at(run: Run, offsets: Mapping[str, Read]) -> float:
 
 def _offset(here: Optimal, own: frozenset[int]) -> Offset:
     b = offset_of([here.runs[i] for i in sorted(own)])
-    counts = np.array([_weight(run, b) if i in own else 0.0 for i, run in enumerate(here.runs)])
-    counts /= counts.sum()
+    runs = [here.runs[i] for i in sorted(own)]
+    counts, prior = np.array([_weight(run, b) if i in own else 0.0 for i, run in enumerate(here.runs)]), _Prior.of(runs)
+    told = prior.share(counts[sorted(own)].tolist(), runs, b)
+    counts *= (1.0 - told) / counts.sum()
     p = len(here.curvature)
     slope = sum((c * run.means[:p] for c, run in zip(counts, here.runs, strict=True) if c), np.zeros(p))
     through = _solved(here.curvature, slope)
@@ -142,10 +190,14 @@ def _offset(here: Optimal, own: frozenset[int]) -> Offset:
     ])  # fmt: skip
     freedom = len(influence) - p - 1
     scatter = float(influence @ influence) * (len(influence) / freedom if freedom > 0 else 1.0)
-    runs = [here.runs[i] for i in sorted(own)]
+    scatter += (told * prior.std_error) ** 2 if told else 0.0
+    return Offset(b, float(np.sqrt(scatter)), any(run.counted for run in runs), is_large(runs))
+
+
+def is_large(runs: Sequence[NormalMatrices]) -> bool:
+    """Whether the means are the larger part of what is left of runs."""
     error, with_mean = over_runs([[run.error, np.hypot(run.error, run.offset)] for run in runs], runs)
-    large = bool(with_mean > MEAN_COUNTS * error)
-    return Offset(b, float(np.sqrt(scatter)), any(run.counted for run in runs), large)
+    return bool(with_mean > MEAN_COUNTS * error)
 
 
 def _solved(curvature: Array, slope: Array) -> Array:
@@ -158,8 +210,12 @@ def _solved(curvature: Array, slope: Array) -> Array:
 
 def _weight(run: NormalMatrices, b: float) -> float:
     """w n: what the mean of a run counts, at an offset."""
-    power = max(run.centred + run.informing * (run.means[-1] - b) ** 2, 1e-24 * run.total)
-    return run.share * run.informing / float(np.sqrt(power * run.total))
+    return run.share * run.informing / float(np.sqrt(_power(run, b) * run.total))
+
+
+def _power(run: NormalMatrices, b: float) -> float:
+    """Σ of the squares of the residual about an offset."""
+    return float(max(run.centred + run.informing * (run.means[-1] - b) ** 2, 1e-24 * run.total))
 
 
 def _by_transducer(runs: Sequence[NormalMatrices], asked: Sequence[bool]) -> Mapping[str, list[int]]:

@@ -225,6 +225,11 @@ CAUSES: Mapping[str, str] = {
     "transducer_offset":
         "The transducer of {channel} reads {offset} {side} the model, with a standard error of {error}. This offset is "
         "part of the model in RMSE and in the error with the mean.",
+    "known_zero":
+        "The runs begin at rest, where {channel} reads {value}, with a standard error of {error}: its mean counts in "
+        "the fit.",
+    "known_zero.left":
+        "The model does not explain the mean of {channel}: a constant force, a bias or an input may be missing.",
     "unstable": "The model is unstable. Likely cause: {causes:terms}.",
 }  # fmt: skip
 """What a fit says that is hardly better than none."""

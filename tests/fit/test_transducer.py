@@ -103,8 +103,14 @@ def test_where_the_mean_counts_it_is_part_of_what_is_fitted():
     assert narrow.value == pytest.approx(GAIN, abs=4 * narrow.std_error)
 
 
-def test_the_loss_with_means_is_the_one_of_its_definition_and_its_gradient_is_that_of_the_loss():
-    """F at the best offset, found by a search of its own, and its slope by differences, away from the optimum."""
+@pytest.mark.parametrize("std_error", [None, 0.3, 1e-4])
+def test_the_loss_with_means_is_the_one_of_its_definition_and_its_gradient_is_that_of_the_loss(std_error, monkeypatch):
+    """F at the best offset, found by a search of its own, and its slope by differences, away from the optimum.
+
+    Without a prior of the offset from rest, with one that tells as much as the means do, and with one that tells all.
+    """
+    zero = 0.8
+    monkeypatch.setattr(Run, "zero_at_rest", None if std_error is None else (zero, std_error))
     matrix = lag(4, 1.0, False, (-1.0, 0.5, 2.0), noise=0.1)
     begun = tuple(replace(run, assumed_beginning="at rest") for run in matrix.runs)  # else first states are free, too
     made = Identification(replace(matrix, runs=begun), Settings(model="first_order"))
@@ -119,9 +125,12 @@ def test_the_loss_with_means_is_the_one_of_its_definition_and_its_gradient_is_th
         sizes = [run.measured.std() for run in fitness.runs]
 
         def at_offset(b: float) -> float:
-            return float(np.mean([np.sqrt(np.mean((r - b) ** 2)) / s for r, s in zip(left, sizes, strict=True)]))
+            error = np.mean([np.sqrt(np.mean((r - b) ** 2)) / s for r, s in zip(left, sizes, strict=True)])
+            # Each of the runs tells the same: three times as much.
+            apart = 0.0 if std_error is None else 3.0 * ((b - zero) / std_error) ** 2
+            return float(np.log(error) + 0.5 * apart / sum(run.length for run in fitness.runs))
 
-        return float(scipy.optimize.minimize_scalar(at_offset, options={"xtol": 1e-12}).fun)
+        return float(np.exp(scipy.optimize.minimize_scalar(at_offset, (zero, zero + 1e-3), tol=1e-14).fun))
 
     assert here.error == pytest.approx(loss(point), rel=1e-9)
     slope = [(loss(point + step) - loss(point - step)) / 2e-5 for step in 1e-5 * np.eye(2)]
