@@ -19,12 +19,15 @@ class RefittedView(BaseModel):
 class BaselineView(BaseModel):
     """Errors and offset of the model that was given; `unstable` has by use the runs on which it is unstable.
 
-    `error_with_mean` is RMS(x − x_m)/std(x_m). Where they are not known these two are absent.
+    `error_with_mean` is RMS(x − x_m)/std(x_m), `rmse` RMS(x − x_m) in `rmse_unit`. Where they are not known these are
+    absent.
     """
 
     error: Errors
     offset: float | None
     error_with_mean: Errors = Field(default_factory=dict)
+    rmse: Errors = Field(default_factory=dict)
+    rmse_unit: str = ""
     unstable: dict[str, list[str]] = Field(default_factory=dict)
     transducer_offset: dict[str, TransducerOffsetView] = Field(default_factory=dict)
 
@@ -45,6 +48,8 @@ class CandidateView(BaseModel):
     evidence: dict[str, float | bool | str | None]
     why: str
     error_with_mean: Errors = Field(default_factory=dict)
+    rmse: Errors = Field(default_factory=dict)
+    rmse_unit: str = ""
     unstable: dict[str, list[str]] = Field(default_factory=dict)
     transducer_offset: dict[str, TransducerOffsetView] = Field(default_factory=dict)
 
@@ -61,6 +66,8 @@ class RungView(BaseModel):
     nats: float | None
     parameters: dict[str, RefittedView]
     error_with_mean: Errors = Field(default_factory=dict)
+    rmse: Errors = Field(default_factory=dict)
+    rmse_unit: str = ""
     unstable: dict[str, list[str]] = Field(default_factory=dict)
     transducer_offset: dict[str, TransducerOffsetView] = Field(default_factory=dict)
 

@@ -161,14 +161,35 @@ class FittedModel:
         """RMS(x − x_m)/std(x_m) by what it is measured on; nothing over windows, whose errors count the mean."""
         if self.fitness.horizon is not None or not self.stable:
             return {}
+        found: dict[str, float | None] = {"fit": float(over_runs(self._with_mean, self.local.runs))}
+        known = in_time(lambda: self._verified)
+        return found | ({} if known is None or known.unstable else {"verify": known.with_mean})
+
+    @property
+    def rmse(self) -> dict[str, float | None]:
+        """RMS(x − x_m) in :attr:`rmse_unit` by what it is measured on; nothing where no mean is counted."""
+        runs, found = self.fitness.runs, self.errors_with_mean
+        if not self.rmse_unit or not found:
+            return {}
+        left = [of * float(np.std(run.measured)) for of, run in zip(self._with_mean, runs, strict=True)]
+        sizes: dict[str, float | None] = {"fit": float(over_runs(left, runs))}
+        known = in_time(lambda: self._verified)
+        return sizes | ({"verify": known.rmse} if known is not None and "verify" in found else {})
+
+    @property
+    def rmse_unit(self) -> str:
+        """The SI unit of what was measured; "" where the outputs have several."""
+        units = {run.units.get(run.output, "1") for run in self.fitness.matrix.runs}
+        return units.pop() if len(units) == 1 else ""
+
+    @property
+    def _with_mean(self) -> list[float]:
+        """RMS(x − x_m)/std(x_m) of each run that is fitted, with the offsets of transducers."""
         pairs = zip(self.fitness.runs, self.local.runs, strict=True)
-        fitted = [
+        return [
             float(np.hypot(of.error, of.offset - offset_at(run, self._offsets) / float(np.std(run.measured))))
             for run, of in pairs
         ]
-        found: dict[str, float | None] = {"fit": float(over_runs(fitted, self.local.runs))}
-        known = in_time(lambda: self._verified)
-        return found | ({} if known is None or known.unstable else {"verify": known.with_mean})
 
     @cached_property
     def _offsets(self) -> Mapping[str, Offset]:
@@ -237,12 +258,13 @@ class FittedModel:
 class _Simulated:
     """What a simulation leaves of runs: eq. (17) averaged over them.
 
-    `with_mean` is RMS(x − x_m)/std(x_m) of whole runs, averaged as the error is; `unstable` are the ids of the runs on
-    which the model is.
+    `with_mean` is RMS(x − x_m)/std(x_m) of whole runs, `rmse` RMS(x − x_m), averaged as the error is;
+    `unstable` are the ids of the runs on which the model is.
     """
 
     error: float
     with_mean: float
+    rmse: float
     unstable: tuple[str, ...]
 
     @classmethod
@@ -252,9 +274,10 @@ class _Simulated:
         left = [fitness.left(run, outputs[run.id]) for run in runs]
         errors = [_rms(r) / np.std(run.measured) for r, run in zip(left, runs, strict=True)]
         whole = [run.measured - outputs[run.id] - offset_at(run, offsets or {}) for run in runs]
-        with_mean = over_runs([_rms(r) / np.std(run.measured) for r, run in zip(whole, runs, strict=True)], runs)
+        sizes = [_rms(r) for r in whole]
+        with_mean = over_runs([size / np.std(run.measured) for size, run in zip(sizes, runs, strict=True)], runs)
         unstable = tuple(run.id for run, error in zip(runs, errors, strict=True) if not error < UNSTABLE)
-        return cls(float(over_runs(errors, runs)), float(with_mean), unstable)
+        return cls(float(over_runs(errors, runs)), float(with_mean), float(over_runs(sizes, runs)), unstable)
 
 
 def _rms(residual: Array) -> float:

@@ -37,7 +37,13 @@ def report(fit: FitResult, models: CandidateModels, selection: Selection, steps:
         model=fit.model,
         effects=base.effects,
         baseline=Baseline(
-            dict(ladder[0].error), base.offset, base.errors_with_mean, base.unstable, base.transducer_offset
+            dict(ladder[0].error),
+            base.offset,
+            base.errors_with_mean,
+            base.rmse,
+            base.rmse_unit if base.rmse else "",
+            base.unstable,
+            base.transducer_offset,
         ),
         noise_floor=floor,
         horizon=selection.models.horizon,
@@ -134,6 +140,8 @@ def _ranked(selection: Selection, floor: float | None, verdict: Verdict) -> list
             group=group_of(candidate.effect, verdict),
             probability=verdict.probabilities.get(candidate.effect),
             error_with_mean=refit.errors_with_mean if refit else {},
+            rmse=refit.rmse if refit else {},
+            rmse_unit=refit.rmse_unit if refit and refit.rmse else "",
             unstable=refit.unstable if refit else {},
             transducer_offset=refit.transducer_offset if refit else {},
             evidence={"predicted_fall": candidate.prediction.reduction,
@@ -165,6 +173,8 @@ def rung_of(added: str | None, before: FittedModel | None, refit: FittedModel) -
         nats=found.gain if found else None,
         parameters=refit.parameters,
         error_with_mean=refit.errors_with_mean,
+        rmse=refit.rmse,
+        rmse_unit=refit.rmse_unit if refit.rmse else "",
         unstable=refit.unstable,
         transducer_offset=refit.transducer_offset,
     )

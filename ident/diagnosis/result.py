@@ -15,6 +15,7 @@ from ident.matrix import Matrix, StepOutcome
 from ident.plain import UNWRITTEN, WHERE_KNOWN, Misfit, read, written
 from ident.residuals.budget import Budget
 from ident.run import USES, Specimen
+from ident.words.engineering import quantity
 from ident.words.error import ErrorOf, first_line
 from ident.words.shown import Shown, in_brief
 
@@ -25,18 +26,21 @@ NO_ERRORS: Errors = {"fit": None, "held_out": None, "verify": None}
 
 
 class Judged:
-    """What has errors by use: with the mean counted, and the runs on which it is unstable, where these are known."""
+    """What has errors by use: with the mean counted, `rmse` in `rmse_unit`, and where it is unstable, if known."""
 
     error: Errors
     error_with_mean: Errors
+    rmse: Errors
+    rmse_unit: str
     unstable: Mapping[str, tuple[str, ...]]
     transducer_offset: Mapping[str, TransducerOffset]
 
     def error_of(self, use: str) -> ErrorOf:
         """The error on the runs of a use as a reader reads it: a model that is unstable where it is fitted has none."""
         unstable = self.unstable.get("fit", ()) or self.unstable.get(use, ())
-        offset = large_offsets(self.transducer_offset)
-        return ErrorOf(self.error.get(use), self.error_with_mean.get(use), unstable, offset=offset)
+        size, offset = self.rmse.get(use), large_offsets(self.transducer_offset)
+        size_said = quantity(size, self.rmse_unit) if size else ""
+        return ErrorOf(self.error.get(use), self.error_with_mean.get(use), unstable, size_said, offset)
 
 
 @dataclass(frozen=True)
@@ -46,6 +50,8 @@ class Baseline(Judged):
     error: Errors = field(default_factory=dict)
     offset: float | None = None
     error_with_mean: Errors = field(default_factory=dict, metadata=WHERE_KNOWN)
+    rmse: Errors = field(default_factory=dict, metadata=WHERE_KNOWN)
+    rmse_unit: str = field(default="", metadata=WHERE_KNOWN)
     unstable: Mapping[str, tuple[str, ...]] = field(default_factory=dict, metadata=WHERE_KNOWN)
     transducer_offset: Mapping[str, TransducerOffset] = field(default_factory=dict, metadata=WHERE_KNOWN)
 
@@ -68,6 +74,8 @@ class Ranked(Judged):
     evidence: Mapping[str, float | str | bool | None] = field(default_factory=dict)
     why: str = ""
     error_with_mean: Errors = field(default_factory=dict, metadata=WHERE_KNOWN)
+    rmse: Errors = field(default_factory=dict, metadata=WHERE_KNOWN)
+    rmse_unit: str = field(default="", metadata=WHERE_KNOWN)
     unstable: Mapping[str, tuple[str, ...]] = field(default_factory=dict, metadata=WHERE_KNOWN)
     transducer_offset: Mapping[str, TransducerOffset] = field(default_factory=dict, metadata=WHERE_KNOWN)
 
@@ -91,6 +99,8 @@ class Rung(Judged):
     nats: float | None = None
     parameters: Mapping[str, ParameterEstimate] = field(default_factory=dict)
     error_with_mean: Errors = field(default_factory=dict, metadata=WHERE_KNOWN)
+    rmse: Errors = field(default_factory=dict, metadata=WHERE_KNOWN)
+    rmse_unit: str = field(default="", metadata=WHERE_KNOWN)
     unstable: Mapping[str, tuple[str, ...]] = field(default_factory=dict, metadata=WHERE_KNOWN)
     transducer_offset: Mapping[str, TransducerOffset] = field(default_factory=dict, metadata=WHERE_KNOWN)
 

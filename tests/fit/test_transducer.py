@@ -75,6 +75,11 @@ def test_a_diagnosis_says_the_offset_with_its_errors():
     rung = found.ladder[0]
     assert rung.transducer_offset["displacement"].large
     assert rung.error_with_mean["verify"] < 1.2 * rung.error["verify"]
+    sizes = {run.use: float(np.std(run.measured)) for run in matrix.runs}
+    for judged in (rung, found.baseline):
+        assert judged.rmse_unit == "m"
+        for use, size in sizes.items():
+            assert judged.rmse[use] == pytest.approx(judged.error_with_mean[use] * size, rel=1e-9)
 
 
 def test_without_an_offset_nothing_is_found_and_the_fit_is_that_of_equation_17():
