@@ -22,6 +22,7 @@ _OPTIONAL = """\
 # A run may also say: specimen: {mass: 0.87 kg, stiffness: 36.3 kN/m, damping: 0 N*s/m}, gain: 7 (Kp of its loop),
 # amplitude: 0.05 in (RMS of the command), kind: blwn, use: verify,
 # hold: zoh (the command is held between its samples; or linear, band-limited).
+# A measured channel may say: zeroed: true (its zero was set by hand for the run), zeroed: false (its mean counts).
 """
 
 

@@ -65,7 +65,7 @@ def test_a_wrong_unit_is_mended_in_place_for_all_runs(page, watch, site, tmp_pat
     expect(page).to_have_url(newest)
 
 
-def test_a_sign_is_turned_round_and_back(page, site, tmp_path):
+def test_a_sign_is_turned_round_and_back_and_a_zero_is_stated(page, site, tmp_path):
     archive = tmp_path / "matrix.zip"
     archive.write_bytes(archived(files("SW-SIGN")))
     story.upload(page, site, archive)
@@ -73,13 +73,17 @@ def test_a_sign_is_turned_round_and_back(page, site, tmp_path):
         before = page.url
         page.locator("#run-2").get_by_role("button", name="Edit").click()
         sign = page.get_by_role("dialog").locator("tr[data-channel=displacement]").get_by_role("checkbox")
+        zero = page.get_by_label("Zero of displacement")
         expect(sign).to_be_checked(checked=not turned)
+        expect(zero).to_have_value("" if turned else "true")
         sign.set_checked(turned)
+        zero.select_option("set by hand for this run" if turned else "not stated")
         page.get_by_role("button", name="Save as new revision").click()
         expect(page).not_to_have_url(before)
         expect(page.locator("h1")).to_have_text("Test data of SW-SIGN")
         stored = site.client.get(f"/matrices/{page.url.rpartition('/')[2]}/description").json()["runs"][2]
         assert stored["channels"]["displacement"]["invert"] == str(turned).lower()
+        assert stored["channels"]["displacement"].get("zeroed") == ("true" if turned else None)
 
 
 @pytest.mark.usefixtures("running")

@@ -15,7 +15,9 @@ const inside = (data, path) => path.split(".").reduce((found, name) => found?.[n
 const text = (value) => (value === undefined || value === null ? "" : [value].flat().join(", "));
 const label = (entry, path) => text(inside(entry, path)) || (ABSENT[path] ?? "");
 
-const inverted = (channel) => ["true", "yes"].includes(text(channel.invert).toLowerCase()); // a description holds words, but for whole numbers
+const isTrue = (word) => ["true", "yes"].includes(text(word).toLowerCase()); // a description holds words, but for whole numbers
+const inverted = (channel) => isTrue(channel.invert);
+const zeroed = (channel) => text(channel.zeroed) && String(isTrue(channel.zeroed)); // "" where nobody said
 
 // The record of a run: itself, or the one that it is an output or the validation data of.
 const record = (name) => description.runs.find(({ id }) => String(id) === name) ?? description.runs.find(({ id }) => name.startsWith(`${id}.`));
@@ -31,12 +33,14 @@ function fill(entry) {
 
 function row(name, channel) {
   const made = form.querySelector("template").content.cloneNode(true).firstElementChild;
-  const [unit, invert] = made.querySelectorAll("input");
+  const [unit, invert] = made.querySelectorAll("input"), zero = made.querySelector("select");
   made.dataset.channel = name;
   made.querySelector("th").textContent = name.replaceAll("_", " ");
   unit.setAttribute("aria-label", `Unit of ${name}`);
   unit.value = text(channel.unit);
   invert.checked = inverted(channel);
+  zero.setAttribute("aria-label", `Zero of ${name}`);
+  zero.value = zeroed(channel);
   return made;
 }
 
@@ -49,10 +53,11 @@ function changes() {
   }
   if (found.split && found.split.validation === null) found.split = null; // without validation data there is no gap
   for (const each of channels.rows) {
-    const [unit, invert] = each.querySelectorAll("input");
+    const [unit, invert] = each.querySelectorAll("input"), zero = each.querySelector("select").value;
     const name = each.dataset.channel, before = run.channels[name];
     if (unit.value.trim() !== text(before.unit)) put(found, `channels.${name}.unit`, unit.value.trim() || null);
     if (invert.checked !== inverted(before)) put(found, `channels.${name}.invert`, invert.checked);
+    if (zero !== zeroed(before)) put(found, `channels.${name}.zeroed`, zero ? zero === "true" : null);
   }
   return found;
 }
