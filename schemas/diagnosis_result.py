@@ -276,6 +276,7 @@ class DiagnosisResult(BaseModel):
     notes: list[str]
     effect_sets: list[EffectSetView] = Field(default_factory=list)
     most_nats: float | None = None
+    max_effects: int | None = None
     preprocessing: list[StepView] = Field(default_factory=list)
     missing_inputs: list[MissingInputView] = Field(default_factory=list)
     oscillation: list[OscillationView] = Field(default_factory=list)

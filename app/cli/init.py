@@ -90,7 +90,7 @@ def init(
 
     if out is not None:
         _free(out)
-    files = [file for one in files for file in _records(one)]
+    given_files, files = files, [file for one in files for file in _records(one)]
     whole = [(Path(name).name, data) for name, data in with_runs_joined([(str(one), _content(one)) for one in files])]
     given = {"gain": gain, "hold": hold}
     names = [name for name, _ in whole]
@@ -112,7 +112,7 @@ def init(
         said = {"--out": out, "--serial": serial, "--channel": channel, "--time": time, "--rate": rate,
                 "--dialect": dialect, "--output": output, "--verify": verify,
                 "--validation": validation, "--area": area, "--gain": gain, "--hold": hold}  # fmt: skip
-        raise _with_command(draft, files, said)
+        raise _with_command(draft, given_files, said)
     made = gathered(draft, contents)
     _made(draft, made, _free(out or _of_serial(draft.answers.serial)))
 
@@ -138,7 +138,8 @@ def _with_command(draft: Draft, files: list[Path], said: Mapping[str, object]) -
             given += [option, str(one)]
     named = shlex.join(given) if len(shlex.join(given)) <= _LONGEST else f"FILES… {shlex.join(given[len(files) :])}"
     what = str(message("draft.missing", questions=[one.question for one in draft.missing]))
-    remedy = f"type servoident init {' '.join((named.strip(), *draft.options))}"
+    command = f"servoident init {' '.join((named.strip(), *draft.options))}"
+    remedy = str(message("draft.command" if draft.options else "draft.command_whole", command=command))
     return Unusable("not-stated", what, "init", remedy)
 
 

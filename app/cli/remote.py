@@ -53,7 +53,7 @@ def request(server: str, token: str, method: str, path: str, **content: Any) -> 
             "bad-token", "it is not plain ASCII", "--token", "give the token that the service printed"
         ) from None
     except (httpx.HTTPError, httpx.InvalidURL) as error:
-        remedy = "start it with `servoident serve`, or give its address with --server"
+        remedy = "start it there with `servoident serve`, or give another address with --server"
         raise Unusable("no-service", f"no answer from the service ({error})", server, remedy) from None
     if answer.is_error:
         raise refusal(answer)
@@ -89,7 +89,7 @@ def receive(server: str, token: str, path: str, file: Path) -> int:
             return received(answer, file)
     except (httpx.HTTPError, httpx.InvalidURL) as error:
         raise Unusable(
-            "no-service", f"no answer from the service ({error})", server, "start it, or give its address"
+            "no-service", f"no answer from the service ({error})", server, "start it there, or give another address"
         ) from None
 
 

@@ -78,12 +78,12 @@ def next_command(found: Diagnosis, file: str = "D.json", matrix: str = "MATRIX")
 
     `file` is that of the diagnosis and `matrix` that of its data, both as a shell takes them.
 
-    Nor is there one where validation data contradict its effects, or where an earlier version did not tell what its
-    refits ended with.
+    Nor is there one where validation data contradict its effects, where a label is to be corrected first, or where an
+    earlier version did not tell what its refits ended with.
     """
     proposals = found.proposals or ()
     contradicted = found.verdict.standing == "contradicted" and not proposals
-    if contradicted or (not proposals and not any(end.added for end in _rungs(found))):
+    if contradicted or found.verdict.suspects or (not proposals and not any(end.added for end in _rungs(found))):
         return ""
     end = recommended(found)
     command = message("recommended", matrix=matrix, file=file, effects=end.added, error=end.error.get("fit"))
@@ -92,7 +92,10 @@ def next_command(found: Diagnosis, file: str = "D.json", matrix: str = "MATRIX")
 
 def next_run_command(found: Diagnosis, file: str = "D.json", matrix: str = "MATRIX") -> str:
     """The command that writes the proposed run, in a sentence; "" where none is proposed."""
-    return "" if found.next_experiment is None else str(message("recommended.run", matrix=matrix, file=file))
+    if found.next_experiment is None:
+        return ""
+    in_question = found.verdict.effects or found.verdict.unexplained
+    return str(message("recommended.run" if in_question else "recommended.run_sharpens", matrix=matrix, file=file))
 
 
 def end_with(found: Diagnosis, effects: Sequence[str]) -> End | None:

@@ -55,6 +55,7 @@ def report(fit: FitResult, models: CandidateModels, selection: Selection, steps:
         proposals=(),
         complete=selection.complete,
         seed=fit.seed,
+        max_effects=selection.most,
         version=version("servoident"),
         data_hash=models.matrix.data_hash,
         preprocessing=models.matrix.preprocessing,

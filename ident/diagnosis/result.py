@@ -216,6 +216,7 @@ class Diagnosis(Shown):
     gain of a model that leaves nothing but the noise. `missing_inputs` are the stretches in which an input acted that
     is not recorded: run, from, to (s, or samples) and evidence; where a run to fit has one, no effect was looked for.
     `oscillation` has the runs that swing by themselves: run, frequency, growth (Hz and 1/s, or 1/sample), cause.
+    `max_effects` is how many effects could be added.
     """
 
     model: str = "qian2014"
@@ -244,6 +245,7 @@ class Diagnosis(Shown):
     effect_sets: tuple[EffectSet, ...] = field(default=(), metadata=WHERE_KNOWN)
     most_nats: float | None = field(default=None, metadata=WHERE_KNOWN)
     preprocessing: tuple[StepOutcome, ...] = field(default=(), metadata=WHERE_KNOWN)
+    max_effects: int | None = field(default=None, metadata=WHERE_KNOWN)
     missing_inputs: tuple[Mapping[str, str | float], ...] = field(default=(), metadata=WHERE_KNOWN)
     oscillation: tuple[Mapping[str, str | float], ...] = field(default=(), metadata=WHERE_KNOWN)
     matrix: Matrix | None = field(default=None, compare=False, repr=False, metadata=UNWRITTEN)

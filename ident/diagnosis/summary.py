@@ -161,6 +161,8 @@ def _next(found: Diagnosis) -> Message:
         return message("next.then", then=_then(found))
     if verdict.indistinguishable and found.next_experiment is not None:
         return message("next.distinguish", group=verdict.indistinguishable[0])
+    if verdict.unexplained and found.max_effects and len(verdict.effects) >= found.max_effects:
+        return message("next.more", effects=verdict.effects, most=2 * found.max_effects)
     if verdict.unexplained and verdict.effects:
         return message("next.add_and", effects=verdict.effects, then=_then(found))
     if verdict.unexplained:

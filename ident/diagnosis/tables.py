@@ -24,7 +24,7 @@ def diagnosis_listings(found: Diagnosis) -> Iterator[Listing | str]:
     """Errors, ranking, ladder, suspects, proposals; sentences between and below them."""
     uses = tuple(DATA.values())
     yield found.headline
-    if any(known is not None for known in (*found.baseline.error.values(), *found.noise_floor.values())):
+    if any(value is not None for value in (*found.baseline.error.values(), *found.noise_floor.values())):
         yield Listing("", (_measure(found), *uses), error_rows(found), uses)
     if ranked := [*ranking_rows(found)]:
         header = ("effect", "probability", "predicted", "held-out", "validation", "strength", "group")

@@ -14,6 +14,7 @@ from ident.fit.result import FitResult
 from ident.fit.settings import Settings
 from ident.matrix import Matrix
 from ident.words.message import Message, message
+from ident.words.run_name import run_name
 
 _STAGES = (EFFECTS, *LATER[1:])
 
@@ -55,7 +56,11 @@ def with_oscillations(found: Diagnosis, swings: Sequence[SelfOscillation]) -> Di
     """The diagnosis with what the machine does by itself, said first; as it is where it does nothing."""
     if not swings:
         return found
-    said = message("verdict.oscillation", evidence=swings[0].evidence, cause=swings[0].cause)
+    first, *others = swings
+    said = message("verdict.oscillation", evidence=first.evidence, cause=first.cause)
+    if others:
+        names = [run_name(swing.run) for swing in others]
+        said = message("verdict.oscillation_of_several", evidence=first.evidence, others=names, cause=first.cause)
     verdict = replace(found.verdict, text=f"{said} {found.verdict.text}")
     return replace(found, verdict=verdict, oscillation=tuple(swing.to_json() for swing in swings))
 

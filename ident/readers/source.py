@@ -76,8 +76,10 @@ class Folder:
             path = path / part
             if path.is_symlink():
                 raise Unusable("symbolic-link", f"{part!r} is a symbolic link", name, "put the file itself there")
-        if name == DESCRIPTION and not path.exists():
-            remedy = f"write one with `servoident init {quote(str(self.folder))}`, or name a folder that has one"
+        if not path.exists():
+            remedy = f"add it, or correct the name in {DESCRIPTION}"
+            if name == DESCRIPTION:
+                remedy = f"write one with `servoident init {quote(str(self.folder))}`, or name a folder that has one"
             raise Unusable("missing-file", "there is no such file", name, remedy)
         return read_regular(path, name, limit)
 

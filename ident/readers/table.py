@@ -56,7 +56,7 @@ class Table:
             raise Unusable("ambiguous-column", what, where, "give the 0-based number of the column")
         if found:
             return found[0]
-        otherwise = f"name one of {some_of(self.names)}" if self.names else self.listed()
+        otherwise = f"its columns are {some_of(self.names)}" if self.names else self.listed()
         remedy = did_you_mean(column, self.names, otherwise)
         raise Unusable("missing-column", f"there is no column {shown(column)!r}", where, remedy)
 

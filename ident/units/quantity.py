@@ -38,6 +38,9 @@ _WRITTEN = {
 }  # fmt: skip
 """The unit of an example where the SI unit would make an absurd one of a bench's number: 640 mm^2, not 640 m^2."""
 
+_USUAL = {"time": "ms", **_WRITTEN}
+"""A unit that benches use, beside the SI unit of a dimension."""
+
 PRINTED_Z0 = "m^3/(s*kPa) as printed"
 """The unit that Qian et al. 2014 print beside Z0, which is not its unit."""
 
@@ -175,7 +178,9 @@ def remedy(unit: str, target: str) -> str:
     if target == "1":
         return "write a plain number"
     kind = _NAMED.get(target)
-    return f"use {target} or another unit of {kind}" if kind else f"use {target} or a unit of the same kind"
+    usual = _USUAL.get(kind or "", target)
+    like = "" if usual == target else f", such as {usual}"
+    return f"use {target} or another unit of {kind}{like}" if kind else f"use {target} or a unit of the same kind"
 
 
 def described(dimension: str) -> str:

@@ -9,6 +9,8 @@ from ident.words.verdict_messages import EFFECTS, SEARCH, STRUCTURES, SUMMARY, V
 
 DRAFTS: Mapping[str, str] = {
     "draft.missing": "the files do not say: {questions:terms}",
+    "draft.command": "replace the words in capitals, and type: {command}",
+    "draft.command_whole": "type: {command}",
     "draft.say": "say it, as {options:listed}",
     "draft.named": "'{column}' is used as {use}, because of its name",
     "draft.first_is_time": "column {number} has no name and increases in equal steps, so it is used as time",

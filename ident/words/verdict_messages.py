@@ -32,13 +32,18 @@ SUMMARY: Mapping[str, str] = {
     "summary.change_floor_unknown":
         "The error on {use:data} goes from {before:error} to {after:error}; the noise floor is not known.",
     "next.label": "Next: correct the label of {run:run}, and fit again.",
-    "next.input": "Next: add the channel of the missing input, or keep only the rows in which it rests, and fit again.",
+    "next.input":
+        "Next: add the channel of the missing input, or leave out the rows in which the output moves by itself, and "
+        "fit again.",
     "next.oscillation": "Next: lower the gain of the loop, or leave {runs:all} out of the fit, and fit again.",
     "next.label_value":
         "Next: correct the label of {run:run}, and fit again. Its {what} is stated as {stated:quantity}; the data say "
         "{found:quantity}.",
     "next.time": "Next: search again with more time.",
-    "next.compare": "Next: compare the validation runs with and without {effect:title}.",
+    "next.compare":
+        "Next: do not add {effect:title} yet. Compare the validation runs with and without it: the machine may differ "
+        "between the runs.",
+    "next.more": "Next: add {effects:them}, and search again with more effects (--max-effects {most}).",
     "next.distinguish": "Next: record the proposed run, which distinguishes {group:titles}.",
     "next.add_and": "Next: add {effects:them}. Then {then:or}.",
     "next.then": "Next: {then:or}.",
@@ -90,11 +95,12 @@ VERDICT: Mapping[str, str] = {
         "Nothing is missing (probability {probability:probability}): the error of {before:error} is measurement noise.",
     "verdict.none": "No listed effect lowers the error of {before:error} by more than chance.",
     "verdict.missing_input":
-        "An input is not recorded: {evidence}. No effect was looked for: it would only imitate this input. Add the "
-        "channel of the input, or keep only the rows in which it rests.",
+        "An input is not recorded: {evidence}. No effect was looked for: any effect would only imitate this input. "
+        "Record the input and add its channel, or leave out the rows in which the output moves by itself.",
     "verdict.missing_input_validation":
         "An input is not recorded in validation data: {evidence}. The errors there contain it.",
     "verdict.oscillation": "The machine oscillates: {evidence}. {cause}.",
+    "verdict.oscillation_of_several": "The machine oscillates: {evidence}; {others:all} oscillate, too. {cause}.",
     "verdict.bounded":
         "The strength of {effect} ended at the bound of its search. It may be larger, or stand for another effect: "
         "search within wider bounds.",
@@ -118,15 +124,16 @@ VERDICT: Mapping[str, str] = {
     "verdict.limited":
         "At most {limit} of the listed effects could be added (--max-effects): others may explain this part.",
     "verdict.not_repeated":
-        "No command was repeated: part of it may be noise in the band of the command, which a repeated run would show.",
+        "No run was recorded twice with the same command, so the noise in the band of the command is not known: part "
+        "of the error may be this noise.",
     "group": "These data cannot distinguish {group:all}.",
     "group.two": "These data cannot tell which two of these are present: {group:listed}.",
     "contradicted.rises":
-        "With {named} the error on validation data rises from {before:error} to {after:error}: what was added "
-        "may stand for another effect.",
+        "With {named} the error on validation data rises from {before:error} to {after:error}: this effect may only "
+        "imitate another one.",
     "contradicted.rises_by":
-        "With {named} the error on validation data rises from {before:error} to {after:error}, {deviations:.1f} "
-        "standard errors: what was added may stand for another effect.",
+        "With {named} the error on validation data rises from {before:error} to {after:error} ({deviations:.1f} "
+        "standard errors): this effect may only imitate another one.",
     "contradicted.unstable":
         "With {named} the model is {runs:unstable}; without, the error on validation data is {before:error}. What was "
         "added may stand for another effect.",
@@ -214,8 +221,10 @@ STRUCTURES: Mapping[str, str] = {
 """Why a model was chosen where none was named."""
 
 SEARCH: Mapping[str, str] = {
-    "verdict.unfitted": "The search was not over: there was no time to fit a model first. Give more time, or a fit.",
-    "verdict.unranked": "The search was not over: there was no time to examine any effect. Give more time.",
+    "verdict.unfitted": 
+        "The search was not over: there was no time to fit a model. Give more time (--time), or a fit (--fit).",
+    "verdict.unranked": 
+        "The search was not over: there was no time to examine any effect. Give more time (--time).",
     "stage.no_time": "There was no time for the {stage}.",
     "stage.failed": "The stage '{stage}' failed: {why}. What was found before it is valid.",
     "stage.unusable": "{error}",
@@ -240,6 +249,9 @@ SEARCH: Mapping[str, str] = {
         "`servoident fit {matrix} --start {file}` makes the recommended fit, with {effects:titles}. It begins where "
         "the diagnosis ended, at an error of {error:percent}.",
     "recommended.run": "`servoident next {matrix} --diagnosis {file} --out next-run` writes the proposed run.",
+    "recommended.run_sharpens":
+        "`servoident next {matrix} --diagnosis {file} --out next-run` writes a run that determines the "
+        "parameters better.",
     "recommended.terms": "--terms N takes the first N of the proposed terms, 0 none.",
     "run.next": "Run a {conditions}.",
     "run.separates": "After a refit, {models:all} differ by {separation:.3g} standard deviations of the noise.",

@@ -114,7 +114,7 @@ def test_a_folder_stands_for_the_records_in_it(servoident, tmp_path):
             "time_s,command_mm,displacement_mm\n" + "".join(f"{i / 100},{i},{i}\n" for i in range(9))
         )
     done = servoident("init", folder)
-    assert f"servoident init {folder / 'a.csv'} {folder / 'b.csv'} --serial" in done.stderr
+    assert f"replace the words in capitals, and type: servoident init {folder} --serial SERIAL" in done.stderr
     done = servoident("fit", folder)
     assert f"write one with `servoident init {folder}`" in done.stderr
 

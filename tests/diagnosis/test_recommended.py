@@ -13,7 +13,7 @@ import pytest
 
 from ident.custom.definition import read_effect
 from ident.diagnosis.recommended import End, next_command, next_run_command, recommended, settings_after
-from ident.diagnosis.result import Diagnosis, NextRun, Rung
+from ident.diagnosis.result import Diagnosis, NextRun, Rung, Suspect, Verdict
 from ident.errors import Unusable
 from ident.fit.result import FitResult
 from ident.fit.settings import Settings
@@ -159,6 +159,9 @@ def test_the_command_that_comes_next_names_the_model_its_error_and_the_file():
     proposed = NextRun(amplitude=1e-3, signal="blwn", frequency=10.0, seconds=5.0, sample_rate=1000.0)
     run = next_run_command(replace(found, next_experiment=proposed), "found.json")
     assert run == "`servoident next MATRIX --diagnosis found.json --out next-run` writes the proposed run."
+    sharper = replace(found, next_experiment=proposed, verdict=Verdict())
+    assert next_run_command(sharper).endswith("writes a run that determines the parameters better.")
+    assert next_command(replace(found, verdict=replace(found.verdict, suspects=(Suspect("A"),)))) == ""
     nothing = replace(found, proposals=(), ladder=found.ladder[:1])
     assert next_command(nothing) == ""
     earlier = replace(found, proposals=(), ladder=tuple(replace(rung, parameters={}) for rung in found.ladder))

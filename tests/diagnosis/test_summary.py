@@ -51,6 +51,8 @@ def test_of_a_stand_in_the_first_line_says_that_more_is_missing_and_the_last_whe
     assert partly.summary[2] == "Next: add it. Then search for unknown terms."
     run = NextRun(amplitude=1e-3, signal="blwn", frequency=10.0, seconds=5.0, sample_rate=1000.0)
     assert replace(partly, next_experiment=run).summary[2] == "Next: add it. Then record the proposed run."
+    limited = replace(partly, max_effects=1).summary[2]
+    assert limited == "Next: add it, and search again with more effects (--max-effects 2)."
 
 
 def test_what_is_less_probable_than_not_is_told_apart_from_what_is_missing():
@@ -88,7 +90,7 @@ def test_nothing_something_unlisted_and_what_is_contradicted_are_said():
     assert unlisted.summary[0] == "Missing: something that no listed effect explains (probability 90 %)."
     against = lines(standing="contradicted", contradicted_by=("dead_zone",))
     assert against[0].startswith("Not confirmed: dead zone (")
-    assert against[2] == "Next: compare the validation runs with and without dead zone."
+    assert against[2].startswith("Next: do not add dead zone yet. Compare the validation runs with and without it")
 
 
 def test_a_wrong_label_and_a_search_that_was_stopped_come_first():
