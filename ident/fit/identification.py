@@ -157,7 +157,8 @@ class Identification:
     def finish(self, state: State) -> FitResult:
         """Polish (all methods but the paper's), errors of every run, uncertainty."""
         found = self.optimum(state)
-        contradicted = () if self.settings.method == "paper-ga" else contradicted_zeros(found.here, found.fitness.runs)
+        as_before = self.settings.method == "paper-ga" or self.settings.start is not None  # what counts is given
+        contradicted = () if as_before else contradicted_zeros(found.here, found.fitness.runs)
         return self._with_known_zeros(contradicted) if contradicted else self.told(found, state)
 
     def _with_known_zeros(self, channels: tuple[str, ...]) -> FitResult:
