@@ -16,6 +16,8 @@ class Starts(Enum):
 
     ALONG_RANGE = "along the range"
     """Places along its axis between the bounds."""
+    FINELY = "finely along the range"
+    """Many places along its axis: of what makes the output jump, which no step from one place to another tells."""
     PHASE = "phase"
     """An angle, rad: all around."""
     SPECTRAL_LINES = "spectral lines"

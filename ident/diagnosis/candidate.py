@@ -9,6 +9,7 @@ from itertools import groupby
 from ident.diagnosis.candidate_models import CandidateModels
 from ident.diagnosis.criteria import CRITERIA
 from ident.diagnosis.evidence.comparison import Evidence
+from ident.diagnosis.evidence.criteria import EVIDENCE_CRITERIA, OF_SHOWN
 from ident.diagnosis.fitted_model import FittedModel
 from ident.diagnosis.model_comparison import dominated, evidence, indistinguishable, is_improvement
 from ident.diagnosis.screening import Prediction
@@ -48,7 +49,8 @@ class Candidate:
     def refitted(self, models: CandidateModels, base: FittedModel, refit: FittedModel) -> Candidate:
         """The candidate with a refit on all records, and what speaks for it against the model without the effect."""
         found = evidence(base, refit) if base.finite else None
-        improves = found is None or is_improvement(models, base, found)
+        criteria = OF_SHOWN if models.is_shown(self.effect) else EVIDENCE_CRITERIA
+        improves = found is None or is_improvement(models, base, found, criteria)
         return replace(self, refit=refit, evidence=found, improves=improves)
 
 

@@ -176,6 +176,10 @@ class CandidateModels:
         searched = 1 + sum(parameter.searched for parameter in self.effects[effect].added[1:])
         return searched, list(self.effects).index(effect)
 
+    def is_shown(self, effect: str) -> bool:
+        """Whether the records show an effect by themselves: they have what only such a machine leaves in them."""
+        return self.effects[effect].shown
+
     def strength(self, effect: str) -> str:
         """The name of an effect's strength in the equations."""
         return self.effects[effect].added[0].in_equations

@@ -177,6 +177,17 @@ class InitialGuesses:
     along_range: tuple[float, ...] = (0.2, 0.4, 0.6, 0.8)
     """[of an axis] Where a searched shape begins. Why: a width is felt over about a fifth of four decades.
     Test: test_free_shapes.py::test_two_searches_from_other_places_end_alike"""
+    finely: int = 24
+    """[places] Where a searched shape begins that the output jumps with. Why: over two decades each is a fifth longer
+    than the one before, about what a sample tells of a play.
+    Test: test_friction_behind_play.py::test_a_play_before_the_friction_is_named_with_its_width"""
+    spring_shares: tuple[float, ...] = (0.3, 0.6)
+    """[of the machine's spring] That an effect has taken over which is a spring at first. Why: from either the refit
+    of a Bouc-Wen oscillator arrives, from none and from all of it does not.
+    Test: test_free_loops.py::test_an_oscillator_that_hardens_is_named_with_the_shape_of_its_loop"""
+    amplitude: float = 1.414
+    """[of the motion's deviation] At which it then yields. Why: that of a sine: it has yielded at the turning points.
+    Test: test_free_loops.py::test_an_oscillator_that_hardens_is_named_with_the_shape_of_its_loop"""
     spectrum_points: int = 4
     """[points] Of a spectrum for each that the record resolves. Why: a peak between two is not missed.
     Test: test_initial_guesses.py::test_the_lines_of_what_does_not_pulsate_are_the_same_at_every_sample_rate"""

@@ -9,7 +9,7 @@ held.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import replace
 from itertools import chain
 
@@ -18,6 +18,7 @@ import numpy as np
 from ident.diagnosis.candidate_models import CandidateModels
 from ident.diagnosis.criteria import CRITERIA
 from ident.diagnosis.fitted_model import FittedModel
+from ident.diagnosis.initial_guesses import in_place_of_spring
 from ident.diagnosis.model_comparison import improves
 from ident.diagnosis.screening import Prediction, predict
 from ident.diagnosis.tie_breaking import stable_minimum
@@ -27,6 +28,8 @@ from ident.fit.given import effect_of
 from ident.fit.uncertainty import DETERMINED
 from ident.parameter import Parameter, Starts
 
+_ALONG = (Starts.ALONG_RANGE, Starts.FINELY)
+
 
 def is_width(parameter: Parameter) -> bool:
     """Whether a shape is a size of one sign that its effect has a usual value of.
@@ -34,18 +37,32 @@ def is_width(parameter: Parameter) -> bool:
     One that is usually nothing, and may have either sign, is an effect of its own: the skew of a dead zone is an offset
     before it.
     """
-    return parameter.start is Starts.ALONG_RANGE and parameter.lower > 0 and not parameter.searched
+    return parameter.start in _ALONG and parameter.lower > 0 and not parameter.searched
 
 
-def freed(effect: Effect) -> Effect:
-    """The effect with every width searched as its strength is."""
-    return replace(effect, shape=tuple(replace(p, searched=True) if is_width(p) else p for p in effect.shape))
+def is_usual(parameter: Parameter) -> bool:
+    """Whether a shape has a usual value other than nothing: a width, or what may have either sign."""
+    return parameter.start in _ALONG and parameter.value != 0 and not parameter.searched
 
 
-def with_free_shapes(models: CandidateModels, names: Iterable[str]) -> CandidateModels:
-    """The models with every width of these effects free."""
-    effects = {name: freed(effect) if name in names else effect for name, effect in models.effects.items()}
+def freed(effect: Effect, which: Callable[[Parameter], bool] = is_width) -> Effect:
+    """The effect with every width, or which shapes of it are asked for, searched as its strength is."""
+    return replace(effect, shape=tuple(replace(p, searched=True) if which(p) else p for p in effect.shape))
+
+
+def with_free_shapes(
+    models: CandidateModels, names: Iterable[str], which: Callable[[Parameter], bool] = is_width
+) -> CandidateModels:
+    """The models with every width of these effects free, or which shapes of them are asked for."""
+    effects = {name: freed(effect, which) if name in names else effect for name, effect in models.effects.items()}
     return models.with_shapes(effects)
+
+
+def with_shapes_of(models: CandidateModels, refit: FittedModel, name: str) -> CandidateModels:
+    """The models with those shapes of an effect free that a refit has free."""
+    found = {p.in_equations for p in models.effects[name].added if p.in_equations in refit.space.names}
+    shape = tuple(replace(p, searched=p.of_effect(name).in_equations in found) for p in models.effects[name].shape)
+    return models.with_shapes({**models.effects, name: replace(models.effects[name], shape=shape)})
 
 
 def from_the_start(models: CandidateModels, base: FittedModel) -> CandidateModels:
@@ -58,7 +75,12 @@ def from_the_start(models: CandidateModels, base: FittedModel) -> CandidateModel
 def with_widths(models: CandidateModels, names: Iterable[str]) -> list[str]:
     """Those of the effects that have a width which no user holds."""
     held = {effect_of(name) for name in models.given.fixed}
-    return [name for name in names if name not in held and any(map(is_width, models.effects[name].shape))]
+    return [name for name in names if name not in held and any(map(is_usual, models.effects[name].shape))]
+
+
+def springs(models: CandidateModels, base: FittedModel, names: Iterable[str]) -> list[str]:
+    """Those of the effects that are a spring at small motions, which a base has fitted as its own."""
+    return [name for name in names if in_place_of_spring(base, models.effects[name])]
 
 
 def with_free_widths(
@@ -66,27 +88,39 @@ def with_free_widths(
 ) -> FittedModel | None:
     """The best refit of a base and one of the effects with its widths free, where that improves on the `best` so far.
 
-    Only those are refitted whose prediction, from places along their ranges, comes near the error of the best.
+    Only those are refitted whose prediction, from places along their ranges, comes near the error of the best, and what
+    has a start of its own in the place of a spring.
     """
     names = with_widths(models, names)
     if not names:
         return None
-    free, asked = with_free_shapes(models, names), CRITERIA.ranking.near_best * models.trial_error(best)
+    free, asked = with_free_shapes(models, names, is_usual), CRITERIA.ranking.near_best * models.trial_error(best)
     promising = sorted(predict(free, base, names), key=lambda prediction: prediction.after.error)
-    promising = [prediction for prediction in promising if prediction.after.error < asked][: CRITERIA.free_widths.tried]
+    promising = [
+        prediction
+        for prediction in promising
+        if prediction.after.error < asked or springs(free, base, [prediction.effect])
+    ][: CRITERIA.free_widths.tried]
     refits = [freed_refit(free, base, prediction) for prediction in promising]
     better = [refit for refit in refits if refit is not None and improves(models, best, refit)]
     return stable_minimum(better, lambda refit: refit.held_out.score) if better else None
 
 
 def freed_refit(models: CandidateModels, base: FittedModel, prediction: Prediction) -> FittedModel | None:
-    """The refit with an effect whose widths are free, from where two starts agree.
+    """The refit with an effect whose shapes are free, from where two starts agree.
 
-    None where the data do not determine a width.
+    What the data do not determine is held at its usual value again; None where they determine none.
     """
-    best = trial_from_everywhere(models, base, prediction)
+    best, name = trial_from_everywhere(models, base, prediction), prediction.effect
     refit = models.converged(models.refit(best.effects, best.values)) if best.finite else best
-    return refit if refit.finite and determined(refit, models.effects[prediction.effect]) else None
+    while refit.finite and (loose := undetermined(refit, models.effects[name])):
+        shape = tuple(replace(p, searched=p.searched and p.of_effect(name).in_equations not in loose)
+                      for p in models.effects[name].shape)  # fmt: skip
+        if not any(p.searched for p in shape):
+            return None
+        models = models.with_shapes({**models.effects, name: replace(models.effects[name], shape=shape)})
+        refit = models.converged(models.refit(refit.effects, refit.values))
+    return refit if refit.finite else None
 
 
 def trial_from_everywhere(
@@ -113,13 +147,16 @@ def trial_from_everywhere(
     return models.converged_trial(stable_minimum(ends, lambda end: end.local.error), aim)
 
 
-def determined(refit: FittedModel, effect: Effect) -> bool:
-    """Whether the data determine every free width of an effect, within the bounds."""
-    names = [p.in_equations for p in effect.added[1:] if p.in_equations in refit.space.names]
-    errors = {name: refit.deviation(name) for name in names}
-    inside = not any(refit.space.at_bound(name, refit.point) for name in names)
-    certain = (error is not None and error < DETERMINED * abs(refit.values[name]) for name, error in errors.items())
-    return bool(names) and inside and all(certain)
+def undetermined(refit: FittedModel, effect: Effect) -> list[str]:
+    """The free shapes of an effect that the data do not determine within the bounds, by the equations' names."""
+
+    def is_certain(shape: Parameter) -> bool:
+        error, size = refit.deviation(shape.in_equations), abs(refit.values[shape.in_equations])
+        least = abs(shape.value) if shape.lower < 0 else 0.0  # what may have either sign may be next to nothing
+        return error is not None and error < DETERMINED * max(size, least)
+
+    free = [p for p in effect.added[1:] if p.in_equations in refit.space.names]
+    return [p.in_equations for p in free if refit.space.at_bound(p.in_equations, refit.point) or not is_certain(p)]
 
 
 def bounds_of_freed(refit: FittedModel, effects: Mapping[str, Effect]) -> dict[str, tuple[float, float]]:
@@ -132,7 +169,7 @@ def bounds_of_freed(refit: FittedModel, effects: Mapping[str, Effect]) -> dict[s
 def freed_widths(refit: FittedModel) -> int:
     """How many shapes of a refit's effects are free that the catalogue has usual values of."""
     added = chain.from_iterable(effect.added[1:] for effect in CATALOGUE if effect.name in refit.effects)
-    return sum(is_width(p) and p.in_equations in refit.space.names for p in added)
+    return sum(is_usual(p) and p.in_equations in refit.space.names for p in added)
 
 
 def held_widths(refit: FittedModel, effects: Mapping[str, Effect]) -> dict[str, float]:

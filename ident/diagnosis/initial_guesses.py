@@ -1,4 +1,4 @@
-"""From where an effect's search begins: a ripple's frequency and phase, a stop's stiffness and where it stands."""
+"""From where an effect's search begins: a ripple's frequency and phase, where a stop stands, a part of a spring."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from ident.diagnosis.criteria import CRITERIA
 from ident.diagnosis.fitted_model import FittedModel
 from ident.effects.effect import Effect
 from ident.fit.space import Space
-from ident.parameter import Parameter, Starts
+from ident.parameter import AtReversals, Parameter, Starts
 from ident.run import Run
 
 Array = NDArray[np.float64]
@@ -30,6 +30,25 @@ def initial_guesses(
     values = [_guesses_of(base, parameter, space, known) for parameter in searched]
     names = [parameter.in_equations for parameter in searched]
     return [dict(zip(names, found, strict=True)) for found in product(*values)]
+
+
+def in_place_of_spring(base: FittedModel, effect: Effect) -> list[dict[str, float]]:
+    """The fitted model with a part of its spring given to an effect that is a spring at small motions.
+
+    What yields was fitted as a spring: where it is added instead, the machine's resonance is off at once, and no step
+    leads from there to where both share what was one.
+    """
+    criteria, spring = CRITERIA.initial_guesses, next((k for k in effect.takes_over if k in base.values), None)
+    way = next((p for p in effect.added if p.at_reversals is AtReversals.WAY), None)
+    if spring is None or way is None:
+        return []
+    amplitude = criteria.amplitude * float(np.mean([run.motion for run in base.fitness.runs]))
+    stiffness, strength = base.values[spring], effect.added[0].in_equations
+    return [
+        {**base.values, spring: (1.0 - share) * stiffness, strength: share * stiffness * amplitude,
+         way.in_equations: amplitude}
+        for share in criteria.spring_shares
+    ]  # fmt: skip
 
 
 def strength_in_records(base: FittedModel, effect: Effect) -> float | None:
@@ -53,8 +72,11 @@ def _guesses_of(base: FittedModel, parameter: Parameter, space: Space, known: Ma
     if parameter.start is Starts.SPECTRAL_LINES:
         return spectral_lines(base, *space.bounds(known)[parameter.in_equations])
     axis = space.names.index(parameter.in_equations)
-    points = space.point(known) + np.zeros((len(CRITERIA.initial_guesses.along_range), 1))
-    points[:, axis] = CRITERIA.initial_guesses.along_range
+    criteria = CRITERIA.initial_guesses
+    places = np.arange(1, criteria.finely + 1) / (criteria.finely + 1)
+    along = places if parameter.start is Starts.FINELY else np.array(criteria.along_range)
+    points = space.point(known) + np.zeros((len(along), 1))
+    points[:, axis] = along
     return tuple(float(value) for value in space.values(points)[parameter.in_equations])
 
 

@@ -12,6 +12,7 @@ import numpy as np
 from ident.diagnosis.candidate_models import CandidateModels
 from ident.diagnosis.evidence import comparison
 from ident.diagnosis.evidence.comparison import Evidence, compare
+from ident.diagnosis.evidence.criteria import EVIDENCE_CRITERIA, EvidenceCriteria
 from ident.diagnosis.fitted_model import FittedModel
 from ident.diagnosis.screening import gain_by_chance
 
@@ -28,9 +29,11 @@ def improves(models: CandidateModels, less: FittedModel, more: FittedModel) -> b
     return is_improvement(models, less, evidence(less, more))
 
 
-def is_improvement(models: CandidateModels, less: FittedModel, found: Evidence) -> bool:
+def is_improvement(
+    models: CandidateModels, less: FittedModel, found: Evidence, criteria: EvidenceCriteria = EVIDENCE_CRITERIA
+) -> bool:  # fmt: skip
     """The same by what speaks for it."""
-    return comparison.worth_adding(found, partial(bar, models, less))
+    return comparison.worth_adding(found, partial(bar, models, less), criteria)
 
 
 def better(before: FittedModel, after: FittedModel) -> bool:

@@ -8,11 +8,11 @@ from dataclasses import dataclass, field, replace
 from functools import partial
 from itertools import combinations
 
-from ident.diagnosis.candidate import Candidate, in_rank_order, indistinguishable_group
+from ident.diagnosis.candidate import Candidate, in_rank_order, indistinguishable_group, not_dominated
 from ident.diagnosis.candidate_models import CandidateModels
 from ident.diagnosis.criteria import CRITERIA
 from ident.diagnosis.fitted_model import FittedModel
-from ident.diagnosis.free_shapes import with_free_shapes, with_free_widths
+from ident.diagnosis.free_shapes import springs, with_free_widths, with_shapes_of
 from ident.diagnosis.ladder import Ladder, score, without_effect
 from ident.diagnosis.model_comparison import better, improves
 from ident.diagnosis.ranking import deepened, rank, rank_each
@@ -128,8 +128,8 @@ class Moves:
             if first:
                 selection = self.first_ranking(selection)
             ranking = selection.ranking if first else self._rank(selection.fitted, thorough=False)
-            best = next((candidate for candidate in ranking if candidate.improves), None)
-            if first and (known := self._from_start(selection, best)):
+            best = self._shown(ranking) or next((candidate for candidate in ranking if candidate.improves), None)
+            if first and (known := self._from_start(selection, best) or self._in_place_of_spring(selection, best)):
                 selection = known
                 continue
             if best is None or best.refit is None:
@@ -146,6 +146,11 @@ class Moves:
                 break
         return None if selection is begun else selection
 
+    def _shown(self, ranking: Sequence[Candidate]) -> Candidate | None:
+        """What the records themselves show, where it improves the model and nothing explains more beyond chance."""
+        improving = (candidate for candidate in not_dominated(ranking) if candidate.improves)
+        return next((candidate for candidate in improving if self.models.is_shown(candidate.effect)), None)
+
     def _from_start(self, selection: Selection, best: Candidate | None) -> Selection | None:
         """Begin with the model that was fitted before, where it is better than the best of the first ranking."""
         if self.start is None or not self.start.finite or not improves(self.models, selection.fitted, self.start):
@@ -153,6 +158,23 @@ class Moves:
         if best is not None and best.refit is not None and improves(self.models, self.start, best.refit):
             return None
         return self.step(selection, self.start)
+
+    def _in_place_of_spring(self, selection: Selection, best: Candidate | None) -> Selection | None:
+        """Begin with what takes the place of a spring, its shapes free, where that is better than the best so far.
+
+        Before others are added to that best: nothing with the usual shapes may lead there.
+        """
+        base, refit = selection.base, None if best is None else best.refit
+        names = springs(self.models, base, self._addable(base))
+        if not names or not self.models.residual_above_noise(refit or base):
+            return None
+        freed = with_free_widths(self.models, base, refit or base, names)
+        return None if freed is None else self._with_its_shapes(selection, freed)
+
+    def _with_its_shapes(self, selection: Selection, refit: FittedModel) -> Selection:
+        """The selection with a refit whose last effect has other shapes free, and the models that have these free."""
+        self.models = with_shapes_of(self.models, refit, refit.effects[-1])
+        return self.step(replace(selection, models=self.models, rungs=Ladder(self.models)), refit)
 
     def _without_its_effect(self, selection: Selection, refit: FittedModel) -> Selection | None:
         """Where the model does as well without what was added, that only led to a better optimum: the model there."""
@@ -169,9 +191,10 @@ class Moves:
     def _backward(self, selection: Selection, latest: str = "") -> tuple[Selection, bool]:
         """Take out what the model can do without, but the `latest`; true where that leads back to an earlier set.
 
+        What the records themselves show stays.
         What enters and leaves in a circle is of use in one company and of none in another: the best of it stays.
         """
-        removable = [name for name in selection.added if name != latest]
+        removable = [name for name in selection.added if name != latest and not self.models.is_shown(name)]
         while removable:
             here, tried = selection.fitted, each(partial(self._less, selection), removable)
             needless = (i for i, less in enumerate(tried) if less.finite and not improves(self.models, less, here))
@@ -319,9 +342,7 @@ class Moves:
         refit = with_free_widths(self.models, selection.base, best, names) if self.most else None
         if refit is None:
             return None
-        self.models = with_free_shapes(self.models, refit.effects[-1:])
-        rungs, changes = Ladder(self.models), selection.changes + 1
-        return self.step(replace(selection, models=self.models, rungs=rungs, changes=changes), refit)
+        return self._with_its_shapes(replace(selection, changes=selection.changes + 1), refit)
 
     def better_of(self, before: Selection, after: Selection) -> Selection:
         """The selection after, where it is better beyond chance or has fewer effects and is no worse, else that before.

@@ -22,7 +22,7 @@ from ident.diagnosis.cross_validation import scored, weight_of_offsets
 from ident.diagnosis.evidence.chance import bar
 from ident.diagnosis.evidence.comparison import Residuals, common_disturbance
 from ident.diagnosis.fitted_model import FittedModel
-from ident.diagnosis.initial_guesses import initial_guesses, strength_in_records
+from ident.diagnosis.initial_guesses import in_place_of_spring, initial_guesses, strength_in_records
 from ident.fit.bounded_step import bounded_steps
 from ident.fit.responses import Responses, Sensitivities
 from ident.fit.simulated_fitness import SimulatedFitness
@@ -168,7 +168,10 @@ def _predicted(given: _Sensitivities, base: FittedModel, names: Sequence[str]) -
             before,
             len(given.gram),
             (*_refit_starts(models, base, first), *recorded),
-            tuple(_refit_starts(models, base, other) for other in others[few]),
+            (
+                *((start,) for start in in_place_of_spring(base, models.effects[name])),
+                *(_refit_starts(models, base, other) for other in others[few]),
+            ),
             tuple(_as_simulated(models, base, trial) for trial, _, _ in of_effect[few]),
         )
 

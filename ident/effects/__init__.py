@@ -72,6 +72,7 @@ OF_RECORDS = _of_files(
     "pressure_friction",
     "arm_gravity",
     "damping_asymmetry",
+    "friction_behind_play",
     "sensor_curve",
     "rectified_sensor",
 )

@@ -54,6 +54,10 @@ class Effect:
     """Whether it is a specimen's: no diagnosis names it where nothing is known of a specimen."""
     needs: Need | None = None
     """What a matrix must have for a diagnosis to look for it (:mod:`ident.effects.needs`); None is nothing."""
+    shown: bool = False
+    """Whether a record that has what it needs shows it by itself: it then comes before what explains as much."""
+    takes_over: tuple[str, ...] = ()
+    """Symbols of a machine's springs, of which a part is this effect's at small motions: its strength over its way."""
     unless: str = ""
     """A symbol of a machine that has the effect in its core already."""
     own: bool = False

@@ -15,4 +15,5 @@ RECTIFIED_SENSOR = Effect(
     source="a pulse counter without direction; Wigren and Schoukens 2017",
     steps=2,
     needs=rectified,
+    shown=True,
 )

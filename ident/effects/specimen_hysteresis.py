@@ -10,7 +10,7 @@ SPECIMEN_HYSTERESIS = Effect(
     does="a force that yields and dissipates",
     strength=Parameter("force", "fy", "N", 0.0, 500.0, 0.0, "yield force"),
     texts=(
-        "z' = vL / xy * (1 - abs(z)**n * (0.5 + 0.5 * sgn(vL * z)))",
+        "z' = vL / xy * (1 - abs(z)**n * (gamma + 0.5 * sgn(vL * z)))",
         "S = S + fy * z",
     ),
     units={"S": "N"},
@@ -28,8 +28,13 @@ SPECIMEN_HYSTERESIS = Effect(
             at_reversals=AtReversals.WAY,
         ),
         Parameter("exponent", "n", "1", 1.0, 5.0, 1.0, "sharpness of the yield"),
+        Parameter("gamma", "gamma", "1", -2.0, 2.0, 0.5, "γ/2β: ½ yields at fy, more softens, less hardens"),
     ),
     looks="loops of force over displacement; stiffness that falls with amplitude",
-    source="Bouc 1967, Wen 1976",
+    source=(
+        "Bouc 1967, Wen 1976: of z' = A v - β |v| |z|^(n-1) z - γ v |z|^n, with fy z for its z, "
+        "A = fy/xy, β = A/(2 fy^n), γ = 2 β gamma"
+    ),
     of_specimen=True,
+    takes_over=("k0", "kS"),
 )

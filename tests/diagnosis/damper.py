@@ -40,8 +40,12 @@ class Damper:
         w = 2 * np.pi * self.frequency
         phase = np.random.default_rng([7, self.seed]).uniform(0, 2 * np.pi)
         x, v = self.amplitude * np.sin(w * t + phase), self.amplitude * w * np.cos(w * t + phase)
-        z = dahl(x, self.displacement)
+        z = self.rubbing(x, v)
         return v[::FINE], (self.damping * v + self.stiffness * (x - x[0]) + self.friction * z)[::FINE]
+
+    def rubbing(self, x: Array, v: Array) -> Array:  # noqa: ARG002  Dahl's friction hangs on the way alone
+        """The friction over its largest, along a way."""
+        return dahl(x, self.displacement)
 
     def matrix(self) -> Matrix:
         """A run to fit and one to verify, one after the other of one test."""
@@ -55,6 +59,22 @@ class Damper:
             Run(use, "", self.rate, {"velocity": v[part], "force": noisy[part]}, units, output="force", use=use)
             for use, part in parts.items()
         ))  # fmt: skip
+
+
+@dataclass(frozen=True)
+class PlayedDamper(Damper):
+    """The same with Coulomb friction behind a play: after each reversal it stands until the play is taken up."""
+
+    half_width: float = 4e-3
+
+    def rubbing(self, x: Array, v: Array) -> Array:
+        """The sign of the speed where what rubs is moved, nothing where it stands."""
+        place, moved = x[0], np.zeros(len(x), bool)
+        for i, here in enumerate(x):
+            low, high = here - self.half_width, here + self.half_width
+            moved[i] = not low < place < high
+            place = min(max(place, low), high)
+        return np.where(moved, np.sign(v), 0.0)
 
 
 def dahl(x: Array, displacement: float) -> Array:

@@ -23,7 +23,7 @@ from ident.diagnosis.evidence.comparison import (
     indistinguishable,
     worth_adding,
 )
-from ident.diagnosis.evidence.criteria import EVIDENCE_CRITERIA, EvidenceCriteria
+from ident.diagnosis.evidence.criteria import EVIDENCE_CRITERIA, OF_SHOWN, EvidenceCriteria
 from ident.diagnosis.evidence.disturbance import Disturbance
 from ident.diagnosis.evidence.energy_bands import EnergyBands, Record
 from ident.diagnosis.evidence.probability import NOTHING, SetGains, probabilities, structure_probabilities
@@ -370,6 +370,14 @@ def test_a_gain_below_the_least_adds_nothing_however_low_the_bar() -> None:
     found = compared([before], [after], [Record(1.0, period=87.3)])
     for gain, added in ((3.3, False), (3.5, True)):
         assert worth_adding(replace(found, gain=gain, without=gain), lambda: 0.0) == added
+
+
+def test_what_the_records_show_has_to_gain_no_more_than_chance_does() -> None:
+    before, after = periodic(30, 0.3, seed=13)
+    found = compared([before], [after], [Record(1.0, period=87.3)])
+    for gain, added in ((1.9, False), (2.1, True)):
+        least = replace(found, gain=gain, without=gain, most=100.0)
+        assert worth_adding(least, lambda: 2.0, OF_SHOWN) == added
 
 
 def test_a_floor_above_what_is_left_is_no_floor() -> None:

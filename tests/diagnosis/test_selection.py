@@ -51,7 +51,7 @@ class Judged:
 
     effects = ("a", "b", "c")
     floor = 0.1
-    freed = ""
+    freed = spring = shown = ""
 
     def __init__(self, scores: dict[str, float], needed: set[str], far: str, late: str, off: str) -> None:
         self.off = off
@@ -148,17 +148,25 @@ class Judged:
         """Whether of two with as many effects the other leaves less."""
         return other.held_out.score < one.held_out.score
 
-    def with_free_widths(self, _models, _base, _best, _names):
+    def with_free_widths(self, _models, _base, _best, names):
         """The effect that does better with its widths free, where there is one."""
-        return self.refit((self.freed,), {}) if self.freed else None
+        return self.refit((self.freed,), {}) if self.freed in names else None
 
-    def with_free_shapes(self, _models, _names):
+    def with_shapes_of(self, _models, _refit, _name):
         """The same models: what is free shows in their scores alone."""
         return self
 
+    def springs(self, _models, _base, names):
+        """Those that take the place of a spring."""
+        return [name for name in names if name == self.spring]
+
+    def is_shown(self, effect):
+        """Whether the records show it by themselves."""
+        return effect == self.shown
+
     def stand_in(self, monkeypatch: pytest.MonkeyPatch) -> None:
         """For what a search asks of real refits."""
-        asked = ("rank", "rank_each", "deepened", "improves", "better", "with_free_widths", "with_free_shapes")
+        asked = ("rank", "rank_each", "deepened", "improves", "better", "with_free_widths", "with_shapes_of", "springs")
         equal = ("indistinguishable", "dominated")
         for module, names in ((moves, asked), (candidate, equal)):
             for name in names:
@@ -266,6 +274,23 @@ def test_one_effect_with_another_width_takes_the_place_of_two_that_explain_as_mu
     monkeypatch.setattr(Judged, "freed", "c")
     scores = {"": 1.0, "a": 0.5, "b": 0.9, "c": 0.05, "ab": 0.05, "ac": 0.05, "bc": 0.05}
     assert added(scores, needed={"a", "b"}) == {"c"}
+
+
+def test_what_takes_the_place_of_a_spring_is_tried_with_its_shapes_free_before_others_are_added(added, monkeypatch):
+    """With its usual shapes it leads nowhere, and with b added to a nothing would lead back."""
+    monkeypatch.setattr(Judged, "freed", "c")
+    monkeypatch.setattr(Judged, "spring", "c")
+    scores = {"": 1.0, "a": 0.5, "b": 0.9, "c": 0.05, "ab": 0.05, "ac": 0.05, "bc": 0.05}
+    found = added(scores, needed={"a", "b"})
+    assert found == {"c"}
+
+
+def test_what_the_records_show_comes_before_what_explains_more_and_stays(added, monkeypatch):
+    """a leaves less at first; b, which the records show, is first, and stays where a alone would do as well."""
+    scores = {"": 1.0, "a": 0.5, "b": 0.6, "c": 0.9, "ab": 0.5}
+    assert added(scores, needed=set()) == {"a"}
+    monkeypatch.setattr(Judged, "shown", "b")
+    assert added(scores, needed=set()) == {"a", "b"}
 
 
 def test_the_last_effect_goes_where_its_rung_refitted_does_better_without_it(monkeypatch):

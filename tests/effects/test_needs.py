@@ -29,6 +29,7 @@ TURBULENT = 0.5  # level
 T = np.arange(round(RATE * SECONDS)) / RATE
 LEVEL = 1.0 + 0.8 * np.sin(1.3 * T) + 0.15 * np.sin(5.0 * T)
 FORCE = 40.0 * np.sin(2.0 * T) + 15.0 * np.sin(5.3 * T)
+SPEED = 2.0 * np.cos(2.0 * T) + 1.5 * np.cos(5.3 * T)
 SQUEEZE = 10.0 + 4.0 * np.sin(0.9 * T)
 
 
@@ -82,6 +83,17 @@ def counted(share: float) -> np.ndarray:
     return speed + share * (np.abs(speed) - speed)
 
 
+def played(friction: float, half_width: float = 0.2, fine: int = 64) -> np.ndarray:
+    """The force of a spring and a damper with dry friction behind a play, moved at a given speed."""
+    speed = np.interp(np.arange((len(T) - 1) * fine + 1) / fine, np.arange(len(T)), SPEED)
+    way = np.concatenate([[0.0], np.cumsum(0.5 * (speed[1:] + speed[:-1])) / (RATE * fine)])
+    rubs, place = np.zeros(len(way)), 0.0
+    for i, x in enumerate(way):
+        moved = min(max(place, x - half_width), x + half_width)
+        rubs[i], place = np.sign(moved - place), moved
+    return np.asarray((STIFFNESS * way + DAMPING * speed + friction * rubs)[::fine])
+
+
 def dry(v: float) -> float:
     """The direction of sliding; so steep that what creeps is far below what is compared."""
     return float(np.tanh(v / 1e-4))
@@ -124,6 +136,9 @@ CASES = {
         lambda k: mass(lambda t, _x, v: 0.5 * k * at(SQUEEZE, t) * dry(v)), {"load_pressure": 1e2 * SQUEEZE}, 1e-2),
     "damping_asymmetry": Case(
         "drive", {"damping_asymmetry.coefficient": 1.5}, lambda k: mass(lambda _t, _x, v: 1.5 * k * abs(v)), {}),
+    "friction_behind_play": Case(
+        "specimen", {"friction_behind_play.force": 25.0, "friction_behind_play.half_width": 0.2},
+        lambda k: played(25.0 * k), {"velocity": SPEED}, 1e-2, output="force"),
     "arm_gravity": Case(
         "drive", {"arm_gravity.torque": 30.0, "arm_gravity.hanging": 0.5},
         lambda k: mass(lambda _t, x, _v: 30.0 * k * np.sin(x - 0.5)), {}),
@@ -141,6 +156,8 @@ def ours(case: Case, factor: float) -> np.ndarray:
     model = preset(case.model, (name,))
     drive = FORCE if case.model in ("drive", "motor") else LEVEL
     channels = {"command": drive, case.output: np.zeros_like(drive), **case.channels}
+    if case.output == "force":
+        del channels["command"]
     units = {"vertical_load": "N", "load_pressure": "Pa"}
     run = Run("r", "", RATE, channels, units, assumed_beginning="at rest", output=case.output)
     model, matrix = model.for_matrix(Matrix(Actuator("A"), (run,)))
@@ -155,6 +172,9 @@ def ours(case: Case, factor: float) -> np.ndarray:
         "m0": MASS,
         "c0": DAMPING,
         "k0": STIFFNESS,
+        "cS": DAMPING,
+        "kS": STIFFNESS,
+        "mS": 0.0,
     }
     known |= {name: value for name, value in own.items() if name in known}
     known |= {model.parameter(name).in_equations: value for name, value in case.values.items()}

@@ -72,6 +72,7 @@ class Effects(NamedTuple):
     specimen_hysteresis_fy: float = 0.0
     specimen_hysteresis_xy: float = 5e-4
     specimen_hysteresis_n: float = 1.0
+    specimen_hysteresis_gamma: float = 0.5
     specimen_free_play_g: float = 0.0
     specimen_joint_s: float = 0.0
     frame_compliance_s: float = 0.0
@@ -245,7 +246,7 @@ def derivative(plant, f, cell, t, u, du, y_late, v_late, mode, play, s, out):
     out[EPS] = eps
     out[ZF] = (s[V] - abs(s[V]) * s[ZF]) / f.presliding_friction_xs
     own_v = s[V2] if f.specimen_joint_s > 0 else s[V]
-    bent = 0.5 + 0.5 * sign(own_v * s[ZH])
+    bent = f.specimen_hysteresis_gamma + 0.5 * sign(own_v * s[ZH])
     out[ZH] = own_v / f.specimen_hysteresis_xy * (1 - abs(s[ZH]) ** f.specimen_hysteresis_n * bent)
     out[Y] = (position - s[Y]) / f.sensor_lag_T if f.sensor_lag_T > 0 else 0.0
     out[YR] = (seen - s[YR]) / f.acquisition_lag_T if f.acquisition_lag_T > 0 else 0.0

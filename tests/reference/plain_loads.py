@@ -75,7 +75,7 @@ class SpecimenHysteresis(Machine):
         return super().reaction(s) + self.p.fy * s[4]
 
     def own_rates(self, t: float, s: State) -> list[float]:
-        yielding = 0.5 + 0.5 * sgn(s[2] * s[4])
+        yielding = self.p.gamma + 0.5 * sgn(s[2] * s[4])
         return [s[2] / self.p.xy * (1 - abs(s[4]) ** self.p.n * yielding)]
 
 

@@ -72,7 +72,7 @@ CASES = {
     "presliding_friction": Case({"Fd": (100, 100), "xs": (1e-5, 1e-4)}, KINKS),
     "quadratic_damping": Case({"c2": (1e4, 1e4)}, KINKS),
     "cubic_stiffness": Case({"k3": (5e10, -2e10)}),
-    "specimen_hysteresis": Case({"fy": (200, 200), "xy": (5e-4, 2e-4), "n": (1, 2)}, KINKS),
+    "specimen_hysteresis": Case({"fy": (200, 200), "xy": (5e-4, 2e-4), "n": (1, 2), "gamma": (0.5, -0.7)}, KINKS),
     "specimen_free_play": Case({"g": (5e-4, 5e-4)}, KINKS),
     "specimen_joint": Case({"s": (1e-5, 5e-6)}),
     "frame_compliance": Case({"s": (5e-7, 5e-7)}),

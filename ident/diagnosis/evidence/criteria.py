@@ -126,3 +126,5 @@ class EvidenceCriteria:
 
 EVIDENCE_CRITERIA = EvidenceCriteria()
 """Those that two models are compared by."""
+OF_SHOWN = replace(EVIDENCE_CRITERIA, least_gain=0.0)
+"""Those of an effect that the records themselves show. Why: it is no longer one of many, each as improbable as any."""

@@ -12,16 +12,16 @@ from ident.fit.settings import Settings
 from ident.presets import PRESETS, preset
 
 TAKEN = {
-    "qian2014": 47,
+    "qian2014": 48,
     "first_order": 18,
     "two_tanks": 19,
-    "drive": 22,
-    "open_valve": 44,
-    "motor": 31,
-    "specimen": 14,
-    "force_loop": 47,
+    "drive": 23,
+    "open_valve": 45,
+    "motor": 32,
+    "specimen": 15,
+    "force_loop": 48,
     "kononykhin": 8,
-    "strano": 44,
+    "strano": 45,
 }
 LOOPS = {
     "qian2014": {"v", "y"}, "first_order": set(), "drive": set(), "open_valve": {"v"}, "motor": set(),

@@ -1,0 +1,40 @@
+"""A damper with dry friction behind a play, and one without the play, by what a diagnosis names."""
+
+from __future__ import annotations
+
+import pytest
+
+from ident.diagnosis import candidate_models
+from ident.workflows import diagnose, identify
+from tests.diagnosis.damper import Damper, PlayedDamper
+
+FEW = ("coulomb_friction", "presliding_friction", "specimen_hysteresis", "specimen_free_play", "friction_behind_play")
+
+
+@pytest.fixture(autouse=True)
+def _few_effects(monkeypatch, full):
+    """In the short form what comes nearest to it is ranked."""
+    if not full:
+        few = tuple(effect for effect in candidate_models.CATALOGUE if effect.name in FEW)
+        monkeypatch.setattr(candidate_models, "CATALOGUE", few)
+
+
+@pytest.mark.parametrize("half_width", [4e-3, 1e-2])
+def test_a_play_before_the_friction_is_named_with_its_width(half_width, full):
+    """A sample tells of a play but about on which side of it it lies: its width is known to a few per cent."""
+    if half_width > 4e-3 and not full:
+        pytest.skip("the long form")
+    damper = PlayedDamper(half_width=half_width, seed=3)
+    matrix = damper.matrix()
+    found = diagnose(matrix, identify(matrix, model="specimen"), propose=False)
+    assert found.verdict.effects == ("friction_behind_play",)
+    values = found.ladder[-1].parameters
+    assert values["friction_behind_play.half_width"].value == pytest.approx(half_width, rel=0.05)
+    assert values["friction_behind_play.force"].value == pytest.approx(damper.friction, rel=0.15)
+    assert found.ladder[-1].error["fit"] < 0.4 * found.ladder[0].error["fit"]
+
+
+def test_friction_without_a_play_is_named_as_that():
+    matrix = Damper(seed=3).matrix()
+    found = diagnose(matrix, identify(matrix, model="specimen"), propose=False)
+    assert found.verdict.effects == ("presliding_friction",)
