@@ -22,6 +22,7 @@ from benchmarks import (
     pages,
     regress,
     scaling,
+    signals,
     simulation,
     start,
 )
@@ -37,6 +38,7 @@ ALL: dict[str, Callable[[], Table | tuple[Table, ...]]] = {
     "kernel": kernel.measure,
     "start": start.measure,
     "pages": pages.measure,
+    "signals": signals.measure,
     "scaling": scaling.measure,
     "hybrid": hybrid.measure,
     "line": line.measure,

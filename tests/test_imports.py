@@ -117,7 +117,8 @@ ROOMS = (
     "run", "rig", "matrix", "parameter", "linear", "statistics", "equations", "units", "stages", "effects", "chain",
     "presets",
     "foreign", "readers", "custom", "preprocessing", "noise", "stability", "checks", "drafts", "simulation", "fit",
-    "comparison", "residuals", "design", "diagnosis", "bench", "hybrid", "export", "figures",
+    "comparison", "residuals", "design", "diagnosis", "bench", "hybrid", "export", "decimation",
+    "figures",
     "synthesis", "planning", "workflows",
 )  # fmt: skip
 """The files and folders of `ident`; each may use those before it."""

@@ -8,14 +8,15 @@ from app.context import Context
 from app.figures.drawn import drawn as drawn_of
 from app.matrices import service
 from ident.figures.subjects import Recorded
+from ident.matrix import Actuator
 
 
 def drawn(context: Context, matrix: str, name: str, kind: str, options: dict[str, Any]) -> tuple[bytes, str]:
     """A figure of a matrix as bytes and their media type."""
 
     def recorded(_: dict[str, Any]) -> Recorded:
-        read = service.load(context, matrix)
-        return Recorded(read.runs, read.actuator)
+        runs, levels = service.drawn_from(context, matrix)
+        return Recorded(runs, Actuator(row.serial), levels)
 
-    service.find(context, matrix)
+    row = service.find(context, matrix)
     return drawn_of(context, f"matrix {matrix}", name, kind, options, recorded)

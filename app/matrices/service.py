@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import io
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict
 from typing import Any, BinaryIO, TypeVar
 
@@ -13,7 +13,7 @@ from sqlalchemy.exc import IntegrityError
 from app.access.noting import about
 from app.context import Context
 from app.errors import missing
-from app.matrices import repository
+from app.matrices import levels, repository
 from app.matrices.removed import check_there
 from app.matrices.stored import load_row, opened, read_stored
 from app.paging import cursor, keys_of
@@ -21,6 +21,7 @@ from app.reserve import check_reserve
 from app.storage import Storage
 from app.tables import MatrixRow
 from ident.checks.check import check
+from ident.decimation.levels import Levels
 from ident.errors import Unusable
 from ident.matrix import Actuator, Matrix
 from ident.preprocessing import screen
@@ -56,7 +57,7 @@ def check_room(context: Context) -> None:
 
 def record(context: Context, staged: Storage, source: dict[str, Any], parent: str | None) -> tuple[MatrixView, bool]:
     """Read and check a source; keep its blobs and record it where it is new."""
-    actuator, shown = in_reader(context, _read, staged, source)
+    actuator, shown, source = in_reader(context, _read, staged, source)
     identity = shown["data_hash"][:32]
     with context.sessions() as session:
         known = repository.find(session, identity)
@@ -88,14 +89,18 @@ def in_reader(context: Context, act: Callable[..., Made], *given: Any) -> Made:
         raise Unusable("out-of-memory", what, "upload", "upload fewer or shorter runs at a time") from None
 
 
-def _read(staged: Storage, source: dict[str, Any]) -> tuple[Actuator, dict[str, Any]]:
-    """The actuator of an upload, and what is shown of it. Raises Unusable."""
+def _read(staged: Storage, source: dict[str, Any]) -> tuple[Actuator, dict[str, Any], dict[str, Any]]:
+    """The actuator of an upload, what is shown of it, and its source, with levels if large. Raises Unusable."""
     matrix = read_stored(staged, source)
     for name in ("serial", "batch"):
         length = len(getattr(matrix.actuator, name))
         if length > LONGEST:
             raise Unusable("too-long", f"{length} characters where {LONGEST} fit", f"actuator {name}", "shorten it")
-    return matrix.actuator, summary(matrix)
+    shown = summary(matrix)
+    own = {key: value for key, value in source.items() if key != levels.KEY}  # not those of what a revision is of
+    if levels.is_large(shown["runs"]):
+        own[levels.KEY] = levels.stored_levels(matrix, staged)
+    return matrix.actuator, shown, own
 
 
 def revise(context: Context, matrix: str, revision: Revision) -> tuple[MatrixView, bool]:
@@ -185,6 +190,15 @@ def newer(context: Context, matrix: str) -> str | None:
     with context.sessions() as session:
         found = repository.newest(session, matrix)
     return found if found != matrix else None
+
+
+def drawn_from(context: Context, matrix: str) -> tuple[Sequence[Run], Levels | None]:
+    """The runs of a matrix as they are drawn before any fit, those of a large one from stored levels.
+
+    Raises Failure 404, Removed, Unusable.
+    """
+    row = find(context, matrix)
+    return levels.levelled(context, row, in_reader) or (load_row(context.storage, row).runs, None)
 
 
 def load(context: Context, matrix: str) -> Matrix:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from functools import lru_cache
 from threading import Lock
 
@@ -11,10 +12,12 @@ from numpy.typing import NDArray
 from app.context import Context
 from app.errors import missing
 from app.matrices import service as matrices
-from ident.run import Run
+from ident.decimation.levels import Levels
+from ident.run import Run, Samples
 
 WIDTH, HEIGHT = 160, 34  # px
 _COLUMNS = 80
+_EXTREMES = 8  # of a column, lowest and highest each, where a picture is drawn from levels
 _INPUT, _OUTPUT = "#8792a0", "#2f8fd3"  # seen on light and on dark ground: a picture does not know the page's theme
 Whole = NDArray[np.int64]
 _lock = Lock()
@@ -31,14 +34,20 @@ def thumbnail(context: Context, matrix: str, place: int) -> str:
 
 @lru_cache(maxsize=16)
 def _drawn(context: Context, matrix: str) -> tuple[str, ...]:
-    return tuple(picture(run) for run in matrices.load(context, matrix).runs)
+    runs, levels = matrices.drawn_from(context, matrix)
+    return tuple(picture(run, run.channels.__getitem__ if levels is None else _thinned(levels, run.id)) for run in runs)
 
 
-def picture(run: Run) -> str:
+def _thinned(levels: Levels, run: str) -> Callable[[str], Samples]:
+    """The extremes of a channel in time order, some for each column of a picture."""
+    return lambda channel: levels.envelope(run, channel, 0, levels.length(run), _EXTREMES * _COLUMNS)[1]
+
+
+def picture(run: Run, samples: Callable[[str], Samples]) -> str:
     """Input grey, output blue; on one scale where both have one unit, so that a wrong gain or sign shows."""
     names = [next((name for name in ("command", "current", "drive_force") if name in run.channels), run.output)]
     names += [run.output] if run.output != names[0] else []
-    bands = [_band(run.channels[name]) for name in names]
+    bands = [_band(samples(name)) for name in names]
     if len({run.units.get(name) for name in names}) == 1:
         low, high = min(b[0].min() for b in bands), max(b[1].max() for b in bands)
         ranges = [(low, high)] * len(bands)

@@ -17,6 +17,7 @@ from sqlalchemy.orm import Session
 
 from app.context import Context
 from app.errors import Failure
+from app.matrices.levels import KEY
 from app.retention import repository
 from app.tables import MatrixRow, before, now
 from schemas.retention import RawView, RetentionView
@@ -83,7 +84,7 @@ def _in_use(session: Session, but: Iterable[str] = ()) -> Iterator[str]:
 def _blobs(source: Mapping[str, Any]) -> Iterator[str]:
     """The blobs that the source of a matrix names."""
     yield from source.get("files", {}).values()
-    yield from (source[name] for name in ("zip", "description") if name in source)
+    yield from (source[name] for name in ("zip", "description", KEY) if name in source)
 
 
 def _sizes(context: Context) -> dict[str, int]:

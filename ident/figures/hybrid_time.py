@@ -8,13 +8,14 @@ from typing import Any
 import altair as alt
 import numpy as np
 
+from ident.decimation.envelope import envelope
 from ident.figures import words
 from ident.figures.drawing import Drawing, Options
 from ident.figures.frame import unchecked
 from ident.figures.look import Look
 from ident.figures.render import Chart, Panel, Row, datasets
 from ident.figures.subjects import Simulated
-from ident.figures.thin import Real, envelope, significant
+from ident.figures.thin import Real, significant
 from ident.hybrid.rig import HybridResult
 
 REFERENCE = "reference: the whole structure"

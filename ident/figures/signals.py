@@ -18,9 +18,9 @@ from ident.figures.options import RUN
 from ident.figures.render import Panel
 from ident.figures.selection import number
 from ident.figures.subjects import Recorded
-from ident.figures.thin import Real, envelope, significant
+from ident.figures.thin import Real, significant
+from ident.figures.traces import Trace
 from ident.matrix import Actuator
-from ident.run import Run
 from ident.words.run_name import run_name
 from ident.words.titles import title
 
@@ -31,7 +31,7 @@ _AXIS = 64  # pixels for the numbers of an axis, alike in all panels, so that th
 
 
 def signals(
-    runs: Sequence[Run], actuator: Actuator, look: Look, *, start: float | None = None, seconds: float | None = None
+    runs: Sequence[Trace], actuator: Actuator, look: Look, *, start: float | None = None, seconds: float | None = None
 ) -> Filled:
     """Every channel of the runs over one axis of time, in s (or samples where the clock is unknown).
 
@@ -56,13 +56,13 @@ def signals(
         values[f"across{place}"] = [title(name).capitalize(), words.axis("", printed).strip()]
     named = ", ".join(run.id for run in runs)
     values["headline"] = words.headline(actuator, "signals as measured")
-    values["told"] = [words.describe(runs[0]) if len(runs) == 1 else named]
+    values["told"] = [runs[0].described if len(runs) == 1 else named]
     shown_runs = tuple(run.id for run in runs) if len(runs) > 1 else ()
     clock = "s" if clocks == {"s"} else "samples"
     return Filled(_frame(len(channels), shown_runs, clock, look), tables, values)
 
 
-def _stretch(runs: Sequence[Run], start: float | None, seconds: float | None) -> tuple[float, float]:
+def _stretch(runs: Sequence[Trace], start: float | None, seconds: float | None) -> tuple[float, float]:
     """Where the figure begins and how long it is; raises Unusable where nothing was recorded there."""
     longest = max(run.duration for run in runs)
     first = 0.0 if start is None else start
@@ -74,13 +74,12 @@ def _stretch(runs: Sequence[Run], start: float | None, seconds: float | None) ->
     return first, length
 
 
-def _part(run: Run, channel: str, first: float, length: float) -> tuple[Real, Real]:
+def _part(run: Trace, channel: str, first: float, length: float) -> tuple[Real, Real]:
     """Times and samples to draw: the extremes of each part, and the samples next to both ends of the stretch."""
     begin = max(0, int(np.floor(first * run.sample_rate)))
     end = min(run.length, int(np.ceil((first + length) * run.sample_rate)) + 1)
-    samples = run.channels[channel][begin:end]
-    places = envelope(samples, _BINS)
-    return (begin + places) / run.sample_rate, samples[places]
+    numbers, values = run.envelope(channel, begin, end, _BINS)
+    return numbers / run.sample_rate, values
 
 
 def _rows(times: Real, samples: Real, factor: float, run: str, runs: int) -> list[dict[str, Any]]:
@@ -122,7 +121,7 @@ def _panel(place: int, channels: int, runs: tuple[str, ...], clock: str, look: L
 
 
 def _drawn(of: Recorded, look: Look, options: Options) -> Filled:
-    runs = of.chosen(options.get("run"), MOST)
+    runs = of.traced(options.get("run"), MOST)
     return signals(runs, of.actuator, look, start=number(options, "start"), seconds=number(options, "seconds"))
 
 

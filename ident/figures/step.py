@@ -10,6 +10,7 @@ import numpy as np
 
 from ident.comparison.side_by_side import titles
 from ident.comparison.step_response import StepResponse, duration, step_response
+from ident.decimation.envelope import envelope
 from ident.figures import words
 from ident.figures.choose import one, typical
 from ident.figures.drawing import Drawing, Option, Options
@@ -19,7 +20,7 @@ from ident.figures.others import others_of
 from ident.figures.render import Chart, datasets
 from ident.figures.selection import number
 from ident.figures.study import Study
-from ident.figures.thin import envelope, significant
+from ident.figures.thin import significant
 from ident.run import Run
 from ident.words.engineering import quantity
 from ident.words.number import plain

@@ -7,7 +7,9 @@ from dataclasses import dataclass
 
 from ident.comparison.profile import Profile
 from ident.comparison.side_by_side import SideBySide
+from ident.decimation.levels import Levels
 from ident.errors import Unusable
+from ident.figures.traces import Trace, traced
 from ident.fit.result import FitResult
 from ident.hybrid.case import Case
 from ident.hybrid.controller_design import ControllerDesign
@@ -37,10 +39,11 @@ class Ladder:
 
 @dataclass(frozen=True)
 class Recorded:
-    """What was measured of an actuator, before any fit."""
+    """What was measured of an actuator, before any fit. `levels`, where they are stored, thin the runs over time."""
 
     runs: Sequence[Run]
     actuator: Actuator
+    levels: Levels | None = None
 
     def chosen(self, wanted: str | Sequence[str] | None, most: int) -> tuple[Run, ...]:
         """The runs of these ids, the first run where none is named.
@@ -58,6 +61,10 @@ class Recorded:
                 "too-many-runs", f"{len(ids)} runs are chosen", "figure option run", f"choose {most} at most"
             )
         return tuple(known[name] for name in dict.fromkeys(ids)) or tuple(self.runs[:1])
+
+    def traced(self, wanted: str | Sequence[str] | None, most: int) -> tuple[Trace, ...]:
+        """The chosen runs as they are drawn over time. Raises Unusable as :meth:`chosen`."""
+        return tuple(traced(run, self.levels) for run in self.chosen(wanted, most))
 
 
 @dataclass(frozen=True)

@@ -24,18 +24,6 @@ def spread(frequency: Real, lower: float, upper: float, count: int, logarithmic:
     return np.unique(inside[right - nearer_left])
 
 
-def envelope(signal: Real, bins: int) -> Places:
-    """Indices of the extremes of each of `bins` equal stretches: peaks survive, shape (<= 2 bins + 2,)."""
-    n = len(signal)
-    if n <= 2 * bins:
-        return np.arange(n)
-    edges = np.linspace(0, n, bins + 1).astype(np.intp)
-    # Parts differ by one sample in length: each is laid out as long as the longest, its last sample repeated.
-    rows = np.minimum(edges[:-1, None] + np.arange(np.diff(edges).max()), edges[1:, None] - 1)
-    lowest, highest = (edges[:-1] + of(signal[rows], axis=1) for of in (np.argmin, np.argmax))
-    return np.unique(np.concatenate([[0, n - 1], lowest, highest]))
-
-
 def significant(values: Iterable[float] | Real, digits: int = 5) -> list[float]:
     """Values rounded to so many significant digits, as plain floats; what is not finite becomes NaN."""
     return [float(f"{value:.{digits}g}") if np.isfinite(value) else float("nan") for value in values]

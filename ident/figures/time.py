@@ -10,6 +10,7 @@ import altair as alt
 import numpy as np
 
 from ident.comparison.compare import RunComparison
+from ident.decimation.envelope import envelope
 from ident.errors import Unusable
 from ident.figures import words
 from ident.figures.choose import one, typical
@@ -21,7 +22,7 @@ from ident.figures.others import others_of, titles_of
 from ident.figures.render import Panel
 from ident.figures.selection import OPEN, Band, band_of, number
 from ident.figures.study import Study
-from ident.figures.thin import Real, envelope, significant
+from ident.figures.thin import Real, significant
 from ident.fit.reduction import within
 from ident.matrix import Actuator
 from ident.run import Run

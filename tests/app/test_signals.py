@@ -2,6 +2,11 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
+from app.matrices import levels
+from tests.app.conftest import zipped
+
 API = "/api/v1"
 
 
@@ -60,3 +65,28 @@ def test_a_run_is_split_by_a_revision_and_the_split_is_taken_back_from_either_pa
         f"{API}/matrices/{made['id']}/revisions", json={"runs": {f"{name}.validation": {"split": None}}}
     )
     assert [run["samples"] for run in back.json()["runs"] if run["id"].startswith(name)] == [2048]
+
+
+def test_a_large_matrix_is_drawn_from_levels_that_are_stored_once(service, monkeypatch):
+    """As its samples would be; made at the first look where an upload made none; no revision has those of another."""
+    monkeypatch.setattr(levels, "LARGE", 1 << 60)
+    made = service.post(f"{API}/matrices", files={"files": ("m.zip", zipped("LEVELS-1"))}).json()
+    at, storage = f"{API}/matrices/{made['id']}", Path(service.app.state.context.storage.folder)
+    blobs = set(storage.glob("??/*"))
+    asked = {"start": "0.1", "seconds": "0.2", "run": made["runs"][1]["id"]}
+    plain = service.get(f"{at}/figures/signals.json", params=asked).json()
+    monkeypatch.setattr(levels, "LARGE", 1)
+    for _ in range(2):
+        drawn = service.get(f"{at}/figures/signals.json", params=asked | {"share": "1.1"}).json()
+        (blob,) = set(storage.glob("??/*")) - blobs
+        assert blob.read_bytes().startswith(b"servoident levels")
+    for of_samples, of_levels in zip(plain["datasets"]["channel1"], drawn["datasets"]["channel1"], strict=True):
+        assert of_samples["t"] == of_levels["t"]
+        assert abs(of_samples["y"] - of_levels["y"]) < 1e-3
+    assert service.get(f"{at}/figures/spectra.json").status_code == 200
+    assert "<path" in service.get(f"/matrices/{made['id']}/thumbnails/1.svg").text
+    change = {"runs": {made["runs"][0]["id"]: {"rows": [100, 1500]}}}
+    revised = service.post(f"{at}/revisions", json=change).json()
+    assert len(set(storage.glob("??/*")) - blobs) == 3  # its description, and levels of its own
+    shown = service.get(f"{API}/matrices/{revised['id']}/figures/signals.json").json()
+    assert max(row["t"] for row in shown["datasets"]["channel0"]) < 1400 / 4096

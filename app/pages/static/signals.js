@@ -9,19 +9,25 @@ const { start: from, seconds: long } = figure.querySelector("form").elements;
 const whole = Number(section.dataset.duration), shortest = Number(section.dataset.shortest);
 const REST = 120; // ms after the last movement until the points are asked for
 const STEP = 1.25; // by how much a turn of the wheel or a key zooms
-let rest, held;
+let rest, held, frame, along;
 
 const shown = () => {
   const start = Number(from.value);
   return { start, seconds: long.value === "" ? whole - start : Number(long.value) };
 };
 
+function follow() {
+  frame = undefined;
+  figure.view?.signal("begin", along[0]).signal("end", along[1]).runAsync();
+}
+
 function show(start, seconds) {
   const length = Math.min(whole, Math.max(seconds, shortest));
   const first = Math.min(Math.max(start, 0), whole - length);
   from.value = first ? Number(first.toPrecision(9)) : "";
   long.value = length < whole ? Number(length.toPrecision(9)) : "";
-  figure.view?.signal("begin", first).signal("end", first + length).runAsync();
+  along = [first, first + length];
+  frame ??= requestAnimationFrame(follow);  // turns of a wheel come faster than frames
   clearTimeout(rest);
   rest = setTimeout(() => from.form.dispatchEvent(new Event("change")), REST);
 }

@@ -1,0 +1,168 @@
+"""Signals of large data sets before a fit: the first plot, what a step weighs, and how zooming by wheel runs."""
+
+from __future__ import annotations
+
+import io
+import json
+import re
+import sqlite3
+import statistics
+import tempfile
+import time
+import zipfile
+from pathlib import Path
+from typing import Any
+
+import httpx
+import numpy as np
+
+from benchmarks.pages import CHROMIUM, TOKEN, served
+from benchmarks.table import Table
+from benchmarks.uploads import RATE, RUNS, arrays, upload
+
+SECONDS = 30.0
+LONG = 4_000_000  # samples of each channel of the long run
+NAMES = {
+    "command": "mm", "displacement": "mm", "velocity": "mm/s", "force": "kN",
+    "load_pressure": "bar", "pressure_a": "bar", "pressure_b": "bar", "supply_pressure": "bar",
+}  # fmt: skip
+FIRST, UNMADE, WEIGHT, FRAME, SHARP = 0.3, 1.0, 200_000, 33.0, 300.0  # s, s, bytes, ms, ms
+ZOOM = """async (seconds) => {
+  const plot = document.querySelector("#signals .plot"), canvas = plot.querySelector("canvas").getBoundingClientRect();
+  const frames = [], begun = performance.now();
+  let last = begun, turn = 0;
+  while (performance.now() - begun < 1000 * seconds) {
+    const inward = Math.floor((performance.now() - begun) / 1000 / (seconds / 2)) === 0;
+    if (turn++ % 4 === 0) plot.dispatchEvent(new WheelEvent("wheel", { deltaY: inward ? -100 : 100, bubbles: true,
+      cancelable: true, clientX: canvas.left + 0.5 * canvas.width, clientY: canvas.top + 60 }));
+    const now = await new Promise(requestAnimationFrame);
+    frames.push(now - last);
+    last = now;
+  }
+  const rest = performance.now(), figure = document.querySelector("#signals .figure");
+  await new Promise((done) => setTimeout(done, 140));
+  while (figure.querySelector(".plot").ariaBusy !== "false") await new Promise(requestAnimationFrame);
+  return [frames.slice(1), performance.now() - rest];
+}"""
+
+
+def long_run() -> bytes:
+    """An archive of one run of eight channels: noise that wanders, and one sample that stands out."""
+    random = np.random.default_rng(5)
+    arrays_ = {name: np.cumsum(random.normal(size=LONG)).astype(np.float32) for name in NAMES}
+    arrays_["displacement"][LONG // 3] += 1e5
+    file, buffer = io.BytesIO(), io.BytesIO()
+    np.savez(file, **arrays_)
+    channels = {name: {"column": name, "unit": unit} for name, unit in NAMES.items()}
+    run = {"id": "long", "file": "runs/long.npz", "sample_rate": "4096 Hz", "channels": channels}
+    with zipfile.ZipFile(buffer, "w") as archive:
+        archive.writestr("matrix.yaml", json.dumps({"actuator": {"serial": "LONG-1"}, "runs": [run]}))
+        archive.writestr("runs/long.npz", file.getvalue())
+    return buffer.getvalue()
+
+
+def _stored(client: httpx.Client, archive: bytes) -> tuple[str, float]:
+    """The id of a matrix, and how long its upload took, s."""
+    begun = time.perf_counter()
+    answer = client.post("/api/v1/matrices", files={"files": ("matrix.zip", archive)}).raise_for_status()
+    return str(answer.json()["id"]), time.perf_counter() - begun
+
+
+def _plot(client: httpx.Client, matrix: str, **options: Any) -> tuple[float, int]:
+    """How long a plot takes, s, and its bytes."""
+    begun = time.perf_counter()
+    answer = client.get(f"/api/v1/matrices/{matrix}/figures/signals.json", params={"live": "1", **options})
+    answer.raise_for_status()
+    return time.perf_counter() - begun, len(answer.content)
+
+
+def _memory(client: httpx.Client) -> float:
+    """The memory that the services' processes hold, MB, by the kernel; what is mapped from files is not theirs."""
+    port = re.search(r":(\d+)$", str(client.base_url))
+    assert port is not None
+    held = 0.0
+    for process in Path("/proc").glob("[0-9]*"):
+        try:
+            if port[1].encode() in (process / "cmdline").read_bytes():
+                status = (process / "status").read_text()
+                held += int(re.search(r"RssAnon:\s+(\d+)", status)[1]) / 1024  # type: ignore[index]
+        except (OSError, TypeError):
+            continue
+    return held
+
+
+def _without_levels(folder: Path, matrix: str) -> None:
+    """Forget the levels of a matrix, as of one that an earlier version stored."""
+    with sqlite3.connect(folder / "servoident.sqlite") as database:
+        (text,) = database.execute("SELECT source FROM matrices WHERE id = ?", (matrix,)).fetchone()
+        source = {key: value for key, value in json.loads(text).items() if key != "levels"}
+        database.execute("UPDATE matrices SET source = ? WHERE id = ?", (json.dumps(source), matrix))
+
+
+def _zoomed(client: httpx.Client, matrix: str) -> tuple[float, float]:
+    """ms within which 95 % of the frames stand while the wheel turns for 10 s, and until all is sharp after rest."""
+    from playwright.sync_api import sync_playwright  # noqa: PLC0415  no other benchmark needs a browser
+
+    with sync_playwright() as play:
+        browser = play.chromium.launch(executable_path=CHROMIUM, args=["--no-sandbox", "--disable-gpu"])
+        page = browser.new_context(viewport={"width": 1280, "height": 900}).new_page()
+        page.goto(f"{client.base_url}/?token={TOKEN}")
+        page.goto(f"{client.base_url}/matrices/{matrix}/signals?run=long")
+        for figure in ("signals", "spectra"):
+            page.wait_for_selector(f"#figure-{figure} canvas", timeout=120_000)
+        frames, sharp = page.evaluate(ZOOM, 10)
+        browser.close()
+    return float(np.quantile(frames, 0.95)), float(sharp)
+
+
+def _read_once(archive: bytes) -> float:
+    """How long numpy takes to read every run of an archive once, s."""
+    begun = time.perf_counter()
+    with zipfile.ZipFile(io.BytesIO(archive)) as files:
+        for name in files.namelist():
+            if name.endswith(".npz"):
+                with np.load(io.BytesIO(files.read(name))) as run:
+                    for channel in run:
+                        run[channel].sum()
+    return time.perf_counter() - begun
+
+
+def measure() -> Table:
+    """The first plot with levels and without, zooms, weight, frames and memory, on loopback."""
+    many, long = upload(SECONDS, "npz", "MANY-1"), long_run()
+    with tempfile.TemporaryDirectory() as name, served(Path(name) / "data") as client:
+        small, _ = _stored(client, upload(0.5, "npz", "SMALL-1"))
+        _plot(client, small)  # what draws is imported
+        matrix, _ = _stored(client, many)
+        once = statistics.median(_read_once(many) for _ in range(3))
+        first = [_plot(client, matrix, run=f"r{number}") for number in range(5)]
+        _without_levels(Path(name) / "data", matrix)
+        unmade, _ = _plot(client, matrix, run="r9")
+        of_long, _ = _stored(client, long)
+        before = _memory(client)
+        whole = LONG / RATE
+        steps = [_plot(client, of_long, start=whole / 3 * (1 - 0.5**k), seconds=whole * 0.5**k) for k in range(12)]
+        grown = _memory(client) - before
+        frame, sharp = _zoomed(client, of_long)
+    plotted, weight = statistics.median(taken for taken, _ in first), max(size for _, size in (*first, *steps))
+    rows = [
+        (f"read all {RUNS} runs once with numpy ({arrays(SECONDS) / 1e6:.0f} MB of samples)", f"{once:.2f} s"),
+        ("first plot of any run, with levels", f"{plotted:.3f} s, {plotted / once:.2f} of it"),
+        ("first plot with no levels stored, which makes them", f"{unmade:.2f} s, {unmade / once:.2f} of it"),
+        (f"a zoom of 8 channels of {LONG / 1e6:.0f} million samples, the slowest", f"{max(t for t, _ in steps):.3f} s"),
+        ("a step, the largest", f"{weight / 1000:.0f} kB"),
+        ("10 s of zoom by wheel in and out, 95 % of frames within", f"{frame:.0f} ms"),
+        ("sharp again after rest", f"{sharp:.0f} ms"),
+        ("memory of the service during the zooms", f"{grown:+.0f} MB"),
+    ]
+    met = plotted <= FIRST and unmade <= UNMADE and weight <= WEIGHT and frame <= FRAME and sharp <= SHARP
+    return Table(
+        "Signals",
+        f"{RUNS} runs of {SECONDS:g} s of two channels, and one run of {len(NAMES)} channels, on loopback; "
+        "the zooms at 1280 px in headless Chromium.",
+        ("what", "measured"),
+        rows,
+        f"first plot in {FIRST:g} s with levels and {UNMADE:g} s without, {WEIGHT / 1000:g} kB a step, "
+        f"95 % of frames within {FRAME:g} ms, sharp in {SHARP:g} ms",
+        met,
+    )  # fmt: skip
