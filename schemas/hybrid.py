@@ -109,15 +109,23 @@ class GroundRequest(_Asked):
     seed: int | None = Field(default=None, ge=0, lt=2**31)
 
 
+class SpecimenRequest(_Asked):
+    """What the machine moves: each in SI or with its unit, nothing without it."""
+
+    mass: Value | None = None
+    stiffness: Value | None = None
+    damping: Value | None = None
+
+
 class HybridRequest(_Asked):
     """A hybrid simulation of a case on the machine of a stored fit.
 
     `controller` is `none`, `kalman` or another that has a name, the id of a stored one, or what its `.json` holds.
     `effects` are switched on at a fifth of their largest strength; `set` gives values by NAME or NAME.PARAM, with a
-    unit or in SI. With `map` there is also the map over the shares of mass and stiffness that are physical, for
-    several actuators over the delays of two of them. With a `spread` 100 machines that are drawn from it are simulated,
-    too. `before` is the loop when it was stable, by which the cause is found where it no longer is. `at` moves the
-    machine to another condition.
+    unit or in SI. An `isolator` on the specimen belongs to the structure, and no controller knows it. With `map` there
+    is also the map over the shares of mass and stiffness that are physical, for several actuators over the delays of
+    two of them. With a `spread` 100 machines that are drawn from it are simulated, too. `before` is the loop when it
+    was stable, by which the cause is found where it no longer is. `at` moves the machine to another condition.
     """
 
     fit: str
@@ -126,18 +134,11 @@ class HybridRequest(_Asked):
     ground: Short | GroundRequest | None = None
     effects: list[Short] = Field(default_factory=list, max_length=50)
     set: dict[str, Value] = Field(default_factory=dict, max_length=50)
+    isolator: SpecimenRequest | None = None
     map: bool = False
     spread: SpreadRequest | None = None
     at: AtRequest | None = None
     before: EarlierRequest | None = None
-
-
-class SpecimenRequest(_Asked):
-    """What the machine moves: each in SI or with its unit, nothing without it."""
-
-    mass: Value | None = None
-    stiffness: Value | None = None
-    damping: Value | None = None
 
 
 class AxesRequest(_Asked):

@@ -12,11 +12,12 @@ from app.cli.at_option import At, Over, Sets, moved_to
 from app.cli.before_option import CaseBefore, EarlierFit, EarlierGain, earlier_case
 from app.cli.figure_files import write_figures
 from app.cli.given import read_fit
-from app.cli.hybrid_parts import refuse_for_several, simulate_parts, tell_of_parts
+from app.cli.hybrid_parts import refuse_for_several, show_parts
 from app.cli.output import STANDARD_OUTPUT, check_target, write_json
 from app.cli.progress import shown
 from app.cli.rig_option import RigFile, rig_in
 from app.cli.spread_option import SpreadGiven, spread_in
+from app.cli.whatif import specimen_of
 
 if TYPE_CHECKING:
     from ident.hybrid.share_map import ShareMap
@@ -36,6 +37,13 @@ def hybrid(
     ] = None,
     effect: Annotated[
         list[str] | None, typer.Option(metavar="NAME[.PARAM=VALUE]", help="Effect to add; may be repeated.")
+    ] = None,
+    isolator: Annotated[
+        str | None,
+        typer.Option(
+            metavar="KEY=VALUE,…",
+            help="Isolator on the specimen that no controller knows: mass, stiffness, damping.",
+        ),
     ] = None,
     shares: Annotated[
         bool,
@@ -62,28 +70,35 @@ def hybrid(
     from dataclasses import replace
 
     from app.cli.tables import show
-    from ident.hybrid.acting import controller_called, linear
+    from ident.hybrid.acting import FEEDFORWARD, controller_called, linear
     from ident.hybrid.controller import name_of
     from ident.hybrid.coupled_case import CoupledCase
     from ident.hybrid.coupled_reading import read_system
     from ident.hybrid.drawn_simulations import drawn_simulations
     from ident.hybrid.followed import followed_in
     from ident.hybrid.rig import simulate_hybrid
+    from ident.hybrid.specimen_effects import wanted_in
 
     check_target(json)
     moved, of = moved_to(read_fit(fit), at, over, sets), read_system(case)
     result = moved.fit
     of = of if ground is None else of.with_ground(ground)
     if isinstance(of, CoupledCase):
-        refuse_for_several(at=at, spread=spread, before=before, before_gain=before_gain, before_case=before_case)
+        refuse_for_several(
+            at=at, isolator=isolator, spread=spread, before=before, before_gain=before_gain, before_case=before_case
+        )
         of = of if rig is None else of.changed(rig=rig_in(rig))
         on = effect_values(effect or [], result.model)
-        several = simulate_parts(result, of, Path(case).parent, controller, on, shares, drawn=out is not None)
-        return tell_of_parts(several, json, out)
+        if not show_parts(result, of, Path(case).parent, controller, on, shares, json, out):
+            raise typer.Exit(1)
+        return
     of = of if rig is None else replace(of, rig=rig_in(rig))
     effects, wide = effect_values(effect or [], result.model), spread_in(spread, result.model)
     earlier = earlier_case(result, of, before, before_gain, before_case)
-    acting = controller_called(controller, result, of)
+    known, beside = of, None if isolator is None else specimen_of(isolator, "--isolator")
+    of = of if beside is None else of.with_isolator(beside)
+    ahead = wanted_in(result, of, effects) if controller == FEEDFORWARD else None
+    acting = controller_called(controller, result, known, ahead)
     with shown() as report:
         found_here = simulate_hybrid(result, of, acting, effects, report, earlier)
         runs = {name_of(acting): replace(found_here, notes=(*moved.text, *found_here.notes))}
@@ -93,11 +108,11 @@ def hybrid(
         drawn = None
         if wide is not None and controller != "feedforward":
             drawn = drawn_simulations(result, of, linear(acting, "spread"), effects, wide, report=report)
-    worth = followed_in(result, of, spread=wide) if controller == "feedforward" else None
+    worth = followed_in(result, known, spread=wide, isolator=beside) if controller == "feedforward" else None
     main = next(iter(runs.values()))
     if json is not None:
-        beside = {"map": found, "feedforward": worth, "spread": drawn}
-        write_json({**main.to_json(), **{name: one.to_json() for name, one in beside.items() if one}}, json)
+        further = {"map": found, "feedforward": worth, "spread": drawn}
+        write_json({**main.to_json(), **{name: one.to_json() for name, one in further.items() if one}}, json)
     if json != STANDARD_OUTPUT:
         show((*main.listings(), *(worth.listings() if worth else ()), *(drawn.sentences() if drawn else ())))
     if out is not None:
@@ -106,7 +121,6 @@ def hybrid(
         write_figures(Simulated(runs, of, found, worth), out)
     if not main.stable:
         raise typer.Exit(1)
-    return None
 
 
 def _map(asked: bool, acting: Any, *rest: Any) -> ShareMap | None:

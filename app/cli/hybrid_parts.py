@@ -7,8 +7,6 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-import typer
-
 from app.cli.figure_files import write_figures
 from app.cli.given import read_fit
 from app.cli.output import STANDARD_OUTPUT, write_json
@@ -33,6 +31,23 @@ def refuse_for_several(**options: object) -> None:
     """Raise Unusable for an option that is there for one actuator only."""
     if given := [name.replace("_", "-") for name, value in options.items() if value]:
         raise Unusable("bad-option", "a case of several parts has none", f"--{given[0]}", "leave it out")
+
+
+def show_parts(
+    fit: FitResult, of: CoupledCase, folder: Path, controller: str, effects: Mapping[str, float], mapped: bool,
+    json: Path | None, out: Path | None,
+) -> bool:  # fmt: skip
+    """Simulate a case of several actuators, write and show what came of it; whether it is stable."""
+    from app.cli.tables import show
+
+    found = simulate_parts(fit, of, folder, controller, effects, mapped, drawn=out is not None)
+    if json is not None:
+        write_json(found.parts.to_json(), json)
+    if json != STANDARD_OUTPUT:
+        show(found.parts.listings())
+    if out is not None:
+        draw_parts(found, out)
+    return found.parts.stable
 
 
 def simulate_parts(
@@ -72,21 +87,7 @@ def _inside(given: object, folder: Path, names: Mapping[str, object]) -> str:
     return str(folder / given) if given and given not in names else given
 
 
-def tell_of_parts(found: Parts, json: Path | None, out: Path | None) -> None:
-    """Write, show and draw what was simulated. Raises Exit 1 where it is unstable."""
-    from app.cli.tables import show
-
-    if json is not None:
-        write_json(found.parts.to_json(), json)
-    if json != STANDARD_OUTPUT:
-        show(found.parts.listings())
-    if out is not None:
-        _draw(found, out)
-    if not found.parts.stable:
-        raise typer.Exit(1)
-
-
-def _draw(found: Parts, out: Path) -> None:
+def draw_parts(found: Parts, out: Path) -> None:
     """The figures of each part in a folder of its name, and those of the whole."""
     from ident.figures.subjects import Coupled, Simulated
 

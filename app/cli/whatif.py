@@ -163,8 +163,8 @@ def _change(fit: FitResult, set_: list[str], fitted: list[str], specimen: str | 
     )
 
 
-def specimen_of(text: str | None) -> Specimen:
-    """A specimen from `mass=2.06 kg, stiffness=30.65 kN/m`. Raises Unusable."""
+def specimen_of(text: str | None, option: str = "--specimen") -> Specimen:
+    """A specimen from `mass=2.06 kg, stiffness=30.65 kN/m`, the value of an `option`. Raises Unusable."""
     from ident.errors import Unusable
     from ident.run import Specimen
     from ident.units.quantity import quantity
@@ -172,14 +172,12 @@ def specimen_of(text: str | None) -> Specimen:
     form, found = "mass=…,stiffness=…,damping=…", {}
     for part in re.split(r",(?=\s*\w+\s*=)", text or ""):  # a comma before digits is a decimal sign
         if part.strip():
-            name, value = split(part, "--specimen", form)
+            name, value = split(part, option, form)
             if name not in _OF_SPECIMEN:
-                raise Unusable(
-                    "bad-option", f"a specimen has no {name!r}", "--specimen", did_you_mean(name, _OF_SPECIMEN)
-                )
-            found[name] = quantity(value, _OF_SPECIMEN[name], f"--specimen {name}")
+                raise Unusable("bad-option", f"a specimen has no {name!r}", option, did_you_mean(name, _OF_SPECIMEN))
+            found[name] = quantity(value, _OF_SPECIMEN[name], f"{option} {name}")
             if found[name] < 0:
-                raise Unusable("bad-number", f"{value} is below 0", f"--specimen {name}", "give 0 or more")
+                raise Unusable("bad-number", f"{value} is below 0", f"{option} {name}", "give 0 or more")
     return Specimen(**found)
 
 

@@ -20,13 +20,13 @@ def named(given: str) -> bool:
     return given in NAMED
 
 
-def acting(given: str | dict[str, Any], fit: FitResult, case: Case) -> Controller:
-    """The controller of that name, or of that JSON. Raises Unusable."""
+def acting(given: str | dict[str, Any], fit: FitResult, case: Case, wanted: Any = None) -> Controller:
+    """As :func:`ident.hybrid.acting.controller_called`: the controller of that name, or of that JSON."""
     if isinstance(given, str):
         if given not in NAMED:
             raise Unusable("unknown-controller", f"{shown(given)!r} is no controller", "controller",
                            did_you_mean(given, NAMED, f"give {', '.join(NAMED)}, or the id of one"))  # fmt: skip
-        return NAMED[given](fit, case)
+        return NAMED[given](fit, case, wanted)
     rows = given.get("A")
     if isinstance(rows, list) and len(rows) > MOST_STATES:
         raise Unusable("bad-controller", f"{len(rows)} states", "controller", f"give at most {MOST_STATES}")

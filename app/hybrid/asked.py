@@ -128,7 +128,7 @@ def change_of(fit: FitResult, request: WhatIfRequest) -> Change:
     return Change(
         sizes={name: value for name, value in given.items() if name in SIZES},
         values={name: value for name, value in given.items() if name not in SIZES},
-        specimen=_specimen(request.specimen),
+        specimen=specimen_of(request.specimen),
         known=_sizes(request.fitted),
     )
 
@@ -137,12 +137,13 @@ def _sizes(fitted: Mapping[str, float | str]) -> dict[str, float]:
     return {name: parameter_value(value, SIZES[name], f"fitted {name}") for name, value in fitted.items()}
 
 
-def _specimen(given: SpecimenRequest) -> Specimen:
+def specimen_of(given: SpecimenRequest, where: str = "specimen") -> Specimen:
+    """A specimen that a request states, SI. Raises Unusable."""
     found = {}
     for name, value in given.model_dump(exclude_none=True).items():
-        found[name] = parameter_value(value, name, f"specimen {name}")
+        found[name] = parameter_value(value, name, f"{where} {name}")
         if found[name] < 0:
-            raise Unusable("bad-number", f"{shown(value)} is below 0", f"specimen {name}", "give 0 or more")
+            raise Unusable("bad-number", f"{shown(value)} is below 0", f"{where} {name}", "give 0 or more")
     return Specimen(**found)
 
 

@@ -27,9 +27,9 @@ def settings(
     effects: dict[str, float],
 ) -> dict[str, Any]:  # fmt: skip
     """What the job of a request keeps. Raises Unusable where it cannot be run, and Failure 404."""
-    alone = {"at": request.at, "spread": request.spread, "before": request.before}
-    if asked_for := [name for name, value in alone.items() if value is not None]:
-        raise Unusable("bad-option", "a case of several parts has none", asked_for[0], "leave it out")
+    alone = {"at": request.at, "spread": request.spread, "before": request.before, "isolator": request.isolator}
+    if where := next((name for name, one in alone.items() if one is not None), ""):
+        raise Unusable("bad-option", "a case of several parts has none", where, "leave it out")
     parts, chosen, own = [], [], []
     for part in case.parts:
         of = FitResult.from_json(fits.find(context, part.fit).result) if part.fit else fit

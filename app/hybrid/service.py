@@ -11,7 +11,7 @@ from app.errors import missing
 from app.fits import service as fits
 from app.hybrid import parts, repository
 from app.hybrid.acting import acting
-from app.hybrid.asked import AskedCase, asked_case, effects_of
+from app.hybrid.asked import AskedCase, asked_case, effects_of, specimen_of
 from app.hybrid.at_condition import moved_to
 from app.hybrid.before import earlier_case, stated
 from app.hybrid.keeping import kept_controller, kept_text
@@ -47,10 +47,10 @@ def submit(context: Context, request: HybridRequest, job: str) -> JobView:
     if isinstance(system, CoupledCase):
         settings = parts.settings(context, request, fit, system, asked, effects)
         return jobs.record(context, job, row.matrix, settings, request.fit, KIND)
-    case = system
+    case, isolator = system, None if request.isolator is None else specimen_of(request.isolator, "isolator")
     given, stored = kept_controller(context, request.controller)
     chosen = acting(given, fit, case)
-    _check(fit, case, effects, chosen, request.map)
+    _check(fit, case if isolator is None else case.with_isolator(isolator), effects, chosen, request.map)
     spread = spread_of(context, request.spread, fit.model)
     if spread is not None and given != FEEDFORWARD:
         linear(chosen, "spread")
@@ -63,6 +63,7 @@ def submit(context: Context, request: HybridRequest, job: str) -> JobView:
             "inline": not isinstance(given, str), "controller_id": stored,
             "spread": None if spread is None else written(spread),
             "moved": [kept_text(context, json.dumps(fit.to_json())), *moved.text] if moved.text else None,
+            "isolator": None if isolator is None else written(isolator),
             "before": _before(context, stated(request.before), fit, case),
         },
     }  # fmt: skip

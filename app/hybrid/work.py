@@ -28,6 +28,9 @@ from ident.hybrid.drawn_simulations import drawn_simulations
 from ident.hybrid.followed import followed_in
 from ident.hybrid.rig import simulate_hybrid
 from ident.hybrid.share_map import share_map
+from ident.hybrid.specimen_effects import wanted_in
+from ident.plain import read
+from ident.run import Specimen
 
 WITHOUT = "no controller"
 
@@ -48,7 +51,9 @@ class HybridWork(InOnePiece):
         moved = asked.get("moved") or []
         fit = self._fit(moved[0]) if moved else fit
         given: Any = json.loads(self._blob(asked["controller"])) if asked["inline"] else asked["controller"]
-        chosen, effects = acting(given, fit, case), asked["effects"]
+        effects, isolator = asked["effects"], read(Specimen, asked["isolator"]) if asked.get("isolator") else None
+        known, case = case, case if isolator is None else case.with_isolator(isolator)
+        chosen = acting(given, fit, known, wanted_in(fit, case, effects) if given == FEEDFORWARD else None)
         before = earlier_case(asked.get("before"), fit, case, self._fit)
         main = simulate_hybrid(fit, case, chosen, effects, report, before)
         main = replace(main, notes=(*moved[1:], *main.notes))
@@ -57,7 +62,7 @@ class HybridWork(InOnePiece):
         if asked["map"] and isinstance(chosen, SampledController):
             mapped = share_map(fit, case, chosen, effects, report=report)
         spread, drawn = kept(asked.get("spread")), None
-        worth = followed_in(fit, case, spread=spread) if given == FEEDFORWARD else None
+        worth = followed_in(fit, known, spread=spread, isolator=isolator) if given == FEEDFORWARD else None
         if spread is not None and isinstance(chosen, SampledController):
             drawn = drawn_simulations(fit, case, chosen, effects, spread, report=report)
         runs = {main.controller: main} | ({WITHOUT: alone} if alone else {})

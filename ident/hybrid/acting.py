@@ -6,6 +6,9 @@ import json
 from collections.abc import Callable, Mapping
 from pathlib import Path
 
+import numpy as np
+from numpy.typing import NDArray
+
 from ident.errors import Unusable
 from ident.fit.result import FitResult
 from ident.hybrid.case import Case
@@ -17,39 +20,44 @@ from ident.hybrid.substructure import reference
 from ident.units.quantity import shown
 from ident.words.nearest import did_you_mean
 
+Array = NDArray[np.float64]
 FEEDFORWARD = "feedforward"
 _LARGEST = 50_000_000  # bytes of a controller's file
 
 
-def _none(_fit: FitResult, case: Case) -> Controller:
+def _none(_fit: FitResult, case: Case, _wanted: Array | None) -> Controller:
     """u = d."""
     return no_controller(case.sample_rate)
 
 
-def _kalman(_fit: FitResult, case: Case) -> Controller:
+def _kalman(_fit: FitResult, case: Case, _wanted: Array | None) -> Controller:
     """u = (d + τ d′)/k from live estimates, which start from what a filter takes that knows nothing of the fit."""
     return Compensation(case.sample_rate)
 
 
-def _feedforward(fit: FitResult, case: Case) -> Controller:
+def _feedforward(fit: FitResult, case: Case, wanted: Array | None) -> Controller:
     """d with the voltage beside it that the inverse of the model needs to follow the reference solution.
 
     The motion of the whole structure is known ahead, as the ground is.
     """
-    wanted = reference(case, case.ground.samples(case.sample_rate))
-    return FeedforwardController(plant_in(fit, case), wanted, case.sample_rate)
+    ahead = reference(case, case.ground.samples(case.sample_rate)) if wanted is None else wanted
+    return FeedforwardController(plant_in(fit, case), ahead, case.sample_rate)
 
 
-NAMED: Mapping[str, Callable[[FitResult, Case], Controller]] = {
+NAMED: Mapping[str, Callable[[FitResult, Case, Array | None], Controller]] = {
     "none": _none, "kalman": _kalman, FEEDFORWARD: _feedforward,
 }  # fmt: skip
 """Controllers by name, each made for one simulation."""
 
 
-def controller_called(given: str, fit: FitResult, case: Case) -> Controller:
-    """The controller of that name or file. Raises Unusable where it is neither, or made for another sample rate."""
+def controller_called(given: str, fit: FitResult, case: Case, wanted: Array | None = None) -> Controller:
+    """The controller of that name or file, by what is known: the fit and the case as stated.
+
+    `wanted` (m) is the reference solution that is known ahead, (n,), that of the case where it is None. Raises Unusable
+    where it is neither, or made for another sample rate.
+    """
     if given in NAMED:
-        return NAMED[given](fit, case)
+        return NAMED[given](fit, case, wanted)
     path = Path(given)
     if not path.is_file() or path.stat().st_size > _LARGEST:
         raise Unusable("unknown-controller", f"{shown(given)!r} is no controller", "controller",

@@ -155,6 +155,15 @@ class Case:
         left[self.place, self.place] -= physical
         return left
 
+    def with_isolator(self, isolator: Specimen) -> Case:
+        """The case whose specimen has an isolator on it: in the laboratory, and in the whole structure."""
+        p, own = self.place, self.physical
+        whole = {name: getattr(self, name).copy() for name in _STRUCTURE}
+        for name, matrix_ in whole.items():
+            matrix_[p, p] += getattr(isolator, name)
+        both = Specimen(*(getattr(own, name) + getattr(isolator, name) for name in ("mass", "stiffness", "damping")))
+        return replace(self, mass=whole["mass"], stiffness=whole["stiffness"], damping=whole["damping"], physical=both)
+
     def with_shares(self, mass: float, stiffness: float) -> Case:
         """The case with these shares (0 to 1) of the storey's mass and stiffness in the specimen, its damper as is."""
         m, k = (float(whole[self.place, self.place]) for whole in (self.mass, self.stiffness))

@@ -16,10 +16,11 @@ from ident.hybrid.controller import Controller, SampledController, name_of
 from ident.hybrid.coupled_case import CoupledCase
 from ident.hybrid.coupled_stability import DelayMap, coupled_critical_delay, coupled_poles
 from ident.hybrid.machine import Machine, machine
-from ident.hybrid.rig import RUNAWAY, HybridResult, notes_of
+from ident.hybrid.rig import HELD, RUNAWAY, HybridResult, notes_of
 from ident.hybrid.rig_assembly import rig_of, run
 from ident.hybrid.rig_limits import leaving
 from ident.hybrid.scores import Scores, scores
+from ident.hybrid.specimen_effects import of_specimen
 from ident.hybrid.substructure import reference
 from ident.progress import Report, silent
 from ident.stability.judgement import UNSTABLE, Judgement
@@ -190,4 +191,7 @@ def _whole(
 
 
 def _notes(machines: Sequence[Machine]) -> tuple[str, ...]:
-    return tuple(dict.fromkeys(note for one in machines for note in notes_of(one)))
+    held = [effect.name for one in machines for effect in of_specimen(one)]
+    of_each = (note for one in machines for note in notes_of(one) if not note.startswith(HELD))
+    linear = [f"the reference is the structure without {', '.join(dict.fromkeys(held))}"] if held else []
+    return tuple(dict.fromkeys([*of_each, *linear]))

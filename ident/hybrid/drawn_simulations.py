@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from threading import Lock
 from typing import Any
@@ -21,6 +21,7 @@ from ident.hybrid.machine import Machine, machine
 from ident.hybrid.rig import RUNAWAY
 from ident.hybrid.rig_assembly import rig_of, run
 from ident.hybrid.scores import rms
+from ident.hybrid.specimen_effects import of_specimen, reference_of
 from ident.hybrid.stability import spectral_radius
 from ident.hybrid.substructure import reference
 from ident.parallel import each, one_thread
@@ -88,11 +89,14 @@ def drawn_simulations(
     machines = [machine(one, case, effects) for one in fits]
     acting = controller or no_controller(case.sample_rate)
     ground = case.ground.samples(case.sample_rate)
-    wanted = reference(case, ground)
+    if of_specimen(machines[0]):
+        wanted = [reference_of(one, case, ground) for one in machines]
+    else:
+        wanted = [reference(case, ground)] * len(machines)
     lock, count = Lock(), [0]
 
     def group(first: int) -> Array:
-        found = _group(tuple(machines[first : first + LANES]), case, acting, ground, wanted)
+        found = _group(tuple(machines[first : first + LANES]), case, acting, ground, wanted[first : first + LANES])
         with lock:
             count[0] += len(found)
             report(Progress("spread", count[0], len(machines)))
@@ -114,10 +118,12 @@ def _with_values(fit: FitResult, values: Mapping[str, float]) -> FitResult:
     return replace(fit, parameters=changed)
 
 
-def _group(machines: tuple[Machine, ...], case: Case, acting: SampledController, ground: Array, wanted: Array) -> Array:
+def _group(
+    machines: tuple[Machine, ...], case: Case, acting: SampledController, ground: Array, wanted: Sequence[Array]
+) -> Array:
     """Stable, and the quantities of up to sixteen machines, (count, 1 + q); NaN where there is none."""
     cases = (case,) * len(machines)
-    _kept, rig = rig_of(machines, cases, (acting,), ground, np.full(len(cases), RUNAWAY * np.abs(wanted).max()))
+    _kept, rig = rig_of(machines, cases, (acting,), ground, RUNAWAY * np.array([np.abs(one).max() for one in wanted]))
     run(rig, (acting,))
     rows = np.full((len(machines), 1 + len(QUANTITIES)), np.nan)
     for lane, of in enumerate(machines):
@@ -125,7 +131,7 @@ def _group(machines: tuple[Machine, ...], case: Case, acting: SampledController,
         rows[lane, 0] = kept and (bool(of.nonlinear) or spectral_radius(of, case, acting) < 1)
         if kept:
             d, y = rig.d[:, lane], rig.y[:, lane]
-            rows[lane, 1:4] = rms(y, d), rms(y, wanted), rms(d, wanted)
+            rows[lane, 1:4] = rms(y, d), rms(y, wanted[lane]), rms(d, wanted[lane])
         if not of.nonlinear:
             margin = gain_margin(HybridLoop(of, case, acting))
             rows[lane, 4] = LARGEST if margin is None else margin

@@ -16,6 +16,7 @@ from ident.hybrid.feedforward import Plant, Tracked, plant_of, tracked
 from ident.hybrid.machine import actuator
 from ident.hybrid.substructure import reference
 from ident.plain import read, written
+from ident.run import Specimen
 from ident.words.engineering import quantity
 from ident.words.message import Message, message
 from ident.words.shown import Shown
@@ -123,14 +124,17 @@ def plant_in(fit: FitResult, case: Case) -> Plant:
     return replace(plant_of(fit, actuator(case), case.gain), specimen=case.physical)
 
 
-def followed_in(fit: FitResult, case: Case, seed: int = 0, spread: Spread | None = None) -> Followed:
+def followed_in(
+    fit: FitResult, case: Case, seed: int = 0, spread: Spread | None = None, isolator: Specimen | None = None
+) -> Followed:
     """How the machine of a fit follows the reference solution of a case, and so do 100 drawn machines.
 
     They are drawn from a `spread`, without one from the covariance of the fit. The feedforward is that of the fitted
-    machine for all of them. Raises Unusable as :func:`plant_in`.
+    machine for all of them, and knows nothing of an `isolator` that they move. Raises Unusable as :func:`plant_in`.
     """
     every = max(1, int(case.sample_rate // _RATE))
-    wanted = reference(case, case.ground.samples(case.sample_rate))[::every]
+    moved = case if isolator is None else case.with_isolator(isolator)
+    wanted = reference(moved, case.ground.samples(case.sample_rate))[::every]
     plant, drawn = plant_in(fit, case), drawn_parameters(fit, seed=seed, spread=spread)
-    found = tracked(plant, plant, wanted, case.sample_rate / every, drawn)
+    found = tracked(plant, plant_in(fit, moved), wanted, case.sample_rate / every, drawn)
     return Followed.of(found, len(next(iter(drawn.values()), ())), str(spread or Covariance()))

@@ -6,7 +6,6 @@ from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
-import scipy.linalg
 from numpy.typing import NDArray
 
 from ident.hybrid.case import Case
@@ -27,10 +26,10 @@ def joint_machines(
     """
     felt = isinstance(system, CoupledCase) and system.joined
     blocks = [_alone(of, case, gain, felt) for of, case in zip(machines, system.cases, strict=True)]
-    parts, b = len(blocks), len(gain)
-    A = np.array([scipy.linalg.block_diag(*(block["A"][i] for block in blocks)) for i in range(b)])
-    rows = {name: _stacked(blocks, name, b) for name in (DISPLACEMENT, FORCE, *(JOINED if felt else ()))}
-    B, felt_by = _columns(blocks, "B", b), _columns(blocks, "E", b)
+    parts = len(blocks)
+    A = _diagonal([block["A"] for block in blocks])
+    rows = {name: _rows(blocks, name) for name in (DISPLACEMENT, FORCE, *(JOINED if felt else ()))}
+    B, felt_by = (_diagonal([block[name][:, :, None] for block in blocks]) for name in ("B", "E"))
     C = np.concatenate([rows[DISPLACEMENT][0], rows[FORCE][0]], axis=1)
     D = np.concatenate([rows[DISPLACEMENT][1], rows[FORCE][1]], axis=1)
     if not (felt and isinstance(system, CoupledCase)):
@@ -54,28 +53,27 @@ def _alone(of: Machine, case: Case, gain: Array, felt: bool) -> dict[str, Any]:
     found: dict[str, Any] = {}
     for channel in (DISPLACEMENT, FORCE, *(JOINED if felt else ())):
         model = chain.linearise(values, channel)
-        found |= {"A": model.A, "B": model.B}
-        n, beside = model.A.shape[-1], np.zeros(len(gain))
+        n, pushed, of_felt = model.A.shape[-1], np.zeros(len(gain)), np.zeros((len(gain), model.A.shape[-1]))
         if felt:
-            still = [0.0] * n
-            rest, pushed = (chain.evaluator(channel)(0.0, still, {**values, FELT: force}) for force in (0.0, 1.0))
-            column = [np.broadcast_to(one - zero, len(gain)) for one, zero in zip(pushed[0], rest[0], strict=True)]
-            found["E"], beside = np.array(column).T, np.broadcast_to(pushed[1] - rest[1], len(gain))
-        found[channel] = model.C, model.D, beside
+            rest, moved = (chain.evaluator(channel)(0.0, [0.0] * n, {**values, FELT: force}) for force in (0.0, 1.0))
+            for i, (one, zero) in enumerate(zip(moved[0], rest[0], strict=True)):
+                of_felt[:, i] = one - zero
+            pushed = pushed + (moved[1] - rest[1])
+        found |= {"A": model.A, "B": model.B, "E": of_felt, channel: (model.C, model.D, pushed)}
     return found
 
 
-def _columns(blocks: Sequence[dict[str, Any]], name: str, b: int) -> Array:
-    """What drives each block by itself, (b, n, P)."""
-    given = [block.get(name, np.zeros((b, block["A"].shape[-1]))) for block in blocks]
-    return np.array([scipy.linalg.block_diag(*(one[i][:, None] for one in given)) for i in range(b)])
+def _diagonal(blocks: Sequence[Array]) -> Array:
+    """Matrices (b, m, n) of each block, one behind the other along the diagonal."""
+    rows, columns = (np.cumsum([0, *(one.shape[axis] for one in blocks)]) for axis in (1, 2))
+    found = np.zeros((len(blocks[0]), rows[-1], columns[-1]))
+    for p, one in enumerate(blocks):
+        found[:, rows[p] : rows[p + 1], columns[p] : columns[p + 1]] = one
+    return found
 
 
-def _stacked(blocks: Sequence[dict[str, Any]], channel: str, b: int) -> tuple[Array, Array, Array]:
+def _rows(blocks: Sequence[dict[str, Any]], channel: str) -> tuple[Array, Array, Array]:
     """A channel of each block by states, commands and what is felt: (b, P, n), (b, P, P), (b, P, P)."""
-    states = np.array([scipy.linalg.block_diag(*(block[channel][0][i][None] for block in blocks)) for i in range(b)])
-    through, felt = (
-        np.array([np.diag([np.broadcast_to(block[channel][at], b)[i] for block in blocks]) for i in range(b)])
-        for at in (1, 2)
-    )
-    return states, through, felt
+    by_state, by_command, by_felt = zip(*(block[channel] for block in blocks), strict=True)
+    through, felt = (_diagonal([one[:, None, None] for one in given]) for given in (by_command, by_felt))
+    return _diagonal([one[:, None, :] for one in by_state]), through, felt

@@ -18,8 +18,8 @@ from ident.hybrid.machine import Machine, machine
 from ident.hybrid.rig_assembly import rig_of, run
 from ident.hybrid.rig_limits import leaving
 from ident.hybrid.scores import Scores, scores
+from ident.hybrid.specimen_effects import of_specimen, reference_of
 from ident.hybrid.stability import critical_delay, spectral_radius
-from ident.hybrid.substructure import reference
 from ident.progress import Report, silent
 from ident.stability.judgement import STABLE, UNSTABLE, Judgement
 from ident.words.engineering import quantity
@@ -30,6 +30,7 @@ from ident.words.shown import Listing, Shown
 Array = NDArray[np.float64]
 RUNAWAY = 50.0
 """Times the largest displacement of the reference: beyond it a hybrid simulation has run away."""
+HELD = "the reference holds, of the specimen,"
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -147,7 +148,7 @@ def simulate_machine(
     begun = perf_counter()
     acting = controller or no_controller(case.sample_rate)
     ground = case.ground.samples(case.sample_rate)
-    wanted = reference(case, ground)
+    wanted = reference_of(of, case, ground)
     _kept, rig = rig_of((of,), (case,), (acting,), ground, RUNAWAY * np.abs(wanted).max(keepdims=True))
     run(rig, (acting,), report)
     ended = int(rig.ended[0])
@@ -183,6 +184,9 @@ def notes_of(of: Machine) -> tuple[str, ...]:
     if of.nonlinear:
         names = ", ".join(of.nonlinear)
         found.append(f"stable is what this record showed: {names} cannot be judged by poles")
-    if any(effect.of_specimen for effect in of.chain.effects):
-        found.append("the reference is the structure as stated, without the effects of the specimen")
+    held = of_specimen(of)
+    if held:
+        found.append(f"{HELD} {', '.join(effect.name for effect in held)}")
+    if left := [effect.name for effect in of.chain.effects if effect.of_specimen and effect not in held]:
+        found.append(f"the reference is the structure without {', '.join(left)}")
     return tuple(found)

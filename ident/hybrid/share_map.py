@@ -19,8 +19,8 @@ from ident.hybrid.machine import Machine, machine
 from ident.hybrid.rig import RUNAWAY
 from ident.hybrid.rig_assembly import rig_of, run
 from ident.hybrid.scores import rms
+from ident.hybrid.specimen_effects import references
 from ident.hybrid.stability import critical_delay, spectral_radius
-from ident.hybrid.substructure import reference
 from ident.parallel import each
 from ident.progress import Progress, Report, silent
 from ident.words.engineering import quantity
@@ -95,13 +95,13 @@ def share_map(
         raise Unusable("bad-option", "a share is not between 0 and 1", "map", "give shares from 0 to below 1")
     acting = controller or no_controller(case.sample_rate)
     ground = case.ground.samples(case.sample_rate)
-    wanted = reference(case, ground)
     cases = [case.with_shares(m, k) for m in across for k in up]
     of = machine(fit, cases[0], effects)
+    wanted = references(of, cases, ground)
     lock, count = Lock(), [0]
 
     def group(first: int) -> Array:
-        found = _group(of, tuple(cases[first : first + LANES]), acting, ground, wanted)
+        found = _group(of, tuple(cases[first : first + LANES]), acting, ground, wanted[first : first + LANES])
         with lock:
             count[0] += len(found)
             report(Progress("map", count[0], len(cases)))
@@ -113,10 +113,12 @@ def share_map(
     return ShareMap(across, up, stable > 0, reference_rms, tracking_rms, critical)
 
 
-def _group(of: Machine, cases: tuple[Case, ...], acting: SampledController, ground: Array, wanted: Array) -> Array:
+def _group(
+    of: Machine, cases: tuple[Case, ...], acting: SampledController, ground: Array, wanted: Sequence[Array]
+) -> Array:
     """Stable, reference_rms, tracking_rms and critical delay of up to sixteen cases, (count, 4)."""
     _kept, rig = rig_of(
-        (of,) * len(cases), cases, (acting,), ground, np.full(len(cases), RUNAWAY * np.abs(wanted).max())
+        (of,) * len(cases), cases, (acting,), ground, RUNAWAY * np.array([np.abs(one).max() for one in wanted])
     )
     run(rig, (acting,))
     rows = np.full((len(cases), 4), np.nan)
@@ -124,7 +126,7 @@ def _group(of: Machine, cases: tuple[Case, ...], acting: SampledController, grou
         kept = rig.ended[lane] >= len(ground)
         rows[lane, 0] = kept and (bool(of.nonlinear) or spectral_radius(of, case, acting) < 1)
         if kept:
-            rows[lane, 1] = rms(rig.y[:, lane], wanted)
+            rows[lane, 1] = rms(rig.y[:, lane], wanted[lane])
             rows[lane, 2] = rms(rig.y[:, lane], rig.d[:, lane])
         critical = critical_delay(case)
         rows[lane, 3] = np.nan if critical is None else critical

@@ -147,6 +147,14 @@ def test_what_a_feedforward_is_worth_is_kept_and_drawn(service, tmp_path):
     assert (told["draws"], told["gain"]) == (100, 100)
     assert told["limit"] > 200
     assert told["both_rms"] < told["feedback_rms"] / 20
+    beside = ended(
+        service, service.post(f"{API}/hybrid-simulations", json=body | {"isolator": {"stiffness": "1 MN/m"}})
+    )
+    unknown = service.get(f"{API}/hybrid-simulations/{beside['id']}").json()["feedforward"]
+    assert unknown["both_rms"] > 2 * told["both_rms"]
+    refused_by_service(
+        service.post(f"{API}/hybrid-simulations", json=body | {"isolator": {"mass": "1 m"}}), "wrong-dimension"
+    )
     drawn = service.get(f"{API}/hybrid-simulations/{job['id']}/figures/feedforward.svg")
     assert b"below the stability limit" in drawn.content
     assert "Effect of the feedforward" in service.get(f"/fits/{fit['id']}/use?simulation={job['id']}").text

@@ -11,7 +11,7 @@ from playwright.sync_api import Page, expect
 
 from tests.app.conftest import zipped
 from tests.browser import story
-from tests.browser.looks import barriers, everywhere
+from tests.browser.looks import barriers, everywhere, on_a_phone
 
 SERIAL = "SW-USE"
 
@@ -140,3 +140,38 @@ def test_a_case_that_cannot_be_read_is_refused_beside_its_form(page, site, watch
     section.get_by_role("button", name="Design the controller").click()
     expect(section.get_by_role("alert")).to_contain_text("structure stiffness", timeout=story.LONG)
     watch.complaints.clear()  # the browser's own line on the refusal
+
+
+BEAM = """
+structure:
+  mass: [87.5 kg, 87.5 kg]
+  stiffness: {matrix: [[175, -87.5], [-87.5, 87.5]], unit: kN/m}
+  damping: {ratio: 5 %}
+physical:
+  - {name: left, storey: 1, mass: 8 kg, stiffness: 17.5 kN/m}
+  - {name: right, storey: 2, mass: 6 kg, stiffness: 10 kN/m, gain: 5}
+gain: 7
+piston_area: 497 mm^2
+ground: {kind: blwn, band: 20 Hz, amplitude: 0.1 g, duration: 2 s}
+"""
+
+
+def test_two_actuators_of_an_own_case_have_a_column_and_figures_each(page, site, fitted, screenshots):
+    """A case whose physical part is a list: scores side by side, two figures a part, the map over their delays."""
+    page.goto(f"{site.address}/fits/{fitted}/use")
+    section = page.get_by_role("region", name="Hybrid simulation", exact=True)
+    section.get_by_label("Case", exact=True).select_option("own")
+    section.get_by_label("Custom case").fill(BEAM)
+    section.get_by_label("Controller", exact=True).select_option("none")
+    section.get_by_label("also map stability").check()
+    section.get_by_role("button", name="Run the simulation").click()
+    answer = section.locator("#simulation")
+    expect(answer.get_by_role("columnheader", name="right")).to_be_visible(timeout=story.LONG)
+    assert len(answer.get_by_role("row", name="Reference, RMS").get_by_role("cell").all_inner_texts()) == 3
+    figures = answer.locator(".figure")
+    expect(figures).to_have_count(5)
+    for figure in figures.all():
+        figure.scroll_into_view_if_needed()
+        expect(figure.locator("canvas")).to_be_visible(timeout=story.LONG)
+    everywhere(page, screenshots, "use-two-actuators")
+    on_a_phone(page, screenshots, "use-two-actuators")

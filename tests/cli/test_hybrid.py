@@ -66,6 +66,10 @@ def test_what_the_feedforward_is_worth_is_told(servoident, tmp_path):
     assert "below the stability limit" in done.stdout
     assert "median of 100 machines" in done.stdout
     assert (out / "feedforward.pdf").is_file()
+    given = ("--case", case, "--controller", "feedforward", "--isolator", "stiffness=1 MN/m", "--json", "-")
+    beside = json.loads(servoident("hybrid", fit, *given).stdout)["feedforward"]
+    assert beside["both_rms"] > 2 * told.both_rms
+    assert servoident("hybrid", fit, *given[:-3], "stiffness=1 m", *given[-2:]).returncode == 2
 
 
 def test_bad_input_is_one_line(servoident, tmp_path):

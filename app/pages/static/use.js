@@ -95,6 +95,8 @@ async function simulation(form) {
   const asked = { fit: fields.get("fit"), controller: fields.get("controller"), case: await caseOf(fields) };
   if (fields.get("ground")) asked.ground = await ground(fields);
   asked.map = fields.has("map");
+  const isolator = ["stiffness", "damping", "mass"].map((name) => [name, fields.get(`isolator.${name}`).trim()]).filter(([, value]) => value);
+  if (isolator.length) asked.isolator = Object.fromEntries(isolator);
   const effects = fields.getAll("effects");
   asked.effects = effects.filter((name) => !fields.get(`strength.${name}`)?.trim());
   const stated = effects.filter((name) => !asked.effects.includes(name));
