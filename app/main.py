@@ -71,6 +71,7 @@ FEATURES = (
     "own_effects",
     "hybrid",
     "plans",
+    "live",
     "stream",
     "workers",
     "operation",

@@ -23,7 +23,7 @@ class StreamStart(BaseModel):
     """The first message: sample rate, Hz, what r does between samples, and where the filter starts: τ, s, and k.
 
     With `alarms` the loop is watched: that it stays of first order, and within `rig`, the limits of stroke and speed
-    with their units.
+    with their units. A stream with a `name` is watched, marked and recorded at /live.
     """
 
     model_config = ConfigDict(extra="forbid")
@@ -34,6 +34,7 @@ class StreamStart(BaseModel):
     gain0: Finite = 1.0
     noise: StreamNoise = StreamNoise()
     alarms: bool = False
+    name: str | None = Field(default=None, min_length=1, max_length=60, pattern=r"^[A-Za-z0-9._-]+$")
     rig: dict[str, Annotated[str, Field(max_length=200)]] | None = Field(default=None, max_length=6)
 
 

@@ -127,7 +127,7 @@ ROOMS = (
 ROOMS_OF_THE_SERVICE = (
     "environment", "settings", "request_id", "nearest_field", "lru", "processes", "storage", "database", "tables",
     "client", "blobs", "context", "errors", "form", "paging", "security", "reserve", "idempotency", "access", "openapi",
-    "catalogue", "parameters", "webhooks", "matrices", "drafts", "stream", "backup",
+    "catalogue", "parameters", "webhooks", "matrices", "drafts", "live", "stream", "backup",
     "jobs", "retention", "workers", "operation", "own_effects", "limits", "statistics",
     "fits", "approvals", "diagnoses", "profiles", "refits", "hybrid", "plans", "regress",
     "actuators", "verdicts", "report", "figures",

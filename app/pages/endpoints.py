@@ -9,7 +9,16 @@ from fastapi.responses import FileResponse, HTMLResponse, RedirectResponse, Resp
 
 from app.access.roles import ADMIN, LAB, READERS
 from app.context import Here
-from app.pages import access_endpoints, admin_endpoints, assets, line_endpoints, plan_endpoints, service, use_endpoints
+from app.pages import (
+    access_endpoints,
+    admin_endpoints,
+    assets,
+    line_endpoints,
+    live_endpoints,
+    plan_endpoints,
+    service,
+    use_endpoints,
+)
 from app.pages.draft_view import column_picture, draft_page
 from app.pages.job_view import JobPageView
 from app.pages.manual import file_of, manual_page
@@ -132,6 +141,7 @@ def unknown() -> None:
 router.include_router(assets.router)
 router.include_router(access_endpoints.pages)
 router.include_router(line_endpoints.pages)
+router.include_router(live_endpoints.pages)
 router.include_router(admin_endpoints.pages)
 router.include_router(plan_endpoints.pages)
 router.include_router(use_endpoints.pages)

@@ -39,8 +39,9 @@ def describe_stream() -> None:
     little-endian float64 (r, y), and is answered in its own form: an object with the lists tau, gain, y, var_tau,
     var_gain and nis, or rows of these six. With `"alarms": true` in the first message the loop is watched: the object
     has the list alarms, and rows are followed by `{"alarms": […]}` where one began or ended. `"rig": {"stroke": "150
-    mm", "speed": "0.5 m/s"}` states limits. A message has at most 65,536 samples. What cannot be used is answered by a
-    problem document, and the stream is closed; it is closed, too, after 60 s without a message.
+    mm", "speed": "0.5 m/s"}` states limits; `"name": "rig-3"` shows the stream at /live. A message has at most 65,536
+    samples. What cannot be used is answered by a problem document, and the stream is closed; it is closed, too, after
+    60 s without a message.
     """
     raise service.no_socket()
 

@@ -12,9 +12,11 @@ from numpy.typing import NDArray
 from pydantic import BaseModel, ValidationError
 
 from app.errors import Failure, refusal
+from app.live import service as live
+from app.live.channel import Channel
 from ident.errors import Unusable
 from ident.hybrid.tracking import COLUMNS, Noise, Tracker
-from ident.hybrid.watch import Watch
+from ident.hybrid.watch import Alarm, Watch
 from ident.plain import written
 from ident.readers.rig import rig_of
 from schemas.stream import MOST_ROWS, StreamNoise, StreamSamples, StreamStart
@@ -39,6 +41,7 @@ class Stream:
     def __init__(self) -> None:
         self.watch: Watch | None = None
         self.alarms = False
+        self.channel: Channel | None = None
 
     def answer(self, message: Mapping[str, Any]) -> list[str | bytes]:
         """The answers to a message, the first in its own form; none to the first message, which starts the filter."""
@@ -48,7 +51,10 @@ class Stream:
                 raise _too_large()
             if self.watch is None:
                 start = _start(text)
-                self.watch, self.alarms = _started(start), start.alarms
+                watch = _started(start)
+                if start.name is not None:
+                    self.channel = live.begin(start.name, start.sample_rate, start.hold)
+                self.watch, self.alarms = watch, start.alarms
                 return []
             return self._of_text(self.watch, text) if text is not None else self._of_rows(self.watch, binary or b"")
         except Unusable as error:
@@ -56,15 +62,22 @@ class Stream:
 
     def _of_text(self, watch: Watch, text: str) -> list[str | bytes]:
         samples = _read(StreamSamples, text, "samples")
-        rows, alarms = watch.block(samples.r, np.array(samples.y, dtype=np.float64))
+        rows, alarms = self._block(watch, np.array(samples.r), np.array(samples.y, dtype=np.float64))
         told: dict[str, Any] = dict(zip(COLUMNS, rows.T.tolist(), strict=True))
         return [json.dumps(told | ({"alarms": written(alarms)} if self.alarms else {}), allow_nan=False)]
 
     def _of_rows(self, watch: Watch, binary: bytes) -> list[str | bytes]:
         samples = _samples(binary)
-        rows, alarms = watch.block(samples[:, 0], samples[:, 1])
+        rows, alarms = self._block(watch, samples[:, 0], samples[:, 1])
         told = [json.dumps({"alarms": written(alarms)}, allow_nan=False)] if self.alarms and alarms else []
         return [rows.astype(_ROW, copy=False).tobytes(), *told]
+
+    def _block(self, watch: Watch, r: Array, y: Array) -> tuple[Array, list[Alarm]]:
+        """What the filter makes of a block, told to who watches the stream."""
+        rows, alarms = watch.block(r, y)
+        if self.channel is not None:
+            self.channel.publish(np.column_stack([r, y]), rows, alarms)
+        return rows, alarms
 
 
 _open: set[Stream] = set()
@@ -81,6 +94,8 @@ def begun() -> Iterator[Stream]:
         yield stream
     finally:
         _open.discard(stream)
+        if stream.channel is not None:
+            stream.channel.ended = True
 
 
 def problem_of(error: Failure) -> str:

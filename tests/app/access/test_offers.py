@@ -24,6 +24,8 @@ ASKS = {
     "data-drop": "DELETE /own-effects/{name}", "data-add": "POST /fits/{fit}/effects",
     "data-diagnose": "POST /diagnoses",
     "data-keep": "POST /own-effects", "data-mend": "POST /matrices/{matrix}/revisions",
+    "data-live-mark": "POST /live/{name}/marks", "data-live-record": "PUT /live/{name}/recording",
+    "data-live-keep": "POST /live/{name}/recording",
     "data-propose": "GET /diagnoses/{diagnosis}/proposal",
 }  # fmt: skip
 """What a form or a button with this attribute asks for, where its address does not say it."""

@@ -1,0 +1,1 @@
+"""Streams that are watched while a test runs: what they show, marks, and recordings that become runs."""
