@@ -13,7 +13,7 @@ It needs httpx and the contract's models and nothing else of the service or the 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import ExitStack
 from dataclasses import dataclass
 from pathlib import Path
@@ -24,6 +24,7 @@ from uuid import uuid4
 
 import httpx
 
+from schemas.annotation import AnnotationView
 from schemas.diagnosis import DiagnosisRequest, DiagnosisView
 from schemas.draft import DraftView
 from schemas.fit import ComparisonView, FitRequest, FitView, JobView
@@ -117,6 +118,11 @@ class Client:
     def approve(self, fit: str, why: str = "") -> FitView:
         """Make a fit the current parameter set of its serial number."""
         return FitView.model_validate_json(self.request("POST", f"/fits/{fit}/approve", json={"why": why}).content)
+
+    def annotate(self, fit: str, name: str = "", tags: Sequence[str] = (), note: str = "") -> AnnotationView:
+        """Write a name, tags and a note on a fit, in the place of those before."""
+        written = {"name": name, "tags": list(tags), "note": note}
+        return AnnotationView.model_validate_json(self.request("PUT", f"/fits/{fit}/annotation", json=written).content)
 
     def withdraw(self, fit: str, why: str = "") -> FitView:
         """Take a fit out of force: its serial number has no current set until one is approved."""

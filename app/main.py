@@ -56,6 +56,7 @@ FEATURES = (
     "refits",
     "fits",
     "approvals",
+    "annotations",
     "figures",
     "profiles",
     "diagnoses",

@@ -12,6 +12,7 @@ from typing import Annotated, Any, NoReturn
 import typer
 from typer.core import TyperGroup
 
+from app.cli.annotate import annotate
 from app.cli.approval import approve, withdraw
 from app.cli.audit import audit
 from app.cli.backup import backup, restore
@@ -57,7 +58,22 @@ GROUPS = {
     "Data": (simulate, init, join, check, signals),
     "Identification": (fit, compare, profile, diagnose, next_, plan, bench, write_report),
     "Applications": (track, control, hybrid, whatif, export),
-    "Service": (serve, worker, workers, demo, upload, query, revise, migrate, backup, restore, tidy, retention, audit),
+    "Service": (
+        serve,
+        worker,
+        workers,
+        demo,
+        upload,
+        query,
+        revise,
+        annotate,
+        migrate,
+        backup,
+        restore,
+        tidy,
+        retention,
+        audit,
+    ),
     "Production line": (approve, withdraw, statistics, limits, verdict, regress),
 }
 """Commands under the heading that the help lists them by."""

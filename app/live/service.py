@@ -16,7 +16,7 @@ from app.errors import Failure, missing
 from app.live.channel import Bin, Channel, Recording
 from app.matrices import service as matrices
 from ident.plain import written
-from schemas.live import LiveBins, LiveEvent, LiveList, LiveView, RemarkView, RecordingView, RunRequest
+from schemas.live import LiveBins, LiveEvent, LiveList, LiveView, RecordingView, RemarkView, RunRequest
 from schemas.matrix import MatrixView
 from schemas.stream import StreamAlarm
 

@@ -14,6 +14,7 @@ from ident.words.engineering import quantity
 from ident.words.error import ErrorOf
 from ident.words.symbols import symbol
 from ident.words.titles import title
+from schemas.annotation import AnnotationView
 from schemas.fit import JobView
 from schemas.parameters import ActuatorView, ParameterSetView
 
@@ -53,6 +54,8 @@ class FitRow:
     said_verify: ErrorOf
     made: str
     done: bool = False
+    name: str = ""
+    tags: tuple[str, ...] = ()
 
 
 def actuator_row(
@@ -122,13 +125,15 @@ def _symbol(model: str, name: str) -> str:
         return name
 
 
-def fit_rows(jobs: Iterable[JobView], sets: Iterable[ParameterSetView]) -> tuple[FitRow, ...]:
-    """A row a job, with the errors of the set that it made."""
+def fit_rows(
+    jobs: Iterable[JobView], sets: Iterable[ParameterSetView], written: Mapping[str, AnnotationView]
+) -> tuple[FitRow, ...]:
+    """A row a job, with the errors of the set that it made, and the name and tags that are written on it."""
     made = {entry.id: entry for entry in sets}
-    return tuple(_fit_row(job, made.get(job.id)) for job in jobs)
+    return tuple(_fit_row(job, made.get(job.id), written.get(job.id, AnnotationView())) for job in jobs)
 
 
-def _fit_row(job: JobView, made: ParameterSetView | None) -> FitRow:
+def _fit_row(job: JobView, made: ParameterSetView | None, written: AnnotationView) -> FitRow:
     state, text = _fit_state(job.state, made)
     return FitRow(
         id=job.id,
@@ -143,6 +148,8 @@ def _fit_row(job: JobView, made: ParameterSetView | None) -> FitRow:
         said_verify=error_of(made, "verify"),
         made=job.created_at,
         done=made is not None,
+        name=written.name,
+        tags=tuple(written.tags),
     )
 
 

@@ -35,6 +35,7 @@ from ident.words.error import ErrorOf, error_in_print, errors_line
 from ident.words.percent import percent_in_print
 from ident.words.titles import with_effects
 from ident.words.uses import data
+from schemas.annotation import AnnotationView
 from schemas.fit import LadderView
 from schemas.matrix import MatrixView
 from schemas.parameters import ParameterSetView
@@ -99,11 +100,13 @@ class FitPageView:
     others: tuple[tuple[str, str], ...]
     kept: tuple[KeptRow, ...]
     keeping: tuple[Keeping, ...]
+    written: AnnotationView
 
 
 def fit_page(
     stored: Stored, matrix: MatrixView, lacks: MissingView, ladder: LadderView, step: Next, objections: tuple[str, ...],
     others: Iterable[ParameterSetView] = (), newer: str | None = None, kept: Sequence[Kept] = (),
+    written: AnnotationView | None = None,
 ) -> FitPageView:  # fmt: skip
     """The page of a fit of this matrix; `others` are fits of the same actuator, to compare it with.
 
@@ -161,6 +164,7 @@ def fit_page(
         aic="" if fit.aic is None else f"{fit.aic:.6g}".replace("-", "\u2212"),
         kept=tuple(kept_rows(suited(kept, fit.model), fit.effects)),
         keeping=tuple(keeping(lacks, kept)),
+        written=written or AnnotationView(),
     )
 
 

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from typing import Any
 
 from app.actuators import service as actuators
+from app.annotations import service as annotated
 from app.approvals import service as approvals
 from app.context import Context
 from app.diagnoses import service as diagnoses
@@ -101,7 +102,8 @@ def _fits(context: Context, cursor: str | None, serial: str | None = None, matri
     """Fits and the jobs that are to make them, newest first, with the number of the next page."""
     made_by = jobs.listed(context, cursor, _ROWS, serial=serial, matrix=matrix, of_fits=True)
     made = parameters.page(context, Wanted(ids=[job.id for job in made_by.items]), None, _ROWS).items
-    return {"fits": fit_rows(made_by.items, made), "more": made_by.next}
+    written = annotated.of(context, [entry.id for entry in made])
+    return {"fits": fit_rows(made_by.items, made, written), "more": made_by.next}
 
 
 def _facts(found: ActuatorView) -> list[tuple[str, str]]:
@@ -193,4 +195,5 @@ def fit(context: Context, fit_id: str) -> FitPageView | JobPageView:
     newer = matrices.newer(context, stored.matrix)
     step = of_fit(context, fit_id)
     against = fits.against(context, fit_id)
-    return fit_page(stored, matrix, lacks, way, step, against, others, newer, own_effects.every(context))
+    kept, written = own_effects.every(context), annotated.get(context, fit_id)
+    return fit_page(stored, matrix, lacks, way, step, against, others, newer, kept, written)

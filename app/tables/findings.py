@@ -72,6 +72,18 @@ class PlanRow(Base):
     result: Mapped[dict[str, Any]]
 
 
+class AnnotationRow(Base):
+    """What people wrote on a fit; nothing that is identified depends on it."""
+
+    __tablename__ = "annotations"
+    fit: Mapped[str] = mapped_column(ForeignKey("fits.id"), primary_key=True)
+    name: Mapped[str] = mapped_column(String(100), default="")
+    tags: Mapped[list[Any]]
+    note: Mapped[str] = mapped_column(Text, default="")
+    who: Mapped[str] = mapped_column(String(200), default="")
+    changed_at: Mapped[str] = mapped_column(String(40), default=now)
+
+
 class OwnEffectRow(Base):
     """An effect of the lab's own that is kept under a name: see `app/own_effects/kept.py`."""
 

@@ -127,6 +127,17 @@ def test_the_line_s_questions_are_commands(service, servoident, fitted, tmp_path
     assert "no parameter set is approved" in servoident("verdict", "SIM-0001", *service.options).stdout
 
 
+def test_a_fit_is_annotated_and_what_no_option_names_stays(service, servoident, fitted):
+    done = servoident(
+        "annotate", fitted, "--name", "cold oil", "--tag", "acceptance", "--tag", "20 degC", *service.options
+    )
+    assert done.stdout == f"fit {fitted}: cold oil; tags: acceptance, 20 degC\n", done.stderr
+    noted = servoident("annotate", fitted, "--note", "valve 3", "--tag", "", *service.options)
+    assert noted.stdout == f"fit {fitted}: cold oil; tags: none\nvalve 3\n"
+    assert servoident("annotate", fitted, *service.options).stdout == noted.stdout
+    assert servoident("annotate", "nothing", "--name", "x", *service.options).returncode == 2
+
+
 def test_what_the_service_refuses_is_one_line_and_exit_2(service, servoident):
     """Its problem document becomes the line."""
     done = servoident("approve", "nothing", *service.options)
