@@ -2,8 +2,8 @@
 
 A machine whose inputs rest stays where it came to rest. Leakage, gravity, creep and bias move it at the same speed from
 the same state. Where it rests first and then sets out by itself, as fast as it is driven at other times, something else
-drove it. What always sets out the same time after a change of its inputs is a delay. An oscillation that grows from
-rest does not reach such a distance in its first swing.
+drove it. What always sets out the same time after a change of its inputs is a delay. What turns round again and again
+once it has set out is an oscillation.
 """
 
 from __future__ import annotations
@@ -13,20 +13,23 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.ndimage import median_filter
+from scipy.ndimage import maximum_filter1d, median_filter
 
 from ident.checks.at_rest import HELD, acting, held, spans
 from ident.checks.finding import Finding
+from ident.resolution import resolution
 from ident.run import BENCH, Run, Samples
 from ident.words.message import Message, message
 
-TRAVEL = 0.1  # of the output's range: how far it goes when it sets out, in the time that its quick motions take
+TRAVEL = 0.1  # of how far the output goes in a twentieth of the record: its way in the time of a quick motion
 QUICK = 0.9  # share of its motions that are slower than a quick one
-RESTS = 0.02  # of its range, within which it rests: more than the noise and the digit of most records
+SLOW, FAST = 0.15, 0.5  # of a quick motion: it creeps or rests, and sets out
 REST = 2  # durations of a quick motion for which it has rested before it sets out
-LEAST = 2  # times that it sets out: a single one may be a mishap
+LEAST = 3  # times that it sets out: one or two may be a mishap
 LONGEST = 0.05  # of the record, the duration of a quick motion: what is slower shows no rest
 SHORTEST = 8  # samples of a quick motion
+AHEAD, SWINGS = 12, 4  # durations of a quick motion in which an oscillation has turned so many times
+DIGITS = 10  # steps of a reading that a quick motion goes at least: one that creeps shows step by step
 SPIKE = 5  # samples, of which the median is taken: a wrong sample or two are no motion
 
 
@@ -56,37 +59,57 @@ def missing_input(run: Run) -> Iterator[Finding]:
 def missing_inputs(run: Run) -> tuple[MissingInput, ...]:
     """The stretches in which the output set out from rest while every input rested."""
     inputs = acting(run)
-    if run.kind in BENCH or not inputs or np.ptp(run.measured) == 0 or not held(inputs, (REST + 1) * SHORTEST).any():
+    if run.kind in BENCH or not inputs or np.ptp(run.measured) == 0 or not held(inputs, (REST + 2) * SHORTEST).any():
         return ()
     y = np.asarray(median_filter(run.measured, SPIKE), np.float64)
-    motion = _quick(y)
-    rest = REST * motion
-    if run.length <= rest + motion:
+    extent = _extent(y)
+    motion = _quick(y, extent)
+    rest, signed = REST * motion, y[motion:] - y[:-motion]
+    way = np.abs(signed)
+    if run.length <= rest + 2 * motion:
         return ()
-    at_rest = held(inputs, rest + motion)
-    begins = [int(k[0]) for k in _neighbours(np.flatnonzero(_sets_out(y, motion)), rest) if at_rest[k].all()]
+    at_rest, quick = held(inputs, rest + 2 * motion)[:-1], max(float(np.quantile(way, QUICK)), TRAVEL * extent)
+    quick = max(quick, DIGITS * resolution(run.measured))
+    found = _neighbours(np.flatnonzero(_sets_out(way, motion, quick) & at_rest), rest)
+    begins = [int(k[0]) + rest + int(np.argmax(way[k[0] + rest :] >= FAST * quick)) for k in found]
+    begins = [begin for begin in begins if _turns(signed[begin : begin + AHEAD * motion], FAST * quick) < SWINGS]
     changes = np.flatnonzero(np.any([np.abs(np.diff(u, prepend=u[0])) > HELD * np.ptp(u) for u in inputs], axis=0))
-    since = [begin - max(changes[changes <= begin], default=-rest) for begin in begins]
-    if len(begins) < LEAST or max(since) - min(since) <= motion:
+    last = [max(changes[changes <= begin], default=-rest) for begin in begins]
+    if len(begins) < LEAST or np.ptp(np.subtract(begins, last)) <= motion:
         return ()
-    evidence = _evidence(run, y, motion, begins, at_rest)
-    times = [(begin + rest) / run.sample_rate for begin in begins]
+    if np.ptp(last) == 0 and np.ptp(np.diff(begins)) <= motion:  # it swings, slowly for a while at each turn
+        return ()
+    evidence = _evidence(run, way, motion, begins, at_rest)
+    times = [begin / run.sample_rate for begin in begins]
     return tuple(MissingInput(run.id, time, time + motion / run.sample_rate, evidence) for time in times)
 
 
-def _quick(y: Samples) -> int:
+def _extent(y: Samples) -> float:
+    """How far the output goes within a twentieth of the record at most: one that wanders goes farther in all."""
+    return float(np.max(spans(y, max(SHORTEST, round(LONGEST * len(y))))))
+
+
+def _quick(y: Samples, extent: float) -> int:
     """The samples in which a quick motion of the output goes the travel."""
     samples = SHORTEST
-    while samples < LONGEST * len(y) and np.quantile(np.abs(y[samples:] - y[:-samples]), QUICK) < TRAVEL * np.ptp(y):
+    while samples < LONGEST * len(y) and np.quantile(np.abs(y[samples:] - y[:-samples]), QUICK) < TRAVEL * extent:
         samples += 1 + samples // 4
     return samples
 
 
-def _sets_out(y: Samples, motion: int) -> NDArray[np.bool_]:
-    """Whether the output rests from each sample on, and then goes the travel, (n − rest − motion,)."""
-    rest, extent = REST * motion, np.ptp(y)
-    distance = np.abs(y[rest + motion :] - y[rest:-motion])
-    return np.asarray((spans(y, rest)[: len(distance)] <= RESTS * extent) & (distance >= TRAVEL * extent))
+def _sets_out(way: Samples, motion: int, quick: float) -> NDArray[np.bool_]:
+    """Whether the output, which goes such ways in a quick motion, is slow from each sample on and then sets out."""
+    rest = REST * motion
+    before = maximum_filter1d(way, rest - motion, origin=-((rest - motion) // 2))
+    after = maximum_filter1d(way, motion, origin=-(motion // 2))
+    count = len(way) - rest - motion
+    return np.asarray((before[:count] <= SLOW * quick) & (after[rest : rest + count] >= FAST * quick))
+
+
+def _turns(way: Samples, least: float) -> int:
+    """How often a motion turns round that goes at least so far either way."""
+    large = np.sign(way[np.abs(way) >= least])
+    return int(np.sum(large[1:] != large[:-1]))
 
 
 def _neighbours(places: NDArray[np.intp], apart: int) -> list[NDArray[np.intp]]:
@@ -95,15 +118,14 @@ def _neighbours(places: NDArray[np.intp], apart: int) -> list[NDArray[np.intp]]:
     return [group for group in groups if len(group)]
 
 
-def _evidence(run: Run, y: Samples, motion: int, begins: Sequence[int], at_rest: NDArray[np.bool_]) -> Message:
+def _evidence(run: Run, way: Samples, motion: int, begins: Sequence[int], at_rest: NDArray[np.bool_]) -> Message:
     """How often and when it set out, and in which share of the rest of its inputs it moves at half of that speed."""
     rest, unit = REST * motion, run.units.get(run.output, "1")
-    distance = np.abs(y[motion:] - y[:-motion])
-    moved = distance[rest:][: len(at_rest)][at_rest[: len(distance) - rest]]
-    least = 0.5 * min(distance[begin + rest] for begin in begins)
+    moved = way[rest:][: len(at_rest)][at_rest[: len(way) - rest]]
+    least = 0.5 * min(float(way[begin : begin + motion].max()) for begin in begins)
     by_time = unit.removesuffix("/s") + "/s²" if unit.endswith("/s") else f"{unit}/{run.time_unit}"
     speed = least * run.sample_rate / motion, by_time
     return message(
-        "missing_input", run=run.id, output=run.output, count=len(begins), start=(begins[0] + rest) / run.sample_rate,
+        "missing_input", run=run.id, output=run.output, count=len(begins), start=begins[0] / run.sample_rate,
         unit=run.time_unit, share=float(np.mean(moved >= least)), speed=speed,
     )  # fmt: skip

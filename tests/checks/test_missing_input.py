@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+import scipy
 
 from ident.checks.check import check
 from ident.checks.missing_input import missing_inputs
@@ -63,3 +64,27 @@ def test_an_oscillation_that_grows_from_rest_misses_no_input():
     envelope = np.where(since > 6.0, 0.0, np.minimum(np.exp(3.0 * (since - 2.0)), 0.5))
     swings = envelope * np.sin(8.0 * t / RATE)
     assert missing_inputs(record(RATE * np.diff(RAISED + swings, prepend=0.0), command=RAISED)) == ()
+
+
+def pulses(rng: np.random.Generator, samples: int) -> np.ndarray:
+    """A lever that is moved either way for 1 to 3 s, and rests for 2 to 9 s."""
+    lever, at = np.zeros(samples), 40
+    while at < samples:
+        held, rest = (int(RATE * rng.uniform(*of)) for of in ((1.0, 3.0), (2.0, 9.0)))
+        lever[at : at + held] = rng.uniform(0.4, 1.0) * rng.choice([-1.0, 1.0])
+        at += held + rest
+    return lever
+
+
+def test_a_place_that_wanders_and_creeps_hides_no_missing_input():
+    """Seed 65: a speed with a lag and a bias, integrated for 200 s; the second lever is recorded or not."""
+    said = {True: 0, False: 0}
+    for seed in range(20):
+        rng = np.random.default_rng([65, seed])
+        first, second = pulses(rng, 4000), pulses(rng, 4000)
+        a = np.exp(-1.0 / RATE / rng.uniform(0.02, 0.2))
+        speed = scipy.signal.lfilter([0.0, 1.0 - a], [1.0, -a], first + second) + rng.uniform(-0.04, 0.04)
+        said[True] += bool(missing_inputs(record(speed, command=first)))
+        said[False] += bool(missing_inputs(record(speed, command=first, load_disturbance=second)))
+    assert said[True] >= 19
+    assert said[False] == 0
