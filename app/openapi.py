@@ -21,6 +21,7 @@ router = APIRouter(include_in_schema=False)
 _BINARY = {"application/pdf", "application/zip"}
 _BYTES = "application/octet-stream"
 RESULTS: Mapping[str, str] = {
+    "Acceleration": "AccelerationView",
     "Actuator": "SizesView",
     "AmplitudeMargin": "AmplitudeMarginView",
     "Axes": "AxesView",

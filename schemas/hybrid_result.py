@@ -6,6 +6,7 @@ from ident.hybrid.drawn_simulations import DrawnSimulations
 from ident.hybrid.followed import Followed
 from ident.hybrid.interval import Interval
 from ident.hybrid.margins import Margins
+from ident.hybrid.shaking_table import Acceleration
 from ident.hybrid.target import Target
 from ident.stability.judgement import Judgement
 
@@ -104,7 +105,7 @@ class _OfOneActuator(BaseModel):
 
     `ended` (s) is when it ran away; `largest_pole` the largest magnitude of a pole of the sampled loop, null where it
     is not linear; `seconds` what the computation took. `state` is `stable` or `unstable`; `stability` says of an
-    unstable loop with poles what would make it stable.
+    unstable loop with poles what would make it stable. `acceleration` is there of a shaking table.
     """
 
     state: str | None = None
@@ -125,6 +126,7 @@ class _OfOneActuator(BaseModel):
     units: dict[str, str]
     notes: list[str]
     seconds: float
+    acceleration: Acceleration | None = None
 
 
 class HybridPartView(_OfOneActuator):

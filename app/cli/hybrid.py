@@ -13,13 +13,18 @@ from app.cli.before_option import CaseBefore, EarlierFit, EarlierGain, earlier_c
 from app.cli.figure_files import write_figures
 from app.cli.given import read_fit
 from app.cli.hybrid_parts import refuse_for_several, show_parts
-from app.cli.output import STANDARD_OUTPUT, check_target, write_json
+from app.cli.output import STANDARD_OUTPUT, check_target, write_bytes, write_json
 from app.cli.progress import shown
 from app.cli.rig_option import RigFile, rig_in
 from app.cli.spread_option import SpreadGiven, spread_in
 from app.cli.whatif import specimen_of
 
 if TYPE_CHECKING:
+    from ident.hybrid.case import Case
+    from ident.hybrid.drawn_simulations import DrawnSimulations
+    from ident.hybrid.draws import Spread
+    from ident.hybrid.followed import Followed
+    from ident.hybrid.rig import HybridResult
     from ident.hybrid.share_map import ShareMap
 
 
@@ -70,11 +75,10 @@ def hybrid(
     from dataclasses import replace
 
     from app.cli.tables import show
-    from ident.hybrid.acting import FEEDFORWARD, controller_called, linear
+    from ident.hybrid.acting import FEEDFORWARD, controller_called
     from ident.hybrid.controller import name_of
     from ident.hybrid.coupled_case import CoupledCase
     from ident.hybrid.coupled_reading import read_system
-    from ident.hybrid.drawn_simulations import drawn_simulations
     from ident.hybrid.followed import followed_in
     from ident.hybrid.rig import simulate_hybrid
     from ident.hybrid.specimen_effects import wanted_in
@@ -97,6 +101,8 @@ def hybrid(
     earlier = earlier_case(result, of, before, before_gain, before_case)
     known, beside = of, None if isolator is None else specimen_of(isolator, "--isolator")
     of = of if beside is None else of.with_isolator(beside)
+    if wide is not None and controller == FEEDFORWARD:
+        of.not_a_table("spread of its feedforward")
     ahead = wanted_in(result, of, effects) if controller == FEEDFORWARD else None
     acting = controller_called(controller, result, known, ahead)
     with shown() as report:
@@ -105,10 +111,9 @@ def hybrid(
         if controller != "none" and out is not None:
             runs["no controller"] = simulate_hybrid(result, of, None, effects, report)
         found = _map(shares, acting, result, of, effects, report)
-        drawn = None
-        if wide is not None and controller != "feedforward":
-            drawn = drawn_simulations(result, of, linear(acting, "spread"), effects, wide, report=report)
-    worth = followed_in(result, known, spread=wide, isolator=beside) if controller == "feedforward" else None
+        drawn = None if controller == FEEDFORWARD else _drawn(wide, acting, result, of, effects, report)
+    ahead_known = controller == FEEDFORWARD and known.table is None
+    worth = followed_in(result, known, spread=wide, isolator=beside) if ahead_known else None
     main = next(iter(runs.values()))
     if json is not None:
         further = {"map": found, "feedforward": worth, "spread": drawn}
@@ -116,11 +121,36 @@ def hybrid(
     if json != STANDARD_OUTPUT:
         show((*main.listings(), *(worth.listings() if worth else ()), *(drawn.sentences() if drawn else ())))
     if out is not None:
-        from ident.figures.subjects import Simulated
-
-        write_figures(Simulated(runs, of, found, worth), out)
+        _draw(runs, of, found, worth, out)
     if not main.stable:
         raise typer.Exit(1)
+
+
+def _drawn(wide: Spread | None, acting: Any, *rest: Any) -> DrawnSimulations | None:
+    """The same on machines drawn from a spread, where one is stated: of linear controllers."""
+    from ident.hybrid.acting import linear
+    from ident.hybrid.drawn_simulations import drawn_simulations
+
+    if wide is None:
+        return None
+    fit, case, effects, report = rest
+    return drawn_simulations(fit, case, linear(acting, "spread"), effects, wide, report=report)
+
+
+def _draw(runs: dict[str, HybridResult], of: Case, found: ShareMap | None, worth: Followed | None, out: Path) -> None:
+    """The figures, and of a shaking table its command."""
+    from ident.figures.subjects import Simulated
+
+    if of.table is not None:
+        write_command(next(iter(runs.values())), out)
+    write_figures(Simulated(runs, of, found, worth), out)
+
+
+def write_command(found: HybridResult, out: Path) -> None:
+    """The command of a shaking table as a file for its rig: time and command, a row a sample."""
+    rows = (f"{k / found.sample_rate:.9g},{u:.9g}" for k, u in enumerate(found.command))
+    out.mkdir(parents=True, exist_ok=True)
+    write_bytes("\n".join(["time (s),command (m)", *rows, ""]).encode(), out / "command.csv")
 
 
 def _map(asked: bool, acting: Any, *rest: Any) -> ShareMap | None:

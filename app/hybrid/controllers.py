@@ -37,7 +37,7 @@ _designs: LRU[ControllerDesign] = LRU(_MOST)
 def design(context: Context, request: ControllerRequest, controller: str) -> ControllerView:
     """Design a controller and keep it under this id. Raises Unusable, and Failure 404 where there is no such fit."""
     case = asked_case(request.case)
-    asked = request.model_dump(exclude_none=True) | {"case": case.case, "case_name": _case_name(case, request.part)}
+    asked = request.model_dump(exclude_none=True) | {"case": case.case, "case_name": case.read(request.part).name}
     asked |= {"before": stated(request.before)} if request.before else {}
     made = _designed(context, asked)
     about(f"controllers/{controller}")
@@ -49,12 +49,6 @@ def design(context: Context, request: ControllerRequest, controller: str) -> Con
             session.rollback()
     _designs.put((str(context.storage.folder), controller), made)
     return get(context, controller)
-
-
-def _case_name(case: AskedCase, part: str | None) -> str:
-    """What the case is called, with the part where it has several. Raises Unusable."""
-    name = case.read(part).name
-    return f"{name}, {part}" if part else name
 
 
 def _designed(context: Context, asked: dict[str, Any]) -> ControllerDesign:

@@ -15,6 +15,8 @@ import numpy as np
 from ident.hybrid.case import Case
 from ident.hybrid.rig import HybridResult
 from ident.hybrid.scores import Scores
+from ident.hybrid.shaking_table import Acceleration
+from ident.plain import read
 
 RATE, ROWS = 512.0, 131_072
 """Samples a second that are kept where there are more, and rows that are kept at most."""
@@ -88,4 +90,5 @@ def _result(case: Case, result: Mapping[str, Any], arrays: Mapping[str, Any]) ->
         command=_NONE,
         force=_NONE,
         notes=tuple(result["notes"]),
+        acceleration=read(Acceleration, shaken) if (shaken := result.get("acceleration")) else None,
     )

@@ -52,6 +52,8 @@ def submit(context: Context, request: HybridRequest, job: str) -> JobView:
     chosen = acting(given, fit, case)
     _check(fit, case if isolator is None else case.with_isolator(isolator), effects, chosen, request.map)
     spread = spread_of(context, request.spread, fit.model)
+    if spread is not None and given == FEEDFORWARD:
+        case.not_a_table("spread")
     if spread is not None and given != FEEDFORWARD:
         linear(chosen, "spread")
     settings = {
@@ -85,6 +87,8 @@ def _check(fit: FitResult, case: Case, effects: dict[str, float], chosen: Contro
     """Raise Unusable where a simulation cannot be run, or would take too long."""
     samples = len(case.ground.samples(case.sample_rate))
     machine(fit, case, effects)
+    if mapped:
+        case.not_a_table("map")
     if mapped and samples > MOST_MAPPED:
         raise Unusable("too-long", f"{samples} samples are too many for a map", "ground duration",
                        f"give a motion of at most {MOST_MAPPED} samples")  # fmt: skip
@@ -116,6 +120,7 @@ def view(row: HybridRow) -> HybridView:
     """A hybrid simulation as it is sent."""
     held = row.result
     names = [*FIGURES, *(name for name in ("map", "feedforward") if held.get(name))]
+    names += ["acceleration"] if held["result"].get("acceleration") else []
     names += ["delay-map"] if held["result"].get("delay_map") else []
     return HybridView(
         **held["result"], id=row.id, fit=row.fit, matrix=row.matrix, serial=row.serial, created_at=row.created_at,

@@ -62,7 +62,8 @@ class HybridWork(InOnePiece):
         if asked["map"] and isinstance(chosen, SampledController):
             mapped = share_map(fit, case, chosen, effects, report=report)
         spread, drawn = kept(asked.get("spread")), None
-        worth = followed_in(fit, known, spread=spread, isolator=isolator) if given == FEEDFORWARD else None
+        ahead = given == FEEDFORWARD and known.table is None
+        worth = followed_in(fit, known, spread=spread, isolator=isolator) if ahead else None
         if spread is not None and isinstance(chosen, SampledController):
             drawn = drawn_simulations(fit, case, chosen, effects, spread, report=report)
         runs = {main.controller: main} | ({WITHOUT: alone} if alone else {})

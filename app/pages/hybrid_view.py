@@ -122,8 +122,8 @@ def _controllers(fit: FitResult, control: ControlView) -> Iterator[Choice]:
     for other in control.others:
         yield Choice(other.id, f"designed: {other.text}, {other.made[:16].replace('T', ' ')}")
     for name in NAMED:
-        if name != "feedforward" or fit.model == STRANO.name:
-            yield Choice(name, _NAMED.get(name, name))
+        of_table = name == "feedforward" and fit.model != STRANO.name
+        yield Choice(name, "feedforward, of a shaking table" if of_table else _NAMED.get(name, name))
 
 
 def _called(one: HybridView) -> str:
@@ -219,7 +219,17 @@ def _scores(found: Mapping[str, Any]) -> Iterator[tuple[str, str, str, str]]:
     yield "Delay", "measured behind numerical", _time(of["delay"]), _time(alone.get("delay"))
     for key, (name, compared) in _COMPARED.items():
         yield name, compared, percent_in_print(of[key]), percent_in_print(alone.get(key))
+    if (shaken := found.get("acceleration")) is not None:
+        other = (found["without"] or {}).get("acceleration")
+        within = f"against the record, {shaken['lowest']:g} to {shaken['highest']:g} Hz"
+        yield "Acceleration spectrum", within, _level(shaken), _level(other)
+        yield "Acceleration, RMS", within, percent_in_print(shaken["rms"]), percent_in_print((other or {}).get("rms"))
     yield "Command, RMS", "", _length(found["command_rms"]), _length((found["without"] or {}).get("command_rms"))
+
+
+def _level(shaken: Mapping[str, Any] | None) -> str:
+    """The largest difference of the spectra, and where."""
+    return "–" if shaken is None else f"{fixed(shaken['worst'], 2)} dB at {quantity(shaken['worst_at'], 'Hz')}"
 
 
 def _length(meters: float | None) -> str:

@@ -52,6 +52,7 @@ _FILES = (
     "closed_loop",
     "hybrid_time",
     "hybrid_response",
+    "acceleration",
     "share_map",
     "delay_map",
     "feedforward",

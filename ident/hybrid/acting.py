@@ -16,6 +16,7 @@ from ident.hybrid.compensation import Compensation
 from ident.hybrid.controller import Controller, SampledController, no_controller
 from ident.hybrid.feedforward import FeedforwardController
 from ident.hybrid.followed import plant_in
+from ident.hybrid.shaking_table import ahead_of
 from ident.hybrid.substructure import reference
 from ident.units.quantity import shown
 from ident.words.nearest import did_you_mean
@@ -40,6 +41,8 @@ def _feedforward(fit: FitResult, case: Case, wanted: Array | None) -> Controller
 
     The motion of the whole structure is known ahead, as the ground is.
     """
+    if case.table is not None:
+        return ahead_of(fit, case)
     ahead = reference(case, case.ground.samples(case.sample_rate)) if wanted is None else wanted
     return FeedforwardController(plant_in(fit, case), ahead, case.sample_rate)
 

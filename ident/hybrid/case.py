@@ -8,6 +8,7 @@
     sample_rate: 4096 Hz        # of the outer loop
     delay: 1                    # samples from a measurement to the command that answers it
     noise:      {displacement: 1 um, force: 1 N, quantisation: {displacement: 1 um, force: 0.1 N}, seed: 0}
+    payload:    {mass: 500 kg}  # of a shaking table, instead of structure and physical; band: [0.25 Hz, 30 Hz]
     rig:        {stroke: 152.4 mm, speed: 0.5 m/s}      # limits; where none are stated those of the fit's matrix
 
 A matrix is a list of rows, `{matrix: [[...]], unit: kN/m}` or a list of lists of quantities; a plain list of quantities
@@ -40,10 +41,12 @@ from ident.words.nearest import did_you_mean
 Array = NDArray[np.float64]
 _KEYS = (
     "name", "structure", "physical", "gain", "piston_area", "supply_pressure", "ground", "sample_rate", "delay",
-    "noise", "rig",
+    "noise", "rig", "payload", "band",
 )  # fmt: skip
 _STRUCTURE = ("mass", "stiffness", "damping")
 _LARGEST, _STOREYS = 1_000_000, 12
+_RESTS = 2.0
+"""Periods of the lowest frequency of a shaking table for which it stands still before and after its motion."""
 _LATEST = 500
 """Samples: the longest delay of a command; each is a state of the loop whose poles are sought."""
 _HUGE = 1e15
@@ -69,7 +72,8 @@ class Case:
     too, x its displacements against the ground; ι says which of them the ground moves, all where `direction` is None.
     `physical` is that part: mass, spring and damper between the ground and storey `place` (0 is the lowest), which the
     actuator moves. `gain` is Kp of the actuator's loop, in V/m where its output is a voltage; `delay` the samples from
-    a measurement to the command that answers it, at least 1.
+    a measurement to the command that answers it, at least 1. Where `table` has a band (Hz), nothing is left to the
+    computer: the actuator is a shaking table that gives its payload the acceleration of `ground` in that band.
 
     Raises Unusable where the matrices do not go together.
     """
@@ -89,6 +93,7 @@ class Case:
     noise: Noise = field(default_factory=Noise)
     rig: RigLimits | None = None
     direction: Array | None = None
+    table: tuple[float, float] | None = None
 
     def __post_init__(self) -> None:
         n = len(self.mass)
@@ -157,12 +162,18 @@ class Case:
 
     def with_isolator(self, isolator: Specimen) -> Case:
         """The case whose specimen has an isolator on it: in the laboratory, and in the whole structure."""
+        self.not_a_table("isolator")
         p, own = self.place, self.physical
         whole = {name: getattr(self, name).copy() for name in _STRUCTURE}
         for name, matrix_ in whole.items():
             matrix_[p, p] += getattr(isolator, name)
         both = Specimen(*(getattr(own, name) + getattr(isolator, name) for name in ("mass", "stiffness", "damping")))
         return replace(self, mass=whole["mass"], stiffness=whole["stiffness"], damping=whole["damping"], physical=both)
+
+    def not_a_table(self, what: str) -> None:
+        """Raise Unusable for what belongs to a structure."""
+        if self.table is not None:
+            raise Unusable("bad-option", f"a shaking table has no {what}", what, "leave it out")
 
     def with_shares(self, mass: float, stiffness: float) -> Case:
         """The case with these shares (0 to 1) of the storey's mass and stiffness in the specimen, its damper as is."""
@@ -277,6 +288,8 @@ def case_of(data: Any, base: Path | None = Path(), name: str = "case") -> Case:
     Raises Unusable with the field at fault.
     """
     found = _case_of(data, base, name)
+    if found.table is not None:
+        return found
     # A substructure without mass has no motion of its own to integrate.
     if np.linalg.eigvalsh(found.numerical_mass).min() <= 0:
         raise Unusable("bad-case", "no mass is left in the numerical part", "physical mass", "give less of it")
@@ -287,29 +300,49 @@ def _case_of(data: Any, base: Path | None, name: str) -> Case:
     if isinstance(data, Mapping) and isinstance(data.get("physical"), list):
         raise Unusable("several-parts", "the case has several parts", "physical", "name the one that is meant")
     top = Fields(data, "case", _KEYS)
+    if "payload" in top:
+        return _table_of(top, base, name)
     structure = Fields(top.need("structure", "give mass, stiffness, damping"), "structure", (*_STRUCTURE, "direction"))
     mass = matrix(structure, "mass", "mass")
     stiffness = matrix(structure, "stiffness", "stiffness")
     physical, place = _physical(top, mass, stiffness)
-    delay = top.whole("delay", 1)
-    rate, gain = sample_rate(top), loop_gain(top)
     return Case(
-        name=top.text("name", name),
-        mass=mass,
-        stiffness=stiffness,
-        damping=_damping(structure, mass, stiffness),
-        physical=physical,
-        place=place,
-        gain=1.0 if gain is None else gain,
-        piston_area=top.positive("piston_area", "area"),
-        supply_pressure=top.positive("supply_pressure", "pressure"),
-        ground=ground_of(top.data["ground"], base, Ground()) if "ground" in top else Ground(),
-        sample_rate=4096.0 if rate is None else rate,
-        delay=delay,
-        noise=_noise(top.data["noise"]) if "noise" in top else Noise(),
-        rig=rig_of(top.data["rig"]) if "rig" in top else None,
-        direction=_direction(structure, len(mass)),
-    )
+        mass=mass, stiffness=stiffness, damping=_damping(structure, mass, stiffness), physical=physical, place=place,
+        direction=_direction(structure, len(mass)), **_loop(top, base, name, Ground()),
+    )  # fmt: skip
+
+
+def _loop(top: Fields, base: Path | None, name: str, motion: Ground) -> dict[str, Any]:
+    """What a case states of its loop, whatever is moved."""
+    rate, gain = sample_rate(top), loop_gain(top)
+    return {
+        "name": top.text("name", name),
+        "gain": 1.0 if gain is None else gain,
+        "piston_area": top.positive("piston_area", "area"),
+        "supply_pressure": top.positive("supply_pressure", "pressure"),
+        "ground": ground_of(top.data["ground"], base, motion) if "ground" in top else motion,
+        "sample_rate": 4096.0 if rate is None else rate,
+        "delay": top.whole("delay", 1),
+        "noise": _noise(top.data["noise"]) if "noise" in top else Noise(),
+        "rig": rig_of(top.data["rig"]) if "rig" in top else None,
+    }
+
+
+def _table_of(top: Fields, base: Path | None, name: str) -> Case:
+    """A shaking table with its payload, in a band of 0.25 to 30 Hz where none is stated."""
+    if strange := [key for key in ("structure", "physical", "specimen") if key in top]:
+        raise Unusable("bad-case", f"a shaking table has no {strange[0]}", "payload", f"leave {strange[0]} out")
+    fields = Fields(top.data["payload"], "payload", _STRUCTURE)
+    payload = Specimen(**{key: fields.not_negative(key, key) or 0.0 for key in _STRUCTURE})
+    ends = top.pair("band") or ("0.25 Hz", "30 Hz")
+    both = Fields({"from": ends[0], "to": ends[1]}, "band", ("from", "to"))
+    lowest, highest = both.positive("from", "frequency") or 0.0, both.positive("to", "frequency") or 0.0
+    found = _loop(top, base, name, Ground(rest=_RESTS / lowest))
+    if not 4 * lowest <= highest <= found["sample_rate"] / 5:
+        raise Unusable("bad-case", f"a band of {lowest:g} to {highest:g} Hz", "band",
+                       f"give two octaves at least, up to {found['sample_rate'] / 5:g} Hz")  # fmt: skip
+    one = np.ones((1, 1))
+    return Case(mass=one, stiffness=0 * one, damping=0 * one, physical=payload, table=(lowest, highest), **found)
 
 
 def _direction(structure: Fields, count: int) -> Array | None:

@@ -6,9 +6,12 @@ from dataclasses import dataclass
 from typing import Any, Protocol
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ident.errors import Unusable
 from ident.hybrid.state_space import StateSpace
+
+Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
@@ -62,7 +65,27 @@ class Compensator(Protocol):
         ...
 
 
-Controller = SampledController | Compensator
+class AheadController:
+    """What was computed ahead is added to what is wanted: u(k) = d(k) + `beside`(k), m, the last sample held."""
+
+    name = "feedforward"
+
+    def __init__(self, beside: Array, sample_rate: float) -> None:
+        self.beside, self.sample_rate = beside, sample_rate
+        self.reset()
+
+    def reset(self) -> None:
+        """Back to the first sample."""
+        self._next = 0
+
+    def step(self, d: float, y: float) -> float:  # noqa: ARG002  the loop itself compares
+        """The command u(k) that answers d(k) and y(k), called once a sample, in their order."""
+        beside = self.beside[min(self._next, len(self.beside) - 1)]
+        self._next += 1
+        return float(d + beside)
+
+
+Controller = SampledController | AheadController | Compensator
 
 
 def no_controller(sample_rate: float) -> SampledController:

@@ -61,14 +61,16 @@ def coupled_of(data: Mapping[str, Any], base: Path | None, name: str) -> Coupled
     inverse: Array = np.asarray(np.linalg.inv(turn), float)
     specimen = _joint(data["specimen"], cases, inverse) if data.get("specimen") is not None else _apart(cases)
     found = []
-    for number, (entry, case) in enumerate(zip(entries, cases, strict=True)):
+    for number, (entry, alone) in enumerate(zip(entries, cases, strict=True)):
+        called = entry.text("name", f"part {number + 1}")
+        case = replace(alone, name=f"{alone.name}, {called}")
         mass, damping, stiffness = (float(of[number, number]) for of in specimen)
         found.append(Part(
-            entry.text("name", f"part {number + 1}"),
+            called,
             _placed(case, number, turn, inverse, rows, Specimen(mass, stiffness, damping)),
             entry.text("fit"), _controller(entry),
         ))  # fmt: skip
-    return CoupledCase(found[0].case.name, tuple(found), specimen)
+    return CoupledCase(cases[0].name, tuple(found), specimen)
 
 
 def _alone(data: Mapping[str, Any], whole: Mapping[str, Any], entry: Fields, base: Path | None, name: str) -> Case:

@@ -23,7 +23,7 @@ from ident.hybrid.rig_assembly import rig_of, run
 from ident.hybrid.scores import rms
 from ident.hybrid.specimen_effects import of_specimen, reference_of
 from ident.hybrid.stability import spectral_radius
-from ident.hybrid.substructure import reference
+from ident.hybrid.substructure import driven_by, reference
 from ident.parallel import each, one_thread
 from ident.plain import read, written
 from ident.progress import Progress, Report, silent
@@ -123,7 +123,9 @@ def _group(
 ) -> Array:
     """Stable, and the quantities of up to sixteen machines, (count, 1 + q); NaN where there is none."""
     cases = (case,) * len(machines)
-    _kept, rig = rig_of(machines, cases, (acting,), ground, RUNAWAY * np.array([np.abs(one).max() for one in wanted]))
+    _kept, rig = rig_of(
+        machines, cases, (acting,), driven_by(case, ground), RUNAWAY * np.array([np.abs(one).max() for one in wanted])
+    )
     run(rig, (acting,))
     rows = np.full((len(machines), 1 + len(QUANTITIES)), np.nan)
     for lane, of in enumerate(machines):

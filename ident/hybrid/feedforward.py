@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 from ident.chain.conditions import conditions
 from ident.errors import Unusable
 from ident.fit.result import FitResult
+from ident.hybrid.controller import AheadController
 from ident.hybrid.inverse import Inverse
 from ident.matrix import Actuator
 from ident.presets.strano import STRANO
@@ -162,25 +163,11 @@ def tracked(
     return Tracked(sample_rate, model.gain, gain_limit(model), reference, given, **errors)
 
 
-class FeedforwardController:
+class FeedforwardController(AheadController):
     """The controller of a rig: d wanted and y measured in this sample (m) → the actuator's command (m).
 
     The feedforward of a `reference` known ahead is added to d; the loop's own feedback does the rest.
     """
 
-    name = "feedforward"
-
     def __init__(self, plant: Plant, reference: Array, sample_rate: float, width: float = 0.0) -> None:
-        self._beside = command(plant, reference, sample_rate, width) - reference
-        self.sample_rate = sample_rate
-        self.reset()
-
-    def reset(self) -> None:
-        """Back to the first sample."""
-        self._next = 0
-
-    def step(self, d: float, y: float) -> float:  # noqa: ARG002  the loop itself compares
-        """The command u(k) that answers d(k) and y(k), called once a sample, in their order."""
-        beside = self._beside[min(self._next, len(self._beside) - 1)]
-        self._next += 1
-        return float(d + beside)
+        super().__init__(command(plant, reference, sample_rate, width) - reference, sample_rate)

@@ -20,7 +20,7 @@ Array = NDArray[np.float64]
 GRAVITY = 9.80665  # m/s²
 KEYS = (
     "kind", "file", "text", "name", "unit", "step", "scale", "column", "band", "frequency", "amplitude", "duration",
-    "seed",
+    "seed", "rest",
 )  # fmt: skip
 KINDS = ("record", "blwn", "sine")
 _LARGEST, _LONGEST = 50_000_000, 4_000_000  # bytes of a record's file, samples of a motion
@@ -35,7 +35,7 @@ class Ground:
     unit) and `scale`, `step` seconds apart, straight lines between them; `column` (0 is the first) takes one of several
     columns. Where `text` holds the rows, `file` is but their name. "blwn": white noise from `band[0]` to `band[1]` Hz
     with the RMS `amplitude` (m/s²), of `seed`. "sine": one of `frequency` Hz and peak `amplitude`. `duration` in s cuts
-    a record short (None: all of it).
+    a record short (None: all of it). It stands still for `rest` s before and after.
     """
 
     kind: str = "blwn"
@@ -50,6 +50,7 @@ class Ground:
     amplitude: float = 0.1 * GRAVITY
     duration: float | None = None
     seed: int = 0
+    rest: float = 0.0
 
     @property
     def name(self) -> str:
@@ -62,6 +63,9 @@ class Ground:
 
     def samples(self, sample_rate: float) -> Array:
         """The acceleration (m/s²) at k/`sample_rate`, (n,). Raises Unusable where the file holds no record."""
+        return np.pad(self._moving(sample_rate), round(self.rest * sample_rate))
+
+    def _moving(self, sample_rate: float) -> Array:
         if self.kind == "record":
             values = self._rows() * (self.factor * self.scale)
             last = (len(values) - 1) * self.step
@@ -169,6 +173,7 @@ def ground_of(data: Any, base: Path | None, default: Ground) -> Ground:
         amplitude=_amplitude(fields, default),
         duration=fields.positive("duration", "time") or default.duration,
         seed=fields.whole("seed", default.seed),
+        rest=default.rest if (rest := fields.not_negative("rest", "time")) is None else rest,
     )
 
 

@@ -41,9 +41,9 @@ class Rig(NamedTuple):
     Of what joins specimens: K, C and M beside the diagonal (3, P, P), inverse of the joint mass (P, P), masses of
     machine and of specimen (2, P), what acts and what acted at the last two steps (3, C). Of the numerical part: Φ
     (L, N, N), drives (L, 2P + 2, N) of each f(k) and f̂(k+1), then a(k), a(k+1), its places (P,), state (L, N), last
-    forces (C,). Of the controllers: A, B, C, D (P, …) and states (C, m). `ground` (n,), noise (P, n, 2), the
-    converters' steps (P, 2). `d`, `y` and `f` (n, C) are what is recorded; a system of which a |d| exceeds its `limit`
-    (C,) is taken out, its last sample then standing in `ended` (L,).
+    forces (C,). Of the controllers: A, B, C, D (P, …), states (C, m) and what was computed `ahead` (…, P). `ground`
+    (n,), noise (P, n, 2), the converters' steps (P, 2). `d`, `y` and `f` (n, C) are what is recorded; a system of which
+    a |d| exceeds its `limit` (C,) is taken out, its last sample then standing in `ended` (L,).
     """
 
     code: Whole
@@ -81,6 +81,7 @@ class Rig(NamedTuple):
     C: Array
     D: Array
     x: Array
+    ahead: Array
     ground: Array
     noise: Array
     quantum: Array
@@ -221,9 +222,9 @@ def _interact(k: int, first: int, parts: int, rig: Any) -> None:
 
 @jit(nogil=True)
 def control(k: int, c: int, rig: Any) -> Any:
-    """u(k) of the sampled controller of a column, whose state goes on."""
+    """u(k) of the sampled controller of a column, whose state goes on, with what was computed ahead."""
     p, d, y, n = rig.part[c], rig.d[k, c], rig.y[k, c], rig.x.shape[1]
-    u = rig.D[p, 0, 0] * d + rig.D[p, 0, 1] * y
+    u = rig.D[p, 0, 0] * d + rig.D[p, 0, 1] * y + rig.ahead[min(k, len(rig.ahead) - 1), p]
     for i in range(n):
         u += rig.C[p, 0, i] * rig.x[c, i]
     for i in range(n):

@@ -18,8 +18,11 @@ from ident.hybrid.machine import Machine, machine
 from ident.hybrid.rig_assembly import rig_of, run
 from ident.hybrid.rig_limits import leaving
 from ident.hybrid.scores import Scores, scores
+from ident.hybrid.shaking_table import Acceleration, acceleration
 from ident.hybrid.specimen_effects import of_specimen, reference_of
 from ident.hybrid.stability import critical_delay, spectral_radius
+from ident.hybrid.substructure import driven_by
+from ident.plain import written
 from ident.progress import Report, silent
 from ident.stability.judgement import STABLE, UNSTABLE, Judgement
 from ident.words.engineering import quantity
@@ -63,6 +66,7 @@ class HybridResult(Shown):
     notes: tuple[str, ...] = ()
     beyond: tuple[str, ...] = ()
     stability: Judgement | None = None
+    acceleration: Acceleration | None = None
 
     @property
     def sample_rate(self) -> float:
@@ -84,6 +88,11 @@ class HybridResult(Shown):
                 ("numerical_rms", "numerical against reference", percent(of.numerical_rms)),
                 ("command_rms", "standard deviation of the command", quantity(self.command_rms or 0.0, "m")),
             ]
+        if (shaken := self.acceleration) is not None:
+            within = f"{shaken.lowest:g} to {shaken.highest:g} Hz"
+            worst = f"{shaken.worst:+.2f} dB at {quantity(shaken.worst_at, 'Hz')}"
+            rows.append(("acceleration_worst", f"spectrum against the record, {within}", worst))
+            rows.append(("acceleration_rms", f"acceleration against the record, {within}", percent(shaken.rms)))
         critical = "none" if self.critical_delay is None else quantity(self.critical_delay, "s")
         rows.append(("critical_delay", "of an otherwise perfect machine", critical))
         yield Listing("", (f"case {self.case.name}", "displacement", "value"), rows, ("value",))
@@ -117,6 +126,7 @@ class HybridResult(Shown):
                       "sample_rate": "Hz", "delay": "samples", "seconds": "s"},
             "notes": [*self.beyond, *self.notes],
             "seconds": self.seconds,
+            "acceleration": None if self.acceleration is None else written(self.acceleration),
         }  # fmt: skip
 
 
@@ -149,7 +159,7 @@ def simulate_machine(
     acting = controller or no_controller(case.sample_rate)
     ground = case.ground.samples(case.sample_rate)
     wanted = reference_of(of, case, ground)
-    _kept, rig = rig_of((of,), (case,), (acting,), ground, RUNAWAY * np.abs(wanted).max(keepdims=True))
+    _kept, rig = rig_of((of,), (case,), (acting,), driven_by(case, ground), RUNAWAY * np.abs(wanted).max(keepdims=True))
     run(rig, (acting,), report)
     ended = int(rig.ended[0])
     kept = ended >= len(ground)
@@ -174,7 +184,8 @@ def simulate_machine(
         reference=wanted,
         command=u,
         force=rig.f[:, 0],
-        notes=notes_of(of),
+        notes=notes_of(of) if case.table is None else notes_of(of)[: bool(of.nonlinear)],
+        acceleration=acceleration(case, y, ground) if kept and case.table is not None else None,
     )
 
 

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from ident.chain.chain import FORCE as INTERACTION
 from ident.chain.chain import INPUT, Chain
 from ident.hybrid.case import Case
-from ident.hybrid.controller import Controller, SampledController, no_controller
+from ident.hybrid.controller import AheadController, Controller, SampledController, no_controller
 from ident.hybrid.coupled_case import CoupledCase, System
 from ident.hybrid.loop import LANES, Rig, advance_under, close, control, read
 from ident.hybrid.machine import DISPLACEMENT, FORCE, JOINED, Machine, joined
@@ -22,22 +22,23 @@ from ident.simulation.stepper import Stepper, stepper
 Array = NDArray[np.float64]
 _CHUNK = 8192  # samples between two reports
 _STAGE = "hybrid simulation"
+_COMPILED = (SampledController, AheadController)
 
 
 def run(rig: Rig, acting: Sequence[Controller], report: Report = silent) -> None:
     """Take a rig through its whole record, or until everything in it has run away."""
-    n, sampled = len(rig.ground), all(isinstance(one, SampledController) for one in acting)
+    n, compiled = len(rig.ground), all(isinstance(one, _COMPILED) for one in acting)
     for first in range(0, n, _CHUNK):
         report(Progress(_STAGE, first, n))
         last = min(first + _CHUNK, n)
-        if not (advance_under(first, last, rig) if sampled else _under(first, last, rig, acting)):
+        if not (advance_under(first, last, rig) if compiled else _under(first, last, rig, acting)):
             break
     report(Progress(_STAGE, n, n))
 
 
 def _under(first: int, last: int, rig: Rig, acting: Sequence[Controller]) -> bool:
     """Samples under controllers that are asked sample by sample; whether the system is still there."""
-    steps = [None if isinstance(one, SampledController) else one.step for one in acting]
+    steps = [None if isinstance(one, _COMPILED) else one.step for one in acting]
     for k in range(first, last):
         read(k, rig)
         if rig.ended[0] <= k:
@@ -83,12 +84,19 @@ def rig_of(
         interaction=np.zeros((3, count)),
         phi=np.array([one.phi for one in numericals]), drives=np.array([one.drives for one in numericals]),
         place=np.array(first.places), z=np.zeros((len(systems), 2 * first.storeys)), before=np.zeros(count),
-        **_controllers(linear, order), x=np.zeros((count, order)), ground=ground, noise=noise,
+        **_controllers(linear, order), x=np.zeros((count, order)), ahead=_ahead(acting), ground=ground, noise=noise,
         quantum=np.array([[one.displacement_step, one.force_step] for one in noises]),
         d=np.zeros((n, count)), y=np.zeros((n, count)), f=np.zeros((n, count)),
         limit=limits, ended=np.full(len(systems), n, dtype=np.int64),
         scratch=np.zeros(max(2 * first.storeys, order)), u=np.zeros(3 * parts),
     )  # fmt: skip
+
+
+def _ahead(acting: Sequence[Controller]) -> Array:
+    """What controllers computed ahead, a column each; the last sample is held."""
+    known = [one.beside if isinstance(one, AheadController) else np.zeros(1) for one in acting]
+    longest = max(map(len, known))
+    return np.stack([np.pad(one, (0, longest - len(one)), mode="edge") for one in known], axis=1)
 
 
 def _inverse_mass(moved: Array, coupling: Array) -> Array:

@@ -89,6 +89,7 @@ def share_map(
     Where the loop is linear it is stable if its poles are; else if its record stayed bounded. Raises Unusable for
     shares outside 0 to below 1.
     """
+    case.not_a_table("map")
     usual = np.linspace(0.0, LARGEST, SHARES)
     across, up = (usual if given is None else np.asarray(given, dtype=float) for given in (masses, stiffnesses))
     if any(np.min(shares) < 0 or np.max(shares) >= 1 for shares in (across, up)):

@@ -47,7 +47,7 @@ def reference_of(of: Machine, case: Case, ground: Array) -> Array:
     Runge-Kutta steps.
     """
     effects = of_specimen(of)
-    if not effects:
+    if not effects or case.table is not None:
         return reference(case, ground)
     chain = Chain((_structure(case),), {DISPLACEMENT: "xL"}, effects)
     known = {name: np.array([value]) for name, value in of.at(case).items()}

@@ -29,7 +29,7 @@ def critical_delay(case: Case) -> float | None:
     any delay is too long. None where none is.
     """
     specimen = case.physical
-    if not (specimen.mass or specimen.stiffness or specimen.damping):
+    if case.table is not None or not (specimen.mass or specimen.stiffness or specimen.damping):
         return None
     inertance = float(np.linalg.inv(case.numerical_mass)[case.place, case.place])
     if specimen.mass * inertance >= 1:

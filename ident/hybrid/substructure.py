@@ -13,6 +13,8 @@ from ident.hybrid.coupled_case import System
 from ident.simulation.jit import jit
 
 Array = NDArray[np.float64]
+_STEEP = 8.0
+"""Exponent of the filter that takes off what is below the band of a table: 0.03 dB at twice its lowest frequency."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -40,17 +42,48 @@ class Substructure:
 
 
 def numerical(of: System) -> Substructure:
-    """The part that is left to the computer."""
+    """The part that is left to the computer; a table moves as the samples that drive it say."""
+    if isinstance(of, Case) and of.table is not None:
+        still, given = np.zeros((1, 2)), np.array([1.0, 0.0])
+        return Substructure(np.zeros((2, 2)), still, still, np.zeros(2), given, of.places)
     return _sampled(of, of.numerical_mass, of.numerical_damping, of.numerical_stiffness)
 
 
 def reference(case: Case, ground: Array) -> Array:
     """The displacement (m) of the storey where the specimen stands, of the whole structure, (n,): what should come out.
 
-    Exact at the samples for a ground acceleration (n,) that is a straight line between them.
+    Exact at the samples for a ground acceleration (n,) that is a straight line between them. Of a table the
+    displacement that is wanted.
     """
+    if case.table is not None:
+        return wanted_of(case, ground)
     whole = _sampled(case, case.mass, case.damping, case.stiffness)
     return np.asarray(_recursion(whole.phi, whole.ground0, whole.ground1, ground, case.place))
+
+
+def wanted_of(case: Case, record: Array) -> Array:
+    """The displacement (m) of a table whose acceleration is that of a record (m/s²) in its band, both (n,).
+
+    D(ω) = −H(ω) A(ω)/ω²: see :mod:`ident.hybrid.shaking_table`. The ends are faded to rest.
+    """
+    assert case.table is not None
+    lowest, highest = case.table
+    frequency = np.fft.rfftfreq(len(record), 1 / case.sample_rate)
+    steady = np.maximum(frequency, frequency[1])
+    gain = 1.0 / (1.0 + (lowest / steady) ** _STEEP) / (2 * np.pi * steady) ** 2
+    fall = np.clip((frequency / highest - 1.0) / 0.5, 0.0, 1.0)
+    gain = np.where(frequency > 0, gain * 0.5 * (1 + np.cos(np.pi * fall)), 0.0)
+    found = np.fft.irfft(-gain * np.fft.rfft(record), len(record))
+    fade = max(1, min(round(case.ground.rest * case.sample_rate / 2), len(record) // 4))
+    rise = 0.5 * (1 - np.cos(np.pi * np.arange(fade) / fade))
+    found[:fade] *= rise
+    found[-fade:] *= rise[::-1]
+    return np.asarray(found)
+
+
+def driven_by(case: Case, ground: Array) -> Array:
+    """What drives the loop of a case, (n,): the acceleration of the ground; of a table the displacement wanted."""
+    return ground if case.table is None else wanted_of(case, ground)
 
 
 @jit(nogil=True)

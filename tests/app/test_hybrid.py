@@ -425,3 +425,19 @@ def test_two_actuators_over_http_have_their_own_fits_and_controllers(service, fi
     assert service.post(f"{API}/controllers", json=part).json()["case"] == "own case, left"
     refused_by_service(service.post(f"{API}/controllers", json={"fit": fitted, "case": case}), "several-parts")
     refused_by_service(service.post(f"{API}/hybrid-simulations", json=body | {"before": {"gain": 2}}), "bad-option")
+
+
+def test_a_shaking_table_over_http_has_its_acceleration(service, fitted):
+    """A record as text, the command computed ahead: the spectrum, its figure and the rows of the page."""
+    case = {"payload": {"mass": "8.75 kg"}, "band": ["0.5 Hz", "20 Hz"], "gain": 7, "piston_area": "497 mm^2"}
+    body = {"fit": fitted, "case": case, "ground": RECORD, "controller": "feedforward"}
+    job = ended(service, service.post(f"{API}/hybrid-simulations", json=body))
+    assert job["state"] == "succeeded", job
+    found = service.get(f"{API}/hybrid-simulations/{job['id']}").json()
+    assert found["figures"] == ["displacement", "response", "acceleration"]
+    assert abs(found["acceleration"]["worst"]) < 1.0 < abs(found["without"]["acceleration"]["worst"])
+    figure = service.get(f"{API}/hybrid-simulations/{job['id']}/figures/acceleration.json").json()
+    assert len(figure["datasets"]["levels"]) == 2 * len(found["acceleration"]["level"])
+    page = service.get(f"/fits/{fitted}/use", params={"simulation": job["id"]}).text
+    assert "Acceleration spectrum" in page
+    refused_by_service(service.post(f"{API}/hybrid-simulations", json=body | {"map": True}), "bad-option")

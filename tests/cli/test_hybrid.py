@@ -120,3 +120,31 @@ def test_two_actuators_have_their_own_fits_controllers_scores_and_figures(servoi
     assert servoident("hybrid", fit, "--case", case, "--spread", "20 %").returncode == 2
     refused = servoident("hybrid", FIT, "--case", case, "--map")
     assert "dead_zone has no poles" in refused.stderr
+
+
+TABLE = """
+payload: {mass: 8.75 kg}
+gain: 7
+piston_area: 497 mm^2
+ground: {kind: blwn, band: 28 Hz, amplitude: 0.05 g, duration: 2 s}
+rig: {stroke: 1 mm}
+"""
+
+
+def test_a_shaking_table_is_a_case_with_a_payload(servoident, tmp_path):
+    """The spectrum within 1 dB, its figure, and a stroke that is too short."""
+    fit, case, out = tmp_path / "fit.json", tmp_path / "table.yaml", tmp_path / "figures"
+    fit.write_text(json.dumps(fitted().to_json()))
+    case.write_text(TABLE)
+    given = ("--case", case, "--controller", "feedforward", "--json", tmp_path / "scores.json", "--out", out)
+    done = servoident("hybrid", fit, *given)
+    assert done.returncode == 0, done.stderr
+    shaken = json.loads((tmp_path / "scores.json").read_text())["acceleration"]
+    assert abs(shaken["worst"]) < 1.0
+    assert (shaken["lowest"], shaken["highest"]) == (0.5, 30.0)
+    assert (out / "acceleration.svg").is_file()
+    assert "stroke" in done.stdout
+    rows = (out / "command.csv").read_text().splitlines()
+    assert rows[0] == "time (s),command (m)"
+    assert len(rows) == 1 + 4096 * 18 + 1  # two seconds, and eight of rest on either side
+    assert servoident("hybrid", fit, "--case", case, "--map").returncode == 2
