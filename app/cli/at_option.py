@@ -31,13 +31,14 @@ Sets = Annotated[
 
 def moved_to(fit: FitResult, at: str | None, over: str, sets: Path | None) -> Moved:
     """The fit at the condition that is stated; as it is where none is. Raises Unusable."""
-    from ident.design.at_condition import AtCondition, Moved
+    from ident.design.at_condition import AtCondition, Moved, condition_value
     from ident.errors import Unusable
 
     if at is None:
         if sets is not None:
             raise Unusable("bad-option", "sets without a condition", "--sets", "write --at '60 degC' with it")
         return Moved(fit, ())
+    condition_value(over, at)
     if sets is None:
         remedy = "write the sets by `servoident query --json FILE`, and give --sets FILE"
         raise Unusable("bad-option", "a condition without sets", "--at", remedy)

@@ -35,6 +35,7 @@ MISSPELT: dict[tuple[str, str], list[tuple[tuple[str, ...], str]]] = {
         (("RAW", "--channel", "comand=u:mm"), "command"),
         (("RAW", "--channel", "command=comand:mm"), "command"),
     ],
+    ("init", "--dialect"): [(("RAW", "--dialect", "delimeter=semicolon"), "delimiter")],
     ("init", "--time"): [(("RAW", "--time", "tme:s"), "time")],
     ("init", "--output"): [(("RAW", "--output", "displacment"), "displacement")],
     ("init", "--hold"): [(("RAW", *UNITS, "--hold", "liner"), "linear")],
@@ -65,11 +66,20 @@ MISSPELT: dict[tuple[str, str], list[tuple[tuple[str, ...], str]]] = {
     ("plan", "--format"): [(("--program", "qian", "--format", "csw", "--out", "OUT"), "csv")],
     ("plan", "--spread"): [(("--program", "qian", "--fit", "FIT", "--spread", "tua=0.1", "--out", "OUT"), "tau")],
     ("control", "--case"): [(("FIT", "--case", "qain", "--out", "OUT"), "qian")],
+    ("control", "--part"): [(("FIT", "--case", "PARTS", "--part", "lefd", "--out", "OUT"), "left")],
     ("control", "--structure"): [(("FIT", "--case", "qian", "--structure", "feedbak", "--out", "OUT"), "feedback")],
     ("control", "--spread"): [(("FIT", "--case", "qian", "--spread", "tua=0.1", "--out", "OUT"), "tau")],
     ("hybrid", "--spread"): [(("FIT", "--case", "qian", "--spread", "tua=0.1"), "tau")],
     ("whatif", "--spread"): [(("FIT", "--choose", "phase_margin=50", "--spread", "tua=0.1"), "tau")],
     ("control", "--before-case"): [(("FIT", "--case", "qian", "--before-case", "qain", "--out", "OUT"), "qian")],
+    ("control", "--over"): [
+        (("FIT", "--case", "qian", "--at", "60 degC", "--over", "temprature", "--out", "OUT"), "temperature")
+    ],
+    ("hybrid", "--over"): [(("FIT", "--case", "qian", "--at", "60 degC", "--over", "temprature"), "temperature")],
+    ("whatif", "--over"): [(("FIT", "--at", "60 degC", "--over", "temprature"), "temperature")],
+    ("statistics", "--over"): [(("tau", "--over", "temprature", *SERVICE), "temperature")],
+    ("verdict", "--over"): [(("NEAR-1", "--at", "60 degC", "--over", "temprature", *SERVICE), "temperature")],
+    ("hybrid", "--isolator"): [(("FIT", "--case", "qian", "--isolator", "stifness=1 N/m"), "stiffness")],
     ("hybrid", "--before-case"): [(("FIT", "--case", "qian", "--before-case", "qain"), "qian")],
     ("hybrid", "--case"): [(("FIT", "--case", "benchmark202"), "benchmark2020")],
     ("hybrid", "--controller"): [(("FIT", "--case", "qian", "--controller", "kalmann"), "kalman")],
@@ -104,12 +114,24 @@ MISSPELT: dict[tuple[str, str], list[tuple[tuple[str, ...], str]]] = {
 }
 """For each argument or option that takes a name: what is given, and what it says was meant."""
 
+PARTS = """
+structure:
+  mass: {matrix: [[80, 0], [0, 80]], unit: kg}
+  stiffness: {matrix: [[90, -40], [-40, 90]], unit: kN/m}
+  damping: {matrix: [[200, -50], [-50, 200]], unit: N*s/m}
+physical:
+- {name: left, storey: 1, gain: 7, delay: 1, mass: 8 kg, stiffness: 17 kN/m}
+- {name: right, storey: 2, gain: 5, delay: 1, mass: 6 kg, stiffness: 10 kN/m}
+piston_area: 497 mm^2
+ground: {kind: blwn, band: 20 Hz, amplitude: 0.1 g, duration: 1 s}
+"""
+
 ADDRESSES = {"--server", "--token", "--data", "--database", "--blobs", "--host", "--allow-host", "--proxy",
              "--webhook-host", "url"}  # fmt: skip
 MADE_UP = {"--executor", "--why", "--name", "--expires", "--approved-after", "--confirm", "--laboratory",
-           "--customer", "--order", "--operator", "--date", "--oil-temperature"}  # fmt: skip
+           "--customer", "--order", "--operator", "--date", "--oil-temperature", "--note", "--tag"}  # fmt: skip
 QUANTITIES = {"--rate", "--area", "--gain", "--noise", "--peak", "--amplitude", "--tolerance", "--axes", "--up-to",
-              "--sample-rate", "--before-gain"}  # fmt: skip
+              "--sample-rate", "--before-gain", "--at"}  # fmt: skip
 DRAWN = {"fit", "matrix", "webhook", "token", "--by", "--object"}
 """Ids that the service drew: none is near another."""
 FREE = ADDRESSES | MADE_UP | QUANTITIES | DRAWN | {"files", "source"}
@@ -180,7 +202,10 @@ def made(service: TestClient, servoident: Program, place: Path) -> Given:
     raw, changes = place / "raw.csv", place / "changes.yaml"
     raw.write_text("time,command,displacement\n" + "".join(f"{0.001 * k},{k % 7},{k % 5}\n" for k in range(64)))
     changes.write_text(yaml.safe_dump({"runs": {f"{run}x": {"gain": 7}}}))
-    words = {"MATRIX": (str(folder),), "FIT": (str(place / "fit.json"),), "OUT": (str(place / "out"),),
+    parts = place / "parts.yaml"
+    parts.write_text(PARTS)
+    words = {"PARTS": (str(parts),), "MATRIX": (str(folder),), "FIT": (str(place / "fit.json"),),
+             "OUT": (str(place / "out"),),
              "RAW": (str(raw), "--serial", "RAW-1", "--out", str(place / "raw-out")), "HELD": tuple(held),
              "RUN": (f"{run}x",), "CHANGES": (str(changes),), "STORED": (stored,), "STORED_FIT": (fit,)}  # fmt: skip
     return Given(words, run)
