@@ -15,7 +15,7 @@ OVERFLOW = Effect(
     texts=("xo = xo + ro * max(x - 1 / max(g, 1e-9), 0)",),
     units={"xo": "m"},
     shape=(
-        Parameter("ratio", "ro", "1", 1.0, 1e3, 30.0, "outflow over the edge against the outflow below, for a level"),
+        Parameter("ratio", "ro", "1", 1.0, 30.0, 10.0, "outflow over the edge against the outflow below, for a level"),
     ),
     looks="flat tops at one level, however large the command is",
     source="weir, made linear in the small height above its edge",

@@ -7,12 +7,16 @@ from ident.parameter import Parameter
 UPPER_OVERFLOW = Effect(
     name="upper_overflow",
     place="flow",
-    meaning="the upper level does not rise far above an edge, at 1/g, over which the rest runs off",
+    meaning="the upper level does not rise far above an edge, at 1/g, over which the rest runs off or into the lower",
     strength=Parameter("inverse_level", "g", "1/m", 0.0, 1e3, 0.0, "inverse of the level of the edge", of_motion=True),
-    texts=("ho = ho + ro * max(h - 1 / max(g, 1e-9), 0)",),
-    units={"ho": "m"},
+    texts=(
+        "ho = ho + ro * max(h - 1 / max(g, 1e-9), 0)",
+        "hi = hi + si * ro * max(h - 1 / max(g, 1e-9), 0)",
+    ),
+    units={"ho": "m", "hi": "m"},
     shape=(
-        Parameter("ratio", "ro", "1", 1.0, 1e3, 30.0, "outflow over the edge against the outflow below, for a level"),
+        Parameter("ratio", "ro", "1", 1.0, 30.0, 10.0, "outflow over the edge against the outflow below, for a level"),
+        Parameter("caught", "si", "1", 0.0, 1.0, 0.5, "share of what runs over the edge that the lower tank catches"),
     ),
     looks="a large command moves the level no more than a smaller one that lasts as long",
     source="weir, made linear in the small height above its edge; Schoukens and Noël 2017",

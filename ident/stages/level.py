@@ -12,12 +12,16 @@ UPPER_LEVEL = stage(
     "flow",
     (
         Quantity("h", "m", "level of the upper tank, in the unit of the lower one"),
+        Quantity("hb", "m", "what runs out of the upper tank at its bottom"),
+        Quantity("hi", "m", "what of it the lower tank catches"),
         Quantity("xi", "m", "what runs into the lower tank"),
         Quantity("ho", "m", "what leaves the upper tank"),
     ),
     ("h' = (gain * w - ho) / tau1", "the command fills the upper tank"),
-    ("ho = xi", "all of it runs into the lower one"),
-    ("xi = h / (1 + (h / hr)**2)**0.25", "laminar outflow at a low level, turbulent at a high one"),
+    ("hb = h / (1 + (h / hr)**2)**0.25", "laminar outflow at a low level, turbulent at a high one"),
+    ("ho = hb", "nothing else leaves it"),
+    ("hi = hb", "all of it runs into the lower one"),
+    ("xi = hi", "nothing else runs into that"),
     parameters=(
         Parameter("gain", "k", "1", 1e-2, 1e2, 1.0, "inflow for each unit of the command", ORDER_OF_MAGNITUDE),
         Parameter(

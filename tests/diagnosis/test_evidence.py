@@ -283,6 +283,20 @@ def test_the_error_of_a_difference_holds_for_correlated_residuals(full: bool) ->
     assert block_mean([white(np.random.default_rng(8), 20_000)], EVIDENCE_CRITERIA).blocks > 50
 
 
+def test_the_error_of_a_difference_holds_for_a_record_of_twenty_correlation_times(full: bool) -> None:
+    """Four blocks of it are enough for an error that can be passed, and hold zero as often as two do; seeds 900 up."""
+    count, held, two = (1000 if full else 60), 0, 0
+    for seed in range(900, 900 + count):
+        series = slow(np.random.default_rng(seed), 800, 0.95)
+        found = block_mean([series], EVIDENCE_CRITERIA)
+        assert found.blocks >= 4
+        held += abs(found.mean) <= found.bound(EVIDENCE_CRITERIA)
+        longer = replace(EVIDENCE_CRITERIA, least_blocks=2)
+        two += abs(found.mean) <= block_mean([series], longer).bound(longer)
+    assert held >= 0.85 * count
+    assert held >= two - 0.05 * count
+
+
 def test_what_only_one_of_many_runs_asks_for_does_not_improve() -> None:
     """Whole runs are the blocks where there are several: the mean stays within its error; seed 9."""
     rng = np.random.default_rng(9)

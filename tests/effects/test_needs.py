@@ -26,6 +26,7 @@ RATE, SECONDS = 100.0, 8.0
 GAIN, TAU = 0.8, 0.4
 MASS, DAMPING, STIFFNESS = 2.0, 3.0, 40.0
 TURBULENT = 0.5  # level
+CAUGHT = 0.3  # of what runs over
 T = np.arange(round(RATE * SECONDS)) / RATE
 LEVEL = 1.0 + 0.8 * np.sin(1.3 * T) + 0.15 * np.sin(5.0 * T)
 FORCE = 40.0 * np.sin(2.0 * T) + 15.0 * np.sin(5.3 * T)
@@ -72,7 +73,7 @@ def tanks(edge: float) -> np.ndarray:
 
     def rates(t: float, s: np.ndarray) -> list[float]:
         over = 30.0 * max(s[0] - edge, 0.0) if edge else 0.0
-        return [(GAIN * at(LEVEL, t) - out(s[0]) - over) / TAU, (out(s[0]) - out(s[1])) / TAU]
+        return [(GAIN * at(LEVEL, t) - out(s[0]) - over) / TAU, (out(s[0]) + CAUGHT * over - out(s[1])) / TAU]
 
     return solved(rates, 2)[1]
 
@@ -125,7 +126,8 @@ CASES = {
         "first_order", {"overflow.inverse_level": 1.0, "overflow.ratio": 30.0},
         lambda k: lag(lambda x: x + 30.0 * max(x - 1.0 / k, 0.0) if k else x), {}),
     "upper_overflow": Case(
-        "two_tanks", {"upper_overflow.inverse_level": 1.25, "upper_overflow.ratio": 30.0},
+        "two_tanks",
+        {"upper_overflow.inverse_level": 1.25, "upper_overflow.ratio": 30.0, "upper_overflow.caught": CAUGHT},
         lambda k: tanks(0.8 / k if k else 0.0), {}),
     "sensor_curve": Case("first_order", {"sensor_curve.curvature": 0.3}, lambda k: bent(0.3 * k), {}),
     "normal_force_friction": Case(

@@ -56,6 +56,10 @@ class EvidenceCriteria:
     """[runs] Runs from which on whole runs are the blocks. Why: what differs from run to run shows between runs
     only; of fewer than four their scatter tells nothing.
     Test: test_evidence.py::test_what_only_one_of_many_runs_asks_for_does_not_improve"""
+    least_blocks: int = 4
+    """[blocks] Fewest blocks of a record. Why: a record of twenty correlation times has blocks of five, whose means are
+    independent to a fifth of their variance; with two of ten Student's value is 12.7, and nothing ever matters.
+    Test: test_evidence.py::test_the_error_of_a_difference_holds_for_a_record_of_twenty_correlation_times"""
     most_blocks: int = 64
     """[blocks] Most blocks of a record. Why: student's critical value hardly falls beyond, and longer blocks are
     safer.
