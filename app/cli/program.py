@@ -41,6 +41,7 @@ from app.cli.report import report as write_report
 from app.cli.retention import retention
 from app.cli.revise import revise
 from app.cli.serve import serve
+from app.cli.sheet import sheet
 from app.cli.signals import signals
 from app.cli.simulate import simulate
 from app.cli.statistics import statistics
@@ -75,6 +76,8 @@ GROUPS = {
         audit,
     ),
     "Production line": (approve, withdraw, statistics, limits, verdict, regress),
+    "Service": (serve, worker, workers, demo, upload, query, revise, migrate, backup, restore, tidy, retention, audit),
+    "Production line": (approve, withdraw, statistics, limits, verdict, sheet, regress),
 }
 """Commands under the heading that the help lists them by."""
 BELOW = {"Identification": ("effects",), "Service": ("token", "webhook")}

@@ -7,11 +7,13 @@ from typing import Any
 
 from app.context import Context
 from app.diagnoses import service as diagnoses
+from app.errors import Failure
 from app.figures.drawn import drawn as drawn_of
 from app.fits import service
 from app.fits.studied import study
 from app.profiles import service as profiles
 from app.refits import lineage
+from app.verdicts.service import sheet
 from ident.figures.subjects import Compared, Ladder, Profiled, Step
 from ident.fit.result import FitResult
 from ident.presets import preset
@@ -21,7 +23,21 @@ from schemas.fit import LadderRung
 
 def drawn(context: Context, fit_id: str, name: str, kind: str, options: dict[str, Any]) -> tuple[bytes, str]:
     """A figure of a fit as bytes and their media type."""
+    if name == "acceptance-sheet" and (judged := _judged(context, fit_id)) is not None:
+        of = f"{fit_id} {sorted(judged.items())}"  # its limits may change: another figure then
+        return drawn_of(context, of, name, kind, options, lambda _: study(context, fit_id).on_line(judged))
     return drawn_of(context, fit_id, name, kind, options, lambda given: _subject(context, fit_id, name, given))
+
+
+def _judged(context: Context, fit_id: str) -> dict[str, tuple[float | None, float | None, str]] | None:
+    """The limits of a sheet with the outcome of each; None of a fit of an earlier version, which has no sheet."""
+    try:
+        lines = sheet(context, fit_id).lines
+    except Failure as error:
+        if error.code != "no-sheet":
+            raise
+        return None
+    return {one.name: (one.lower, one.upper, one.outcome) for one in lines if one.outcome is not None}
 
 
 def _subject(context: Context, fit_id: str, name: str, options: dict[str, Any]) -> object:

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -50,7 +50,10 @@ _SLOPE = (1e-8, "MPa/%")
 
 @dataclass(frozen=True)
 class Line:
-    """A line of the sheet; `passed` is None where no limit is set. A quantity that was not found fails its limit."""
+    """A line of the sheet; `passed` is None where no limit is set. A quantity that was not found fails its limit.
+
+    A production line judges with the standard errors: then its `outcome` is "inside", "outside" or "unknown".
+    """
 
     quantity: str
     meaning: str
@@ -59,11 +62,19 @@ class Line:
     unit: str
     lower: float | None
     upper: float | None
+    outcome: str | None = None
 
     @property
     def printed(self) -> tuple[float, str]:
         """Factor and unit for a reader: per cent of rated current, ms, MPa, mm/s."""
         return _SLOPE if self.quantity == "kp" else _PRINTED[self.unit]
+
+    @property
+    def verdict(self) -> str:
+        """In a word; nothing where no limit is set."""
+        if self.outcome is not None:
+            return {"inside": "pass", "outside": "FAIL"}.get(self.outcome, "inconclusive")
+        return {None: "", True: "pass", False: "FAIL"}[self.passed]
 
     @property
     def passed(self) -> bool | None:
@@ -158,8 +169,17 @@ def sheet_quantities(
 
 
 def passed(lines: tuple[Line, ...]) -> bool:
-    """True where no limit is broken."""
-    return all(line.passed is not False for line in lines)
+    """True where no limit is broken, and none is open."""
+    return all(line.verdict in ("", "pass") for line in lines)
+
+
+def judged(lines: Sequence[Line], by: Mapping[str, tuple[float | None, float | None, str]]) -> tuple[Line, ...]:
+    """The lines against the limits of a production line, as it judged them: lower, upper and outcome by quantity."""
+    own = dict.fromkeys(("lower", "upper", "outcome"))
+    return tuple(
+        replace(line, **(dict(zip(own, by[line.quantity], strict=True)) if line.quantity in by else own))
+        for line in lines
+    )
 
 
 def read_limits(text: str, where: str) -> dict[str, tuple[float | None, float | None]]:

@@ -37,5 +37,4 @@ def sheet_rows(lines: Iterable[Line]) -> Iterator[tuple[str, ...]]:
         factor, unit = line.printed
         numbers = [line.value, line.deviation or None, line.lower, line.upper]
         value, deviation, lower, upper = ("–" if n is None else f"{factor * n:.4g}" for n in numbers)
-        verdict = {None: "", True: "pass", False: "FAIL"}[line.passed]
-        yield line.quantity, value, deviation, unit, lower, upper, verdict
+        yield line.quantity, value, deviation, unit, lower, upper, line.verdict

@@ -8,7 +8,7 @@ from typing import Any
 import altair as alt
 import numpy as np
 
-from ident.bench.acceptance import Line, passed, read_limits, sheet
+from ident.bench.acceptance import Line, judged, passed, read_limits, sheet
 from ident.bench.analysis import Analysis
 from ident.bench.records import BenchSet
 from ident.figures.drawing import Drawing, Options
@@ -52,7 +52,9 @@ def sheet_chart(matrix: Matrix, bench: BenchSet, analysis: Analysis, lines: Sequ
                 *frequency_panels(analysis.frequency, sines, analysis.model, of, 400, 170, beside=True), spacing=30
             ).resolve_scale(color="independent")
         )
-    verdict = "passed" if passed(tuple(lines)) and not analysis.missing else "NOT passed"
+    open_ = not any(line.verdict == "FAIL" for line in lines) and not passed(tuple(lines))
+    verdict = "inconclusive" if open_ else "passed" if passed(tuple(lines)) else "NOT passed"
+    verdict = "NOT passed" if analysis.missing else verdict
     notes = [_short(text) for text in (*(m.text for m in analysis.missing), *analysis.notes)]
     title = alt.TitleParams(
         f"{matrix.actuator.serial} · acceptance test {verdict}",
@@ -93,8 +95,7 @@ def _texts(line: Line) -> tuple[str, ...]:
         "" if n is None else f"{factor * n:.{places if i < 2 else _LIMIT}{'f' if i < 2 else 'g'}}".replace("-", "−")
         for i, n in enumerate((line.value, line.deviation or None, line.lower, line.upper))
     )
-    verdict = {None: "", True: "pass", False: "FAIL"}[line.passed]
-    return title(line.quantity), value or "not found", deviation, unit, lower, upper, verdict
+    return title(line.quantity), value or "not found", deviation, unit, lower, upper, line.verdict
 
 
 def _places(line: Line, factor: float) -> int:
@@ -112,10 +113,15 @@ def _short(text: str, most: int = 150) -> str:
 
 
 def _drawn(study: Study, of: Look, _options: Options) -> Chart:
-    """The records as the procedures judge them: the sheet of `servoident bench`, whatever the fit."""
+    """The records as the procedures judge them: the sheet of `servoident bench`, whatever the fit.
+
+    Against the limits of the data set, or as a production line judges them.
+    """
     matrix = study.matrix
-    bench, analysis = study.judged
+    bench, analysis = study.procedures
     lines = sheet(analysis, read_limits(matrix.limits_text, matrix.limits or "limits"))
+    if study.line_limits is not None:
+        lines = judged(lines, study.line_limits)
     return sheet_chart(matrix, bench, analysis, lines, of)
 
 

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Hashable
+from collections.abc import Hashable, Mapping
+from copy import copy
 from dataclasses import dataclass, field, replace
 
 from ident.bench.analysis import Analysis, analyse
@@ -32,15 +33,24 @@ class Study:
     matrix: Matrix
     fit: FitResult
     simulator: Simulator = modelled
+    line_limits: Mapping[str, tuple[float | None, float | None, str]] | None = None
+    """Lower, upper and outcome of quantities of the acceptance sheet, where a production line judged them."""
     _runs: dict[str, RunComparison] = field(default_factory=dict)
     _settled: tuple[tuple[str, ...], Traces, dict[str | None, tuple[CurveFit, ...]]] | None = None
     _curves: dict[Hashable, tuple[Curve, ...]] = field(default_factory=dict)
 
     @cached_property
-    def judged(self) -> tuple[BenchSet, Analysis]:
+    def procedures(self) -> tuple[BenchSet, Analysis]:
         """The records of a bench, and what its procedures say of them whatever the fit."""
         bench = bench_set(self.matrix)
         return bench, analyse(bench)
+
+    def on_line(self, limits: Mapping[str, tuple[float | None, float | None, str]]) -> Study:
+        """The same with what a production line says of its sheet; what was computed is shared."""
+        assert self.procedures  # by both: it takes seconds
+        shown = copy(self)
+        shown.line_limits = limits
+        return shown
 
     @cached_property
     def floors(self) -> Floors:

@@ -12,9 +12,11 @@ from typing import Any
 
 import pytest
 import scipy.io
+import typer
 import yaml
 from fastapi.testclient import TestClient
 
+from app.cli.sheet import sheet as show_sheet
 from ident.bench.outputs import model_of
 from ident.bench.position_loop import margins
 from ident.bench.synthesis import write_bench
@@ -206,6 +208,17 @@ def test_the_margin_of_a_produced_actuator_is_a_quantity_of_its_sheet(service: T
     known = [margins(true, regulator.regulator, amplitude) for amplitude in regulator.amplitudes]
     assert abs(gain["value"] - min(one.gain_margin for one in known)) < 4 * gain["std_error"]
     assert abs(phase["value"] - math.radians(min(one.phase_margin for one in known))) < 4 * phase["std_error"]
+    drawn = service.get(f"{API}/fits/{fit}/figures/acceptance-sheet.json").text
+    assert "acceptance test NOT passed" not in drawn
+    assert service.put(
+        f"{API}/limits/kononykhin", json={"limits": {"sheet.T": {"upper": 10, "unit": "ms"}}}
+    ).status_code == 200  # fmt: skip
+    drawn = service.get(f"{API}/fits/{fit}/figures/acceptance-sheet.json").text
+    assert "acceptance test NOT passed" in drawn
+    value = sheet["T"]["value"]
+    near = {"sheet.T": {"upper": value, "unit": "s"}}
+    assert service.put(f"{API}/limits/kononykhin", json={"limits": near}).status_code == 200
+    assert "acceptance test inconclusive" in service.get(f"{API}/fits/{fit}/figures/acceptance-sheet.json").text
     limits = {"sheet.gain_margin": {"lower": 6, "unit": "dB"}, "sheet.phase_margin": {"lower": 30, "unit": "deg"}}
     assert service.put(f"{API}/limits/kononykhin", json={"limits": limits}).status_code == 200
     judged = {line["name"]: line for line in service.get(f"{API}/fits/{fit}/sheet").json()["lines"]}
@@ -232,3 +245,19 @@ def test_a_regulator_that_cannot_be_read_is_refused(block: str, code: str) -> No
         describe_regulator(yaml.safe_load(block))
     assert refused.value.code == code
     assert refused.value.where.startswith("regulator")
+
+
+def test_the_command_shows_the_sheet_of_a_stored_fit(
+    service: TestClient, fit: str, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """In the units of the sheet, with the outcome that the line gives; exit status 1 where it does not pass."""
+    monkeypatch.setattr("app.cli.sheet.request", lambda _, __, method, path: service.request(method, API + path))
+    service.put(f"{API}/limits/kononykhin", json={"limits": {"sheet.T": {"upper": 10, "unit": "ms"}}})
+    with pytest.raises(typer.Exit) as ended:
+        show_sheet(fit)
+    assert ended.value.exit_code == 1
+    said = capsys.readouterr().out
+    assert re.search(r"gain_margin +\d+\.\d+ +\d\.\d+ +dB", said)
+    assert re.search(r"(?m)^T +\S+ +\S+ +ms +– +10 +FAIL", said)
+    assert "SIM-BENCH-0001: fail" in said
+    service.put(f"{API}/limits/kononykhin", json={"limits": {}})

@@ -75,7 +75,7 @@ def test_an_unknown_smoothing_and_a_figure_of_another_model_are_refused(fitted):
 def test_the_sheet_names_every_quantity_and_the_verdict(fitted, studied):
     """A broken limit is seen on the page."""
     matrix, _ = fitted
-    bench, analysis = studied.judged
+    bench, analysis = studied.procedures
     lines = sheet(analysis, {"hysteresis": (None, 1e-6), "T": (None, 1.0)})
     drawn = renders(acceptance_sheet(matrix, bench, analysis, lines), ("json", "pdf"))
     page = drawn["json"].decode()
