@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Mapping
+from functools import cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -28,10 +29,15 @@ def least_margins(solution: Solution, loop: PositionControl, delay: DelayCheck |
     model, known = solution.model, delay if delay is not None and delay.doubt else None
     amplitudes = loop.amplitudes or tuple(multiple * model.dead_space for multiple in MULTIPLES)
 
-    def with_values(values: Mapping[str, float], late: float) -> list[AmplitudeMargin]:
+    @cache
+    def at_point(point: tuple[tuple[str, float], ...], late: float) -> list[AmplitudeMargin]:
+        values = dict(point)
         moved = {**values, **({} if known is None else _beside(known, model, values)), DELAY: late}
         at = model.with_values(moved)
         return [margins(at, loop.regulator, amplitude) for amplitude in amplitudes]
+
+    def with_values(values: Mapping[str, float], late: float) -> list[AmplitudeMargin]:
+        return at_point(tuple(values.items()), late)  # both margins are of the same loops
 
     late = 0.0 if known is None else max(known.delay.value, 0.0)
     here = with_values(solution.values, late)

@@ -47,7 +47,7 @@ class Study:
 
     def on_line(self, limits: Mapping[str, tuple[float | None, float | None, str]]) -> Study:
         """The same with what a production line says of its sheet; what was computed is shared."""
-        assert self.procedures  # by both: it takes seconds
+        _ = self.procedures  # by both: it takes seconds
         shown = copy(self)
         shown.line_limits = limits
         return shown

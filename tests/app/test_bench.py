@@ -208,17 +208,9 @@ def test_the_margin_of_a_produced_actuator_is_a_quantity_of_its_sheet(service: T
     known = [margins(true, regulator.regulator, amplitude) for amplitude in regulator.amplitudes]
     assert abs(gain["value"] - min(one.gain_margin for one in known)) < 4 * gain["std_error"]
     assert abs(phase["value"] - math.radians(min(one.phase_margin for one in known))) < 4 * phase["std_error"]
-    drawn = service.get(f"{API}/fits/{fit}/figures/acceptance-sheet.json").text
-    assert "acceptance test NOT passed" not in drawn
-    assert service.put(
-        f"{API}/limits/kononykhin", json={"limits": {"sheet.T": {"upper": 10, "unit": "ms"}}}
-    ).status_code == 200  # fmt: skip
-    drawn = service.get(f"{API}/fits/{fit}/figures/acceptance-sheet.json").text
-    assert "acceptance test NOT passed" in drawn
-    value = sheet["T"]["value"]
-    near = {"sheet.T": {"upper": value, "unit": "s"}}
-    assert service.put(f"{API}/limits/kononykhin", json={"limits": near}).status_code == 200
-    assert "acceptance test inconclusive" in service.get(f"{API}/fits/{fit}/figures/acceptance-sheet.json").text
+    slow = {"sheet.T": {"upper": 10, "unit": "ms"}}
+    assert service.put(f"{API}/limits/kononykhin", json={"limits": slow}).status_code == 200
+    assert "acceptance test NOT passed" in service.get(f"{API}/fits/{fit}/figures/acceptance-sheet.json").text
     limits = {"sheet.gain_margin": {"lower": 6, "unit": "dB"}, "sheet.phase_margin": {"lower": 30, "unit": "deg"}}
     assert service.put(f"{API}/limits/kononykhin", json={"limits": limits}).status_code == 200
     judged = {line["name"]: line for line in service.get(f"{API}/fits/{fit}/sheet").json()["lines"]}

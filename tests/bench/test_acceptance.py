@@ -8,7 +8,7 @@ import shutil
 import pytest
 import yaml
 
-from ident.bench.acceptance import Line, read_limits
+from ident.bench.acceptance import Line, judged, passed, read_limits
 from ident.errors import Unusable
 from ident.presets.kononykhin import KONONYKHIN
 from tests.bench.sets import simulated
@@ -156,3 +156,13 @@ def test_a_quantity_that_was_not_found_fails_its_limit():
     assert Line("T", "", None, None, "s", None, 1.0).passed is False
     assert Line("T", "", 0.5, None, "s", None, None).passed is None
     assert Line("T", "", 0.5, None, "s", 0.1, 1.0).passed is True
+
+
+def test_a_line_is_judged_as_the_production_line_judges_it():
+    """Its limits come in the place of those of the data set; one that is open is neither passed nor failed."""
+    lines = (Line("T", "", 0.02, 1e-4, "s", None, 0.03), Line("kp", "", 4e8, 1e6, "Pa", 1e8, None))
+    found = judged(lines, {"T": (None, 0.02, "unknown")})
+    assert [(line.upper, line.verdict) for line in found] == [(0.02, "inconclusive"), (None, "")]
+    assert passed(lines)
+    assert not passed(found)
+    assert passed(judged(lines, {"T": (None, 0.03, "inside")}))
