@@ -25,7 +25,7 @@ UNITS = (
     ("pressure", ("bar", "MPa", "kPa", "Pa", "psi")),
     ("velocity", ("mm/s", "cm/s", "m/s", "in/s", "rpm", "rad/s", "deg/s")),
     ("angle", ("deg", "rad", "rev")), ("torque", ("N*m", "kN*m")), ("electrical", ("V", "mV", "A", "mA")),
-    ("time", ("s", "ms", "us", "min")), ("temperature", ("degC", "K", "degF")), ("other", ("%", "1")),
+    ("time", ("s", "ms", "us", "min")), ("temperature", ("degC", "K", "degF")), ("other", ("%", "counts", "1")),
 )  # fmt: skip
 """Units of the menu, by what they measure."""
 _DIALECTS = TypeAdapter(dict[str, DialectRequest])

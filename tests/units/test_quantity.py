@@ -22,6 +22,7 @@ from ident.units.quantity import (
 from ident.units.usual import USUAL
 
 READ = [
+    ("5 counts", "dimensionless", 5.0),
     ("497 mm^2", "area", 4.97e-4),
     ("0.05 in", "length", 0.00127),
     ('2 "', "length", 0.0508),
