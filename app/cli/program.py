@@ -75,8 +75,6 @@ GROUPS = {
         retention,
         audit,
     ),
-    "Production line": (approve, withdraw, statistics, limits, verdict, regress),
-    "Service": (serve, worker, workers, demo, upload, query, revise, migrate, backup, restore, tidy, retention, audit),
     "Production line": (approve, withdraw, statistics, limits, verdict, sheet, regress),
 }
 """Commands under the heading that the help lists them by."""
