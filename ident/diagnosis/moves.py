@@ -40,6 +40,7 @@ class Moves:
     start: FittedModel | None = None
     _without: dict[tuple[FittedModel, str], FittedModel] = field(default_factory=dict)
     _ranking_so_far: list[Candidate] = field(default_factory=list)
+    _tried_as_springs: list[str] = field(default_factory=list)
 
     def __post_init__(self) -> None:
         self.refitted_sets = RefittedSets(self.base)
@@ -168,6 +169,7 @@ class Moves:
         names = springs(self.models, base, self._addable(base))
         if not names or not self.models.residual_above_noise(refit or base):
             return None
+        self._tried_as_springs = names
         freed = with_free_widths(self.models, base, refit or base, names)
         return None if freed is None else self._with_its_shapes(selection, freed)
 
@@ -335,10 +337,13 @@ class Moves:
         return self._best_of(replace(selection, changes=selection.changes + 1), trials)
 
     def free_widths(self, selection: Selection) -> Selection | None:
-        """Begin again with an effect whose widths are free, where it is better than any with the usual ones."""
+        """Begin again with an effect whose widths are free, where it is better than any with the usual ones.
+
+        Those that were tried so before others were added have lost to these already.
+        """
         refits = [c.refit for c in selection.ranking if c.refit is not None]
         best = stable_minimum([selection.base, *refits], score)
-        names = self._addable(selection.base)
+        names = [name for name in self._addable(selection.base) if name not in self._tried_as_springs]
         refit = with_free_widths(self.models, selection.base, best, names) if self.most else None
         if refit is None:
             return None
