@@ -51,9 +51,14 @@ def oscillation_at_rest(run: Run) -> AtRest | None:
         found = _swings(y, max(SIZE * float(np.ptp(run.measured)), runs_on))
         if found is not None:
             frequency, growth = found[0] * run.sample_rate, found[1] * run.sample_rate
-            if run.time_unit != "s" or all(abs(frequency - mains) > NEAR * mains for mains in MAINS):
+            if run.time_unit != "s" or not is_of_mains(frequency):
                 return AtRest(stretch.start / run.sample_rate, stretch.stop / run.sample_rate, frequency, growth)
     return None
+
+
+def is_of_mains(frequency: float) -> bool:
+    """Whether an oscillation, Hz, may be picked up from the mains."""
+    return any(abs(frequency - mains) <= NEAR * mains for mains in MAINS)
 
 
 def _swings(y: Samples, least: float) -> tuple[float, float] | None:

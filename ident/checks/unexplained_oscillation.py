@@ -14,6 +14,7 @@ import numpy as np
 import scipy.fft  # not scipy.signal, which takes a second of every diagnosis to load
 from numpy.typing import NDArray
 
+from ident.checks.oscillation_at_rest import DIES, is_of_mains
 from ident.run import Run, Samples
 
 Spectrum = NDArray[np.complex128]
@@ -25,6 +26,12 @@ BAND = 0.2
 """Of the frequency, either way: the band in which the amplitude is followed."""
 CYCLES = 60
 """Cycles that a record has of an oscillation, at least: the amplitude of fewer is constant by chance."""
+FEWER = 12
+"""Cycles that are enough where the command is silent about them: it drives no mode by chance there."""
+SILENT = 1e-3
+"""Of the command's power, that it has at most in the band of an oscillation about which it is silent."""
+LITTLE = 0.7
+"""Of the output's deviation that is asked of an oscillation there, in place of all of it."""
 STEADY = 0.2
 """std(A)/mean(A) up to which an amplitude is constant; narrow-band noise has 0.52, over 60 cycles 0.3 at least."""
 SHARE = 0.5
@@ -59,7 +66,27 @@ def unexplained_oscillation(run: Run) -> Unexplained | None:
     if not y.std() > 0 or not np.all(np.isfinite(u)):
         return None
     found = _growing(u, y, run.sample_rate) or _settled(_unexplained(u, y), float(y.std()), run.sample_rate)
+    if found is None and (found := _beside_silence(u, y, run.sample_rate)) and run.output == "velocity":
+        level = abs(float(run.measured[-len(y) // 2 :].mean()))
+        found = found if found.amplitude > level else None  # a ripple of what turns is driven round
     return None if found is None or _repeats(u, found.frequency / run.sample_rate) else found
+
+
+def _beside_silence(u: Samples, y: Samples, rate: float) -> Unexplained | None:
+    """The strongest oscillation of the last half of an output, or of all of it, about which the command is silent."""
+    for part in (slice(len(y) // 2, None), slice(None)):
+        own = _detrended(y[part])
+        found = _settled(own, LITTLE * float(own.std()), rate, FEWER)
+        if found and _is_silent(u[part], found.frequency / rate) and not is_of_mains(found.frequency):
+            return found
+    return None
+
+
+def _is_silent(u: Samples, frequency: float) -> bool:
+    """Whether a command has next to no power from an oscillation (1/sample) on, and somewhat below."""
+    power = np.abs(np.fft.rfft(u * np.hanning(len(u)))) ** 2
+    least = int((1.0 - 2.0 * BAND) * frequency * len(u))
+    return bool(power[least:].sum() <= SILENT * power.sum())
 
 
 def _detrended(signal: Samples) -> Samples:
@@ -85,12 +112,15 @@ def _unexplained(u: Samples, y: Samples) -> Samples:
     return left
 
 
-def _settled(left: Samples, size: float, rate: float) -> Unexplained | None:
+def _settled(left: Samples, size: float, rate: float, cycles: int = CYCLES) -> Unexplained | None:
     """The strongest oscillation of what is left of an output of a deviation `size`, where its amplitude is constant."""
-    z = _strongest(left)
+    z = _strongest(left, cycles)
     if z is None:
         return None
     amplitude = np.abs(z)
+    first, *_, last = (float(part.mean()) for part in np.array_split(amplitude, 4))
+    if cycles < CYCLES and last < (1.0 - DIES) * first:  # it rings down
+        return None
     if np.std(amplitude) > STEADY * np.mean(amplitude) or np.mean(amplitude**2) / 2 < SHARE * size**2:
         return None
     return Unexplained(_frequency(z, rate), 0.0, float(amplitude.mean()))
@@ -116,14 +146,16 @@ def _growing(u: Samples, y: Samples, rate: float) -> Unexplained | None:
     return Unexplained(_frequency(z, rate), growth, float(amplitude[-1]))
 
 
-def _strongest(signal: Samples) -> Spectrum | None:
+def _strongest(signal: Samples, cycles: int = CYCLES) -> Spectrum | None:
     """The strongest oscillation of a signal (n,): z(t), |z| its amplitude, around whose frequency all else is left out.
 
-    A window of Hann over time, moved along z = 2 y exp(−jω t), passes ω ± BAND ω. None where it is none of CYCLES.
+    A window of Hann over time, moved along z = 2 y exp(−jω t), passes ω ± BAND ω. None of fewer `cycles`.
     """
     n = len(signal)
     spectrum = np.abs(np.fft.rfft(signal * np.hanning(n)))
-    at = CYCLES + int(np.argmax(spectrum[CYCLES:]))
+    if len(spectrum) <= cycles:
+        return None
+    at = cycles + int(np.argmax(spectrum[cycles:]))
     window = np.hanning(int(2 * n / (BAND * at)) + 2)
     turned = 2 * signal * np.exp(-2j * np.pi * at / n * np.arange(n))
     if at >= (1 - BAND) * n / 2:

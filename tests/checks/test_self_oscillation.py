@@ -68,6 +68,20 @@ def test_nothing_is_said_of_stable_loops(full):
     assert found == [None] * count
 
 
+@pytest.mark.parametrize("form", ["sine", "step"])
+def test_twenty_periods_show_a_limit_cycle_about_which_the_command_is_silent(form):
+    """Seed 59: a gain past stability under a slow command; the frequency is that of the largest line."""
+    rng, n = np.random.default_rng(59), 360
+    t = np.arange(n) / RATE
+    u = 1e-3 * (np.sin(2 * np.pi * 2.0 * t) if form == "sine" else (t > 0.02))
+    shown = reference.simulate(LIGHT, np.array([14.0]), u, RATE, opening=1e-2)[:, 0]
+    shown += 0.01 * shown.std() * rng.standard_normal(n)
+    run = run_of(u, shown)
+    assert self_oscillation(run).frequency == pytest.approx(peak(run.measured[n // 2 :]), rel=0.02)
+    calm = reference.simulate(LIGHT, np.array([1.0]), u, RATE, opening=1e-2)[:, 0]
+    assert self_oscillation(run_of(u, calm + 0.01 * calm.std() * rng.standard_normal(n))) is None
+
+
 def stable(rng, least):
     """A loop, many with little damping, and its gain, `least` to 3 or 12 dB below that which loses stability."""
     spread = {name: rng.uniform(0.6, 1.4) for name in reference.TABLE_4} | {"c": 10 ** rng.uniform(-2, 0)}
