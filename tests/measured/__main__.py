@@ -21,6 +21,10 @@ HEADER = (
     "standing",
     "proposed beyond",
     "s",
+    "RMSE held back",
+    "by hand",
+    "published",
+    "run",
 )
 
 
