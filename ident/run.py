@@ -231,8 +231,11 @@ class Run(Shown):
     @cached_property
     def begins(self) -> Beginning:
         """How the measured output begins: a model may start at rest, in its equilibrium, or in a state to be found."""
-        if self.assumed_beginning is not None:
-            return self.assumed_beginning
+        return self.assumed_beginning or self.shown_beginning
+
+    @cached_property
+    def shown_beginning(self) -> Beginning:
+        """How it begins by its samples, whatever it is taken for."""
         command = self.channels.get("command")
         return beginning(self._shown_by, command, self.sample_rate, command is not None and self.stepped)
 
@@ -254,7 +257,7 @@ class Run(Shown):
         """
         if self.zeroed.get(self.output):
             return None
-        return zero_at_rest(self.measured, self.begins, self.sample_rate)
+        return zero_at_rest(self.measured, self.shown_beginning, self.sample_rate)
 
     @cached_property
     def mean(self) -> float:

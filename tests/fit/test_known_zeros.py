@@ -72,6 +72,7 @@ def test_a_motion_that_sets_out_is_taken_from_rest_where_its_mean_counts():
     (known,) = with_known_zeros(Matrix(Actuator("A"), (run,)), ["displacement"]).runs
     assert known.begins == "at rest"
     assert known.zeroed == {"displacement": False}
+    assert known.zero_at_rest == run.zero_at_rest
     by_hand = replace(run, zeroed={"displacement": True})
     assert with_known_zeros(Matrix(Actuator("A"), (by_hand,)), ["displacement"]).runs == (by_hand,)
 
