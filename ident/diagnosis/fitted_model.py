@@ -179,7 +179,7 @@ class FittedModel:
     @property
     def rmse_unit(self) -> str:
         """The SI unit of what was measured; "" where the outputs have several."""
-        units = {run.units.get(run.output, "1") for run in self.fitness.matrix.runs}
+        units = {run.units.get(run.output, "1") for run in self.fitness.runs}
         return units.pop() if len(units) == 1 else ""
 
     @property

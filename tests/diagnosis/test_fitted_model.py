@@ -22,7 +22,7 @@ MEASURED = np.sin(np.arange(1000) / 50.0)
 
 def refit(begins: str, left: float, promised: float = 0.1) -> FittedModel:
     """A refit that promises an error on one run, and whose simulation leaves another."""
-    run = SimpleNamespace(id="a", begins=begins, measured=MEASURED, share=1.0, output="displacement")
+    run = SimpleNamespace(id="a", begins=begins, measured=MEASURED, share=1.0, output="displacement", units={})
     fitness = SimpleNamespace(
         runs=(run,),
         matrix=SimpleNamespace(of_use=lambda _use: (run,)),
