@@ -27,7 +27,7 @@ from ident.matrix import Actuator, Matrix
 from ident.preprocessing import screen
 from ident.readers.limits import LIMITS
 from ident.readers.source import DESCRIPTION, inside
-from ident.readers.split import VALIDATION
+from ident.readers.split import validation_id
 from ident.readers.strict_yaml import read_yaml
 from ident.run import Run, output_id
 from ident.words.nearest import did_you_mean
@@ -125,7 +125,7 @@ def _record_of(run: str, records: Mapping[str, Mapping[str, Any]]) -> str:
     found: dict[str, str] = {}
     for name, record in records.items():
         outputs = record["output"] if isinstance(record.get("output"), list) else ()
-        for part in (name, f"{name}.{VALIDATION}") if "split" in record else (name,):
+        for part in (name, validation_id(name)) if "split" in record else (name,):
             found |= {part: name} | {output_id(part, str(output)): name for output in outputs}
     return run if run in records else found.get(run, run)
 

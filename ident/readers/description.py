@@ -17,9 +17,11 @@ from ident.readers.regulator_description import describe_regulator
 from ident.readers.rig import rig_of
 from ident.readers.run_description import RunDescription, describe_run
 from ident.readers.source import DESCRIPTION, inside
+from ident.readers.split import validation_id
 from ident.readers.strict_yaml import read_yaml
 from ident.rig.provenance import UNSTATED, Provenance
 from ident.rig.regulator import PositionControl
+from ident.run import Run
 from ident.units.quantity import shown
 
 TOP = ("actuator", "runs", "controller", "regulator", "machine", "limits", "rig", "test")
@@ -105,8 +107,14 @@ def describe_runs(data: Any, limits: Limits) -> tuple[RunDescription, ...]:
         what = f"{len(data)} runs where {limits.runs} are allowed"
         raise Unusable("too-large", what, "runs", "split the matrix")
     runs = tuple(describe_run(each, f"run {number}") for number, each in enumerate(data, 1))
-    refuse_twice([one.id for run in runs for one in run.labels.of_outputs(run.outputs)])
+    refuse_twice([one.id for run in runs for part in _parts(run) for one in part.of_outputs(run.outputs)])
     return runs
+
+
+def _parts(run: RunDescription) -> tuple[Run, ...]:
+    """What a run becomes when it is read: itself, and its validation data where it is split."""
+    whole = run.labels
+    return (whole,) if run.split is None else (whole, replace(whole, id=validation_id(whole.id)))
 
 
 def refuse_twice(ids: Sequence[str]) -> None:

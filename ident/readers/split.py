@@ -54,6 +54,11 @@ def describe_split(fields: Fields, kind: str, use: str, time_unit: str) -> Split
     return Split(first, end, seconds_or_samples(given, "gap", time_unit))
 
 
+def validation_id(run: str) -> str:
+    """The id of the validation data of a run."""
+    return f"{run}.{VALIDATION}"
+
+
 def split(run: Run, of: Split, rows: tuple[int, int]) -> tuple[tuple[Run, Run], str]:
     """Estimation and validation data of a run that is rows [first, end) of its file, and in words what the gap is.
 
@@ -76,7 +81,7 @@ def split(run: Run, of: Split, rows: tuple[int, int]) -> tuple[tuple[Run, Run], 
         raise Unusable(
             "bad-split", what, place, f"leave {FEWEST} at least to both, or shorten the gap of {gap} samples"
         )
-    validation = replace(run.part(begin, end), id=f"{run.id}.{VALIDATION}", use="verify")
+    validation = replace(run.part(begin, end), id=validation_id(run.id), use="verify")
     return (run.part(first, last), validation), _told(run, begin, end, gap, lasts)
 
 

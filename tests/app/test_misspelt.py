@@ -35,7 +35,10 @@ MISSPELT: dict[tuple[str, str], list[tuple[tuple[str, ...], str]]] = {
         (("RAW", "--channel", "comand=u:mm"), "command"),
         (("RAW", "--channel", "command=comand:mm"), "command"),
     ],
-    ("init", "--dialect"): [(("RAW", "--dialect", "delimeter=semicolon"), "delimiter")],
+    ("init", "--dialect"): [
+        (("RAW", "--dialect", "delimiter=semicolo"), "semicolon"),
+        (("RAW", "--dialect", "delimeter=semicolon"), "delimiter"),
+    ],
     ("init", "--time"): [(("RAW", "--time", "tme:s"), "time")],
     ("init", "--output"): [(("RAW", "--output", "displacment"), "displacement")],
     ("init", "--hold"): [(("RAW", *UNITS, "--hold", "liner"), "linear")],

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import json
+
 import numpy as np
 import pytest
 from scipy.signal import lfilter
 
 from ident.errors import Unusable
-from ident.readers import from_arrays
+from ident.readers import from_arrays, read_matrix
 from ident.readers.split import memory
 
 RATE = 1000.0
@@ -83,6 +85,15 @@ def test_a_split_that_cannot_be_is_refused(stated, where):
     with pytest.raises(Unusable) as refused:
         read(lagged(0.01), **stated)
     assert (refused.value.code, refused.value.where) == ("bad-split", f"the run {where}")
+
+
+def test_no_run_may_be_called_as_the_validation_data_of_another(tmp_path):
+    """They are told apart by their ids, whatever the case of the letters."""
+    run = {"file": "a.csv", "sample_rate": "1 Hz", "channels": {n: {"column": n, "unit": u} for n, u in UNITS.items()}}
+    runs = [run | {"id": "a", "split": {"validation": [50, 90]}}, run | {"id": "A.Validation"}]
+    (tmp_path / "matrix.yaml").write_text(json.dumps({"actuator": {"serial": "S"}, "runs": runs}))
+    with pytest.raises(Unusable, match=r"two runs are called 'A\.Validation'"):
+        read_matrix(tmp_path)
 
 
 def test_many_outputs_are_split_each():
