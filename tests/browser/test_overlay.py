@@ -44,6 +44,11 @@ def test_three_fits_are_ticked_and_drawn_over_each_other(page, site, matrix, fit
     assert saved.value.suggested_filename == "runs.csv"
     assert lines[0].startswith('"Run","Use","A","B","C"')
     assert len(lines) == 1 + runs.locator("tbody tr").count()
+    with page.expect_download() as saved:
+        runs.get_by_role("button", name="Download the table as a JSON file").click()
+    objects = json.loads(saved.value.path().read_text(encoding="utf-8"))
+    assert (saved.value.suggested_filename, len(objects) + 1) == ("runs.json", len(lines))
+    assert list(objects[0])[:5] == ["Run", "Use", "A", "B", "C"]
     page.locator("#tab-bode").click()
     everywhere(page, screenshots, "overlay")
     on_a_phone(page, screenshots, "overlay")

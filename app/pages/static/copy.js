@@ -1,6 +1,6 @@
 // Copies: a value with its unit as the program reads it, a table as text with tabs that a spreadsheet takes, or a file.
 
-const said = document.createElement("p");
+const said = document.createElement("div");
 said.className = "unseen";
 said.setAttribute("role", "status");
 document.body.append(said);
@@ -46,7 +46,8 @@ for (const cell of document.querySelectorAll("[data-plain]")) {
 for (const table of document.querySelectorAll("table[data-copy]")) {
   const place = table.caption ?? table.createCaption();
   place.append(button("Copy the table, tab-separated", "Copy table", (made) => copy(text(table), made, "The table")));
-  place.append(button("Download the table as a CSV file", "CSV", () => save(csv(table), `${fileName(table)}.csv`)));
+  place.append(button("Download the table as a CSV file", "CSV", () => save(csv(table), "text/csv", `${fileName(table)}.csv`)));
+  place.append(button("Download the table as a JSON file", "JSON", () => save(json(table), "application/json", `${fileName(table)}.json`)));
 }
 
 function text(table) {
@@ -63,14 +64,23 @@ function csv(table) {
   return `\ufeff${cells(table).map((row) => row.map(field).join(",")).join("\r\n")}\r\n`;
 }
 
+// A list of objects by the heads of the columns; numbers where the page knows them, else what it shows.
+function json(table) {
+  const names = [...table.tHead.rows[0].cells].map((cell, place) => words(cell) || `column ${place + 1}`);
+  const value = (cell) => (cell.dataset.value === undefined || cell.dataset.value === "None" ? words(cell) : Number(cell.dataset.value));
+  const rows = [...table.tBodies].flatMap((body) => [...body.rows]);
+  const objects = rows.map((row) => Object.fromEntries([...row.cells].map((cell, place) => [names[place], value(cell)])));
+  return `${JSON.stringify(objects, null, 2)}\n`;
+}
+
 function fileName(table) {
   const title = table.closest("section")?.querySelector("h2")?.textContent ?? "table";
   return title.trim().toLowerCase().replace(/[^a-z0-9]+/g, "-");
 }
 
-function save(content, name) {
+function save(content, type, name) {
   const link = document.createElement("a");
-  link.href = URL.createObjectURL(new Blob([content], { type: "text/csv" }));
+  link.href = URL.createObjectURL(new Blob([content], { type }));
   link.download = name;
   link.click();
   setTimeout(() => URL.revokeObjectURL(link.href), 1000);

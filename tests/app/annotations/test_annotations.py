@@ -26,7 +26,7 @@ def test_what_is_written_on_a_fit_is_read_with_it_and_changes_no_result(service,
     assert "valve 3" in page
     listed = service.get(f"/matrices/{before['matrix']}").text
     assert f'<a href="/fits/{fitted}">cold oil, first try</a>' in listed
-    assert '<span class="state">20 degC</span>' in listed
+    assert '<span class="tagged">20 degC</span>' in listed
     noted = service.get(f"{API}/audit", params={"object": f"fits/{fitted}"}).json()["items"]
     assert noted[0]["action"] == "put_annotation"
     taken = service.put(f"{API}/fits/{fitted}/annotation", json={})
