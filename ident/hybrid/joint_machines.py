@@ -47,7 +47,7 @@ def joint_machines(
 
 def _alone(of: Machine, case: Case, gain: Array, felt: bool) -> dict[str, Any]:
     """Of one machine: A, B by its command, E by what it feels, and by each channel (C, D, by what it feels)."""
-    chain, known = joined(of.chain, FELT) if felt else of.chain, of.at(case)
+    chain, known = joined(of.small, FELT) if felt else of.small, of.at(case)
     values: dict[str, Any] = {name: known.get(name, 0.0) for name in chain.symbols}
     values["Kp"] = known.get("Kp", 1.0) * gain
     found: dict[str, Any] = {}

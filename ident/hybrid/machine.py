@@ -13,10 +13,12 @@ from ident.chain.chain import FORCE as INTERACTION
 from ident.chain.chain import INPUT, INPUT_RATE, MEASURED, STEP, Chain
 from ident.chain.conditions import conditions
 from ident.custom.definition import preset_with
+from ident.effects.effect import Effect
 from ident.equations.grammar import TIME
 from ident.errors import Unusable
 from ident.fit.result import FitResult
 from ident.hybrid.case import Case
+from ident.hybrid.lags_as_states import with_states
 from ident.matrix import Actuator
 from ident.parameter import Parameter
 from ident.presets import Preset
@@ -86,16 +88,35 @@ class Machine:
         return float(self.chain.signals_at({**self.at(case), **still})["M"])
 
     @cached_property
+    def small(self) -> Chain:
+        """The chain as its poles are taken: lags and delays of the effects that are on as states, no others.
+
+        A delay of the command is four sections of the Padé approximant of second order, one in the loop the one that
+        simulates it.
+        """
+        return self.chain.with_effects(tuple(map(_as_states, self._on)))
+
+    @property
+    def _on(self) -> tuple[Effect, ...]:
+        return tuple(effect for effect in self.chain.effects if self.values[effect.added[0].in_equations])
+
+    @cached_property
     def nonlinear(self) -> tuple[str, ...]:
         """What is not linear at small signals, so that poles do not tell: the effects that are on, the core itself."""
         core = self.chain.with_effects(())
         if not core.is_linear:
             return ("the model itself",)
-        return tuple(
-            effect.name
-            for effect in self.chain.effects
-            if self.values[effect.added[0].in_equations] and not core.with_effects((effect,)).is_linear
-        )
+        return tuple(one.name for one in self._on if not core.with_effects((_as_states(one),)).is_linear)
+
+
+_SECTIONS = 4
+"""Of the Padé approximant of a command's delay: the phase of half a period is then right to 0.1°."""
+
+
+def _as_states(effect: Effect) -> Effect:
+    """An effect whose lags and delays are states of its own."""
+    shifts = any(f"delay({INPUT}," in text.replace(" ", "") for text in effect.texts)
+    return with_states(effect, _SECTIONS if shifts else 1)
 
 
 JOINED = ("specimen position", "specimen speed", "specimen acceleration")

@@ -94,7 +94,7 @@ def test_actuators_of_other_equations_and_controllers_run_beside_each_other():
         "gain": 5, "piston_area": "497 mm^2", "ground": GROUND | {"duration": "0.5 s"},
     }  # fmt: skip
     case, slow = coupled_of(data, None, "two"), fitted("first_order", gain=1.0, tau=0.02)
-    on = {"loop_delay.delay": 3e-3}
+    on = {"dead_zone.half_width": 1e-5}
     found = simulate_coupled((fitted(), slow), case, (Compensation(4096.0), NONE), {})
     alone = [simulate_hybrid(fit, one, acting) for fit, one, acting in
              zip((fitted(), slow), case.cases, (Compensation(4096.0), NONE), strict=True)]  # fmt: skip
