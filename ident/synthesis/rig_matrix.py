@@ -23,6 +23,7 @@ from ident.presets.rig_test import RigTest
 from ident.progress import Progress, Report, silent
 from ident.run import Run
 from ident.words.number import trimmed
+from ident.words.run_name import run_name
 
 Array = NDArray[np.float64]
 _BEGUN = 0.1  # s
@@ -53,7 +54,7 @@ def write_rig_matrix(
         found = dict(zip(test.outputs, shown.values(), strict=True))
         if not all(np.isfinite(one).all() for one in found.values()):
             raise Unusable(
-                "unstable-model", f"run {name} runs away", "simulate", "take a smaller gain, or other values"
+                "unstable-model", f"{run_name(name)} is unstable", "simulate", "take a smaller gain, or other values"
             )
         columns = {key: y + noise * np.std(y) * rng.standard_normal(len(y)) for key, y in found.items()}
         np.savez(out / "runs" / f"{name}.npz", command=still.command, **columns)  # type: ignore[arg-type]

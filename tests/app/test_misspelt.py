@@ -31,6 +31,10 @@ MISSPELT: dict[tuple[str, str], list[tuple[tuple[str, ...], str]]] = {
         (("OUT", "--effect", "deadzone"), "dead_zone"),
         (("OUT", "--effect", "dead_zone.halfwidth=1 mm"), "dead_zone.half_width"),
     ],
+    ("simulate", "--set"): [
+        (("OUT", "--preset", "first_order", "--set", "tua=3 ms", "--test", "amplitude=5 mm"), "tau")
+    ],
+    ("simulate", "--test"): [(("OUT", "--preset", "first_order", "--test", "amplitud=5 mm"), "amplitude")],
     ("init", "--channel"): [
         (("RAW", "--channel", "comand=u:mm"), "command"),
         (("RAW", "--channel", "command=comand:mm"), "command"),
