@@ -81,7 +81,7 @@ def _blocks(series: Sequence[Array], criteria: EvidenceCriteria) -> list[int]:
     if len(series) >= criteria.whole_runs:
         return [1] * len(series)
     lengths = [criteria.correlation_times * correlation_time(run) for run in series]
-    least, most = criteria.least_blocks, criteria.most_blocks
+    least, most = max(2, -(-criteria.least_blocks // len(series))), criteria.most_blocks
     counts = [int(np.clip(len(run) / length, least, most)) for run, length in zip(series, lengths, strict=True)]
     return [min(count, len(run)) for count, run in zip(counts, series, strict=True)]
 
