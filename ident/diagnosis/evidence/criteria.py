@@ -57,7 +57,7 @@ class EvidenceCriteria:
     only; of fewer than four their scatter tells nothing.
     Test: test_evidence.py::test_what_only_one_of_many_runs_asks_for_does_not_improve"""
     least_blocks: int = 4
-    """[blocks] Fewest blocks of all runs together. Why: one record of twenty correlation times has blocks of five, whose
+    """[blocks] Fewest blocks of all runs together. Why: a record of twenty correlation times has blocks of five, whose
     means are independent to a fifth of their variance; with two of ten Student's value is 12.7, and nothing matters.
     Test: test_evidence.py::test_the_error_of_a_difference_holds_for_a_record_of_twenty_correlation_times"""
     most_blocks: int = 64
