@@ -1,1 +1,1 @@
-"""Signals of many samples drawn from few: the extremes of stretches, and stored levels of them."""
+"""Signals of many samples in, few samples to draw out: the extremes of stretches, stored as levels."""
