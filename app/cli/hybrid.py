@@ -74,7 +74,6 @@ def hybrid(
     """
     from dataclasses import replace
 
-    from app.cli.tables import show
     from ident.hybrid.acting import FEEDFORWARD, controller_called
     from ident.hybrid.controller import name_of
     from ident.hybrid.coupled_case import CoupledCase
@@ -93,9 +92,7 @@ def hybrid(
         )
         of = of if rig is None else of.changed(rig=rig_in(rig))
         on = effect_values(effect or [], result.model)
-        if not show_parts(result, of, Path(case).parent, controller, on, shares, json, out):
-            raise typer.Exit(1)
-        return
+        raise typer.Exit(0 if show_parts(result, of, Path(case).parent, controller, on, shares, json, out) else 1)
     of = of if rig is None else replace(of, rig=rig_in(rig))
     effects, wide = effect_values(effect or [], result.model), spread_in(spread, result.model)
     earlier = earlier_case(result, of, before, before_gain, before_case)
@@ -115,15 +112,28 @@ def hybrid(
     ahead_known = controller == FEEDFORWARD and known.table is None
     worth = followed_in(result, known, spread=wide, isolator=beside) if ahead_known else None
     main = next(iter(runs.values()))
+    _tell(main, found, worth, drawn, json)
+    if out is not None:
+        _draw(runs, of, found, worth, out)
+    if not main.stable:
+        raise typer.Exit(1)
+
+
+def _tell(
+    main: HybridResult,
+    found: ShareMap | None,
+    worth: Followed | None,
+    drawn: DrawnSimulations | None,
+    json: Path | None,
+) -> None:
+    """Write the scores, and show them."""
+    from app.cli.tables import show
+
     if json is not None:
         further = {"map": found, "feedforward": worth, "spread": drawn}
         write_json({**main.to_json(), **{name: one.to_json() for name, one in further.items() if one}}, json)
     if json != STANDARD_OUTPUT:
         show((*main.listings(), *(worth.listings() if worth else ()), *(drawn.sentences() if drawn else ())))
-    if out is not None:
-        _draw(runs, of, found, worth, out)
-    if not main.stable:
-        raise typer.Exit(1)
 
 
 def _drawn(wide: Spread | None, acting: Any, *rest: Any) -> DrawnSimulations | None:

@@ -7,7 +7,7 @@ from __future__ import annotations
 import io
 import json
 from collections.abc import Callable, Iterator
-from contextlib import AbstractContextManager
+from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -18,6 +18,7 @@ from playwright.sync_api import Browser, ElementHandle, Error, JSHandle, Page, R
 
 from tests.app.conftest import zipped
 from tests.app.test_drafts import record
+from tests.browser.test_live import streaming
 from tests.browser.test_pages import SHORT
 from tests.browser.window import LOADED, SETTLED, Window, hearing, signed_in, visit
 from tests.running import Service, process
@@ -124,13 +125,14 @@ def filled(zoo: Service) -> dict[str, str]:
         "statistics": "/statistics?parameter=tau", "limits": "/limits", "regressions": "/regressions",
         "regression": f"/regressions/{regression}", "tokens": "/tokens", "audit": "/audit", "webhooks": "/webhooks",
         "retention": "/retention", "not-found": "/fits/none", "sign-in": "/sign-in",
+        "live": "/live",
     }  # fmt: skip
 
 
 PAGES = (
     "actuators", "actuator", "upload", "draft", "draft-apart", "matrix", "jobs", "job", "workers", "fit", "second-fit",
     "use", "effects", "compare", "statistics", "limits", "regressions", "regression", "tokens", "audit", "webhooks",
-    "retention", "not-found", "sign-in",
+    "retention", "not-found", "sign-in", "live",
 )  # fmt: skip
 
 
@@ -153,7 +155,7 @@ def test_random_clicks_and_forms_are_answered(name, cage, zoo, filled, tmp_path,
     seen, random = Seen(), np.random.default_rng([SEED, PAGES.index(name)])
     page, address = cage.page, zoo.address + filled[name]
     page.set_default_timeout(LOADED)
-    with seen.listening(page):
+    with seen.listening(page), streaming(zoo, "rig") if name == "live" else nullcontext():
         visit(page, address)
         for _ in range(MANY if full else FEW):
             try:

@@ -154,13 +154,13 @@ def test_the_recommended_fit_begins_where_the_diagnosis_ended(servoident, matrix
     diagnosis, fitted = tmp_path / "D.json", tmp_path / "fit.json"
     diagnosis.write_text(json.dumps(found))
     assert "makes the recommended fit, with dead zone. It begins where the diagnosis ended" in " ".join(printed.split())
-    for start in (diagnosis, fitted, "last"):
+    for start in (diagnosis, fitted):
         done = servoident("fit", matrix, "--start", start, "--json", fitted)
         assert done.returncode == 0, done.stderr
         fit = json.loads(fitted.read_text())
         assert (fit["effects"], fit["method"]) == (["dead_zone"], "refinement")
         assert fit["error"]["fit"] <= (1 + 1e-6) * found["ladder"][-1]["error"]["fit"]
-        assert fit["settings"]["start"]["of"] == ("fit" if start == fitted else "diagnosis")
+        assert fit["settings"]["start"]["of"] == ("diagnosis" if start == diagnosis else "fit")
 
 
 def test_the_commands_that_are_printed_run_as_they_stand(servoident, matrix, tmp_path, monkeypatch):

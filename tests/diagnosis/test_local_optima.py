@@ -31,6 +31,7 @@ def models():
     return SimpleNamespace(
         floor=0.1, at_floor=lambda _refit: False, residual_above_noise=lambda _refit: True,
         simplicity=lambda name: (1, name), converged=lambda one: one, trial_error=lambda one: one.error,
+        is_shown=lambda _effect: False,
     )  # fmt: skip
 
 

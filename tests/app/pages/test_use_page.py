@@ -136,13 +136,13 @@ def test_the_simulation_of_one_fit_is_not_shown_by_another(service, fitted, matr
     assert page(service, other, simulation=job).status_code == 404
 
 
-def test_feedforward_is_offered_where_the_model_can_be_inverted(fit):
+def test_feedforward_is_that_of_a_shaking_table_where_the_model_cannot_be_inverted_sample_by_sample(fit):
     def offered(of):
-        return {choice.value for choice in hybrid_view(of, [], None, None, ControlView(None)).controllers}
+        return {choice.value: choice.text for choice in hybrid_view(of, [], None, None, ControlView(None)).controllers}
 
-    assert "feedforward" not in offered(fit)
-    assert offered(fit) <= offered(replace(fit, model=STRANO.name))
-    assert {"none", "kalman"} <= offered(fit)
+    assert offered(fit)["feedforward"] == "feedforward, of a shaking table"
+    assert offered(replace(fit, model=STRANO.name))["feedforward"] == "feedforward from the inverse of the model"
+    assert {"none", "kalman"} <= offered(fit).keys()
 
 
 def test_a_fit_of_a_bench_offers_no_effects_and_no_gain(fit):
