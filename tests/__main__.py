@@ -39,9 +39,9 @@ def install_system_packages() -> None:
 
 if __name__ == "__main__":
     install_system_packages()
-    # A worker a core, and two more while others wait; the tests of a file share what they set up; files in the order
+    # A worker a core, and one more while others wait; the tests of a file share what they set up; files in the order
     # of tests/conftest.py.
-    everything = ["-n", str((os.cpu_count() or 1) + 2), "--dist", "loadfile", "--no-loadscope-reorder"]
+    everything = ["-n", str((os.cpu_count() or 1) + 1), "--dist", "loadfile", "--no-loadscope-reorder"]
     chosen = sys.argv[1:]
     whole = [*everything, *chosen] if chosen in ([], ["--full"]) else chosen
     if whole is not chosen:  # every core has its worker: threads of linear algebra would only wait for one another

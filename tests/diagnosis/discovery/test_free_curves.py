@@ -43,8 +43,8 @@ def test_what_no_form_reaches_is_drawn_as_a_free_curve():
     assert "<mo>(</mo><mi>P</mi><mo>)</mo>" in last.formula
     assert "no formula is known" in last.meaning
     assert last.nats > last.bar
-    # The runs begin at rest, and what bends the gain moves their means: these count in the fit, and eq. (17), which does
-    # not see them, ends a little above its least.
+    # The runs begin at rest, and what bends the gain moves their means: these count in the fit, and eq. (17), which
+    # does not see them, ends a little above its least.
     assert last.error["verify"] < 1.25 * NOISE < found.baseline.error["verify"]
     curve = last.effect["curve"]
     assert (last.effect["place"], curve["of"]) == ("spool", "P")
