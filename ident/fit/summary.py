@@ -82,7 +82,7 @@ def summarise(
     strengths |= {axis.name for axis in space.axes if axis.lower == 0}  # what may be nothing has no relative error
     strengths |= {*preset.crossing} & {*space.names}
     relative = {name: found.relative(_value(objective, name)) for name in space.names if name not in strengths}
-    deviation = {name: values[name] * error for name, error in relative.items()}
+    deviation = {name: abs(values[name]) * error for name, error in relative.items()}
     deviation |= {name: found.deviation(_value(objective, name)) for name in space.names if name in strengths}
     ranges = {name: upper - lower for name, (lower, upper) in space.bounds(values).items()}
     weak = [name for name in relative if relative[name] > DETERMINED]
@@ -256,7 +256,7 @@ def _determined(
             and name not in (*shared, *bounded)
             and not (space.convention and name in objective.preset.data.share_force)
         ):
-            yield Combination(label[name][0], values[name], label[name][1], values[name] * error)
+            yield Combination(label[name][0], values[name], label[name][1], abs(values[name]) * error)
     for combined in objective.preset.combinations:
         names = combined.equation.names - values.keys()
         known = {name: np.array(space.typical[name]) for name in names}
