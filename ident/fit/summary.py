@@ -269,7 +269,7 @@ def _determined(
         if error <= (DETERMINED if open_ else COMBINED):  # all that is known of what a convention holds
             value = float(quantity(found.point[None])[0])
             unit = objective.preset.display.recorded.shown(combined.unit)
-            yield Combination(combined.text.replace("**", "^"), value, unit, value * error)
+            yield Combination(combined.text.replace("**", "^"), value, unit, abs(value) * error)
     yield from slow_lag(objective, found)
 
 
