@@ -38,8 +38,8 @@ def moved_to(fit: FitResult, at: str | None, over: str, sets: Path | None) -> Mo
         if sets is not None:
             raise Unusable("bad-option", "sets without a condition", "--sets", "write --at '60 degC' with it")
         return Moved(fit, ())
-    condition_value(over, at)
+    value = condition_value(over, at)
     if sets is None:
         remedy = "write the sets by `servoident query --json FILE`, and give --sets FILE"
         raise Unusable("bad-option", "a condition without sets", "--at", remedy)
-    return AtCondition.stated(over, at, sets_in(sets, fit.model), sets.name).move(fit)
+    return AtCondition(over, value, tuple(sets_in(sets, fit.model)), sets.name).move(fit)

@@ -12,7 +12,7 @@ from app.cli.at_option import At, Over, Sets, moved_to
 from app.cli.before_option import CaseBefore, EarlierFit, EarlierGain, earlier_case
 from app.cli.figure_files import write_figures
 from app.cli.given import read_fit
-from app.cli.hybrid_parts import refuse_for_several, show_parts
+from app.cli.hybrid_parts import refuse_options, show_parts
 from app.cli.output import STANDARD_OUTPUT, check_target, write_bytes, write_json
 from app.cli.progress import shown
 from app.cli.rig_option import RigFile, rig_in
@@ -87,7 +87,7 @@ def hybrid(
     result = moved.fit
     of = of if ground is None else of.with_ground(ground)
     if isinstance(of, CoupledCase):
-        refuse_for_several(
+        refuse_options(
             at=at, isolator=isolator, spread=spread, before=before, before_gain=before_gain, before_case=before_case
         )
         of = of if rig is None else of.changed(rig=rig_in(rig))

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -19,18 +18,11 @@ if TYPE_CHECKING:
     from ident.hybrid.coupled_rig import CoupledResult
 
 
-@dataclass(frozen=True)
-class Parts:
-    """What was simulated, and the same without a controller where that is drawn."""
+def refuse_options(**options: object) -> None:
+    """Raise Unusable for an option, named as its parameter is, that is there for one actuator only."""
+    from ident.hybrid.coupled_case import refuse_for_several
 
-    parts: CoupledResult
-    alone: CoupledResult | None = None
-
-
-def refuse_for_several(**options: object) -> None:
-    """Raise Unusable for an option that is there for one actuator only."""
-    if given := [name.replace("_", "-") for name, value in options.items() if value]:
-        raise Unusable("bad-option", "a case of several parts has none", f"--{given[0]}", "leave it out")
+    refuse_for_several({f"--{name.replace('_', '-')}": value for name, value in options.items()})
 
 
 def show_parts(
@@ -40,44 +32,33 @@ def show_parts(
     """Simulate a case of several actuators, write and show what came of it; whether it is stable."""
     from app.cli.tables import show
 
-    found = simulate_parts(fit, of, folder, controller, effects, mapped, drawn=out is not None)
+    found, alone = simulate_parts(fit, of, folder, controller, effects, mapped, drawn=out is not None)
     if json is not None:
-        write_json(found.parts.to_json(), json)
+        write_json(found.to_json(), json)
     if json != STANDARD_OUTPUT:
-        show(found.parts.listings())
+        show(found.listings())
     if out is not None:
-        draw_parts(found, out)
-    return found.parts.stable
+        draw_parts(found, alone, out)
+    return found.stable
 
 
 def simulate_parts(
     fit: FitResult, of: CoupledCase, folder: Path, controller: str, effects: Mapping[str, float], mapped: bool,
     drawn: bool,
-) -> Parts:  # fmt: skip
-    """Simulate a case whose parts name files in its `folder`; others have the fit and the controller that are given."""
-    from dataclasses import replace
+) -> tuple[CoupledResult, CoupledResult | None]:  # fmt: skip
+    """Simulate a case whose parts name files in its `folder`; others have the fit and the controller that are given.
 
+    The same without a controller is simulated where it is `drawn` beside it.
+    """
     from ident.hybrid.acting import NAMED, controller_called
-    from ident.hybrid.controller import no_controller
-    from ident.hybrid.coupled_rig import machines_of, simulate_coupled
-    from ident.hybrid.coupled_stability import delay_map, with_poles
+    from ident.hybrid.coupled_rig import simulate_compared
 
     fits = [read_fit(folder / part.fit) if part.fit else fit for part in of.parts]
     named = [_inside(part.controller, folder, NAMED) or controller for part in of.parts]
     acting = [controller_called(name, one, part.case) for name, one, part in zip(named, fits, of.parts, strict=True)]
-    machines = machines_of(fits, of, effects)
-    if mapped:
-        with_poles(machines, acting)
+    without = drawn and set(named) != {"none"}
     with shown() as report:
-        found = simulate_coupled(fits, of, acting, effects, report)
-        alone = None
-        if drawn and set(named) != {"none"}:
-            nothing = [no_controller(of.sample_rate)] * len(fits)
-            alone = simulate_coupled(fits, of, nothing, effects, report)
-        if mapped:
-            mapping = delay_map(machines, of, acting, report=report)
-            found = replace(found, delay_map=mapping)
-    return Parts(found, alone)
+        return simulate_compared(fits, of, acting, effects, without=without, mapped=mapped, report=report)
 
 
 def _inside(given: object, folder: Path, names: Mapping[str, object]) -> str:
@@ -87,15 +68,15 @@ def _inside(given: object, folder: Path, names: Mapping[str, object]) -> str:
     return str(folder / given) if given and given not in names else given
 
 
-def draw_parts(found: Parts, out: Path) -> None:
+def draw_parts(found: CoupledResult, alone: CoupledResult | None, out: Path) -> None:
     """The figures of each part in a folder of its name, and those of the whole."""
     from ident.figures.subjects import Coupled, Simulated
 
-    for name, one in found.parts.parts.items():
-        runs = {one.controller: one} | ({"no controller": found.alone.parts[name]} if found.alone else {})
+    for name, one in found.parts.items():
+        runs = {one.controller: one} | ({"no controller": alone.parts[name]} if alone else {})
         write_figures(Simulated(runs, one.case), out / _folder(name))
-    if found.parts.delay_map is not None:
-        write_figures(Coupled(found.parts.delay_map, found.parts.case.name), out)
+    if found.delay_map is not None:
+        write_figures(Coupled(found.delay_map, found.case.name), out)
 
 
 def _folder(name: str) -> str:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable, Mapping
-from dataclasses import asdict, replace
+from dataclasses import asdict
 from typing import Any
 
 from app.context import Context
@@ -12,12 +12,11 @@ from app.fits import service as fits
 from app.hybrid.acting import acting
 from app.hybrid.asked import AskedCase
 from app.hybrid.keeping import kept_controller, kept_text
-from ident.errors import Unusable
 from ident.fit.result import FitResult
-from ident.hybrid.controller import Controller, name_of, no_controller
-from ident.hybrid.coupled_case import CoupledCase
-from ident.hybrid.coupled_rig import CoupledResult, machines_of, simulate_coupled
-from ident.hybrid.coupled_stability import delay_map, with_poles
+from ident.hybrid.controller import Controller, name_of
+from ident.hybrid.coupled_case import CoupledCase, refuse_for_several
+from ident.hybrid.coupled_rig import CoupledResult, machines_of, simulate_compared
+from ident.hybrid.coupled_stability import with_poles
 from ident.progress import Report
 from schemas.hybrid import HybridRequest
 
@@ -27,9 +26,9 @@ def settings(
     effects: dict[str, float],
 ) -> dict[str, Any]:  # fmt: skip
     """What the job of a request keeps. Raises Unusable where it cannot be run, and Failure 404."""
-    alone = {"at": request.at, "spread": request.spread, "before": request.before, "isolator": request.isolator}
-    if where := next((name for name, one in alone.items() if one is not None), ""):
-        raise Unusable("bad-option", "a case of several parts has none", where, "leave it out")
+    refuse_for_several(
+        {"at": request.at, "spread": request.spread, "before": request.before, "isolator": request.isolator}
+    )
     parts, chosen, own = [], [], []
     for part in case.parts:
         of = FitResult.from_json(fits.find(context, part.fit).result) if part.fit else fit
@@ -64,11 +63,7 @@ def simulated(
     chosen: list[Controller] = [
         acting(one, of, part.case) for one, of, part in zip(given, own, case.parts, strict=True)
     ]
-    main = simulate_coupled(own, case, chosen, asked["effects"], report)
-    alone = None
-    if any(one != "none" for one in given):
-        nothing = [no_controller(case.sample_rate)] * len(own)
-        alone = simulate_coupled(own, case, nothing, asked["effects"], report)
-    if asked["map"]:
-        main = replace(main, delay_map=delay_map(machines_of(own, case, asked["effects"]), case, chosen, report=report))
-    return main, alone
+    controlled = any(one != "none" for one in given)
+    return simulate_compared(
+        own, case, chosen, asked["effects"], without=controlled, mapped=asked["map"], report=report
+    )

@@ -19,6 +19,7 @@ from app.hybrid.spread import spread_of
 from app.jobs import service as jobs
 from app.paging import cursor, keys_of
 from app.tables import HybridRow
+from ident.design.at_condition import Moved
 from ident.errors import Unusable
 from ident.fit.result import FitResult
 from ident.hybrid.acting import FEEDFORWARD, linear
@@ -64,12 +65,19 @@ def submit(context: Context, request: HybridRequest, job: str) -> JobView:
             "controller": given if isinstance(given, str) else kept_text(context, json.dumps(given)),
             "inline": not isinstance(given, str), "controller_id": stored,
             "spread": None if spread is None else written(spread),
-            "moved": [kept_text(context, json.dumps(fit.to_json())), *moved.text] if moved.text else None,
+            "moved": _moved(context, moved),
             "isolator": None if isolator is None else written(isolator),
             "before": _before(context, stated(request.before), fit, case),
         },
     }  # fmt: skip
     return jobs.record(context, job, row.matrix, settings, request.fit, KIND)
+
+
+def _moved(context: Context, moved: Moved) -> dict[str, Any] | None:
+    """The fit at another condition, under the name of a blob, and how it came there; None where it was not moved."""
+    if not moved.text:
+        return None
+    return {"fit": kept_text(context, json.dumps(moved.fit.to_json())), "notes": moved.text}
 
 
 def _before(context: Context, given: dict[str, Any] | None, fit: FitResult, case: Case) -> dict[str, Any] | None:

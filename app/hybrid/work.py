@@ -48,15 +48,15 @@ class HybridWork(InOnePiece):
         assert fit is not None
         if isinstance(case, CoupledCase):
             return self._parts(asked, fit, case)
-        moved = asked.get("moved") or []
-        fit = self._fit(moved[0]) if moved else fit
+        moved = asked.get("moved")
+        fit = self._fit(moved["fit"]) if moved else fit
         given: Any = json.loads(self._blob(asked["controller"])) if asked["inline"] else asked["controller"]
         effects, isolator = asked["effects"], read(Specimen, asked["isolator"]) if asked.get("isolator") else None
         known, case = case, case if isolator is None else case.with_isolator(isolator)
         chosen = acting(given, fit, known, wanted_in(fit, case, effects) if given == FEEDFORWARD else None)
         before = earlier_case(asked.get("before"), fit, case, self._fit)
         main = simulate_hybrid(fit, case, chosen, effects, report, before)
-        main = replace(main, notes=(*moved[1:], *main.notes))
+        main = replace(main, notes=(*moved["notes"], *main.notes)) if moved else main
         alone = None if given == "none" else simulate_hybrid(fit, case, None, effects, report)
         mapped = None
         if asked["map"] and isinstance(chosen, SampledController):

@@ -114,6 +114,11 @@ class Channel:
             first = max(number, oldest)
             return first, list(islice(self._bins, first - oldest, None))
 
+    def said(self) -> tuple[list[Alarm], list[str], list[Mark]]:
+        """The alarms so far, the kinds of those that hold now, and the marks, as they are at one moment."""
+        with self._lock:
+            return list(self.alarms), sorted(self.on), list(self.marks)
+
     def mark(self, text: str) -> Mark:
         """A remark at the last sample."""
         with self._lock:

@@ -3,9 +3,7 @@
 from __future__ import annotations
 
 import io
-import json
 import math
-from collections.abc import Iterable
 from typing import Any
 
 import numpy as np
@@ -97,21 +95,15 @@ def event(channel: Channel, after: int) -> tuple[int, LiveEvent]:
 
 def view(channel: Channel) -> LiveView:
     """A stream as it is sent."""
-    kept = channel.recording
+    kept, (alarms, on, marks) = channel.recording, channel.said()
     return LiveView(
         name=channel.name, sample_rate=channel.sample_rate, hold=channel.hold, seconds=channel.seconds,
-        ended=channel.ended, on=sorted(channel.on),
-        alarms=[StreamAlarm(**written(one)) for one in _steady(channel.alarms)],
-        marks=[RemarkView(at=one.at, text=one.text) for one in _steady(channel.marks)],
+        ended=channel.ended, on=on, alarms=[StreamAlarm(**written(one)) for one in alarms],
+        marks=[RemarkView(at=one.at, text=one.text) for one in marks],
         recording=None if kept is None else RecordingView(
             on=kept.on and not channel.ended, begins=kept.begins, samples=kept.samples, full=kept.full
         ),
     )  # fmt: skip
-
-
-def _steady(said: Iterable[Any]) -> list[Any]:
-    """A copy of what another thread adds to."""
-    return list(said)
 
 
 def _known(value: float) -> float | None:
@@ -127,7 +119,8 @@ def _samples(recording: Recording) -> bytes:
 def _description(channel: Channel, recording: Recording, asked: RunRequest) -> str:
     """matrix.yaml of the one run; marks within the recording stand in the notes, from its beginning on."""
     end = recording.begins + recording.samples / channel.sample_rate
-    within = [one for one in channel.marks if recording.begins <= one.at <= end]
+    _alarms, _on, marks = channel.said()
+    within = [one for one in marks if recording.begins <= one.at <= end]
     notes = "; ".join(f"{one.at - recording.begins:.3f} s {one.text}" for one in within)[:_NOTES]
     run = {
         "id": asked.run, "file": f"runs/{asked.run}.npz", "sample_rate": f"{channel.sample_rate!r} Hz",
@@ -136,5 +129,5 @@ def _description(channel: Channel, recording: Recording, asked: RunRequest) -> s
     }  # fmt: skip
     stated = {"serial": asked.serial, "batch": asked.batch, "notes": notes}
     actuator = {name: text for name, text in stated.items() if text}
-    plain: str = yaml.safe_dump(json.loads(json.dumps({"actuator": actuator, "runs": [run]})), allow_unicode=True)
+    plain: str = yaml.safe_dump({"actuator": actuator, "runs": [run]}, allow_unicode=True)
     return plain

@@ -15,8 +15,7 @@ from app.statistics import repository
 from app.statistics.repository import Chosen, Point
 from app.statistics.service import MOST, checked, limits_view
 from app.tables import LimitRow
-from ident.design.at_condition import condition_value
-from ident.rig.conditions import CONDITIONS
+from ident.design.at_condition import condition_called, condition_value
 from ident.statistics import ConditionLaw, Level
 from ident.statistics.dependence import Dependence
 from schemas.statistics import AtView, ConditionLawView, ConditionPointView, DependenceView, LevelView
@@ -47,8 +46,8 @@ def over_condition(
     Raises Failure where there are no sets, and Unusable for what is asked.
     """
     (over, at), chosen = asked, Chosen(batch, serial, model)
+    condition = condition_called(over)
     value = None if at is None else condition_value(over, at)
-    condition_value(over, f"1 {CONDITIONS[over].unit}" if over in CONDITIONS else "")
     with context.sessions() as session:
         found = known(session, parameter, over, chosen)
         first = found.points[0][0] if found.points else None
@@ -57,7 +56,7 @@ def over_condition(
     ends = (limit.lower, limit.upper) if limit else (None, None)
     view = DependenceView(
         parameter=parameter, unit=first.unit if first else "1", model=first.model if first else chosen.model or "",
-        over=over, over_unit=CONDITIONS[over].unit, n=len(found.points), without=found.without,
+        over=over, over_unit=condition.unit, n=len(found.points), without=found.without,
         left_out=found.left_out, points=[_point(*one) for one in found.points], laws=[_law(one) for one in own.laws],
         law=own.law.name if own.law else None, holds=own.law is not None and own.law.holds, text=str(own.text),
         band=_band(own), limits=limits_view(values, *ends, 0),

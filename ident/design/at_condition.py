@@ -90,12 +90,17 @@ class AtCondition:
                 raise Unusable("beyond-sets", str(why).rstrip("."), "at", "add sets there, or stay between them")
 
 
-def condition_value(over: str, value: str, where: str = "at") -> float:
-    """A condition with its unit, SI. Raises Unusable for a name that there is not, and for another unit."""
+def condition_called(over: str) -> Condition:
+    """The condition of that name. Raises Unusable where there is none."""
     if over not in CONDITIONS:
         remedy = did_you_mean(over, CONDITIONS, f"give one of {', '.join(CONDITIONS)}")
         raise Unusable("unknown-condition", f"no condition {over[:40]!r}", "over", remedy)
-    return quantity(value, CONDITIONS[over].unit, where)
+    return CONDITIONS[over]
+
+
+def condition_value(over: str, value: str, where: str = "at") -> float:
+    """A condition with its unit, SI. Raises Unusable for a name that there is not, and for another unit."""
+    return quantity(value, condition_called(over).unit, where)
 
 
 def _moved(estimate: Estimate, change: Change) -> Estimate:

@@ -37,12 +37,15 @@ def contradicted_zeros(here: Optimal, runs: Sequence[Run]) -> tuple[str, ...]:
 
     It is left as an offset that is three standard errors from what rest tells, or by first states that stand for any.
     """
-    told, found = offsets(here), []
+    zeros: dict[str, tuple[float, float]] = {}
     for name in sorted({run.output for run in runs}):
         numbers = [i for i, run in enumerate(runs) if run.output == name and run.zeroed.get(name) is None]
         rest = rest_of(runs[i].zero_at_rest for i in numbers)
-        if rest is None or not is_large([here.runs[i] for i in numbers]):
-            continue
-        if name not in told or abs(told[name].value - rest[0]) > RECOGNISED * rest[1]:
-            found.append(name)
-    return tuple(found)
+        if rest is not None and is_large([here.runs[i] for i in numbers]):
+            zeros[name] = rest
+    fitted = offsets(here) if zeros else {}
+    return tuple(
+        name
+        for name, (zero, error) in zeros.items()
+        if name not in fitted or abs(fitted[name].value - zero) > RECOGNISED * error
+    )

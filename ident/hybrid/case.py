@@ -21,7 +21,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from functools import partial
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 import scipy.linalg
@@ -252,24 +252,26 @@ def modal_damping(mass: Array, stiffness: Array, ratio: float) -> Array:
 NAMES = "qian, benchmark2020 (or benchmark2020-1 to -4)"
 """The cases by name, in words."""
 
+Described = TypeVar("Described")
+"""What a description is read as."""
+
 # Reading ----------------------------------------------------------------------------------------------------------
 
 
 def read_case(given: str | Path) -> Case:
     """A case by its name (see :data:`BUILT_IN`) or from a YAML file. Raises Unusable with the field at fault."""
+    return called_or_read(given, case_of)
+
+
+def called_or_read(given: str | Path, of: Callable[[Any, Path, str], Described]) -> Case | Described:
+    """The built-in case of that name, or what a function makes `of` the description in a file. Raises Unusable."""
     if str(given) in BUILT_IN:
         return BUILT_IN[str(given)]()
-    path = case_in(given)
-    return case_of(yaml_in(path), path.parent, path.stem)
-
-
-def case_in(given: str | Path) -> Path:
-    """The file of a case that is not built in. Raises Unusable where there is none."""
     path = Path(given)
     if not path.is_file():
         remedy = did_you_mean(str(given), BUILT_IN, f"give {NAMES} or a YAML file")
         raise Unusable("no-such-case", f"no case {shown(given)!r}", "case", remedy)
-    return path
+    return of(yaml_in(path), path.parent, path.stem)
 
 
 def yaml_in(path: Path) -> Any:

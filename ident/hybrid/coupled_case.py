@@ -155,6 +155,12 @@ System = Case | CoupledCase
 """What a hybrid simulation is of: one actuator or several."""
 
 
+def refuse_for_several(options: Mapping[str, object]) -> None:
+    """Raise Unusable where an option is given, by the name that the user knows, that is there for one actuator only."""
+    if where := next((name for name, value in options.items() if value is not None), ""):
+        raise Unusable("bad-option", "a case of several parts has none", where, "leave it out")
+
+
 def case_of_part(of: System, name: str | None) -> Case:
     """The case of one actuator: of the part of that name, where there are several. Raises Unusable."""
     if isinstance(of, CoupledCase):

@@ -22,7 +22,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ident.errors import Unusable
-from ident.hybrid.case import BUILT_IN, Case, case_in, case_of, matrix, yaml_in
+from ident.hybrid.case import Case, called_or_read, case_of, matrix
 from ident.hybrid.coupled_case import QUANTITIES, CoupledCase, Part, System, in_coordinates_of, transformed
 from ident.readers.fields import Fields
 from ident.run import Specimen
@@ -37,10 +37,7 @@ _OUTSIDE = 1e-9
 
 def read_system(given: str | Path) -> System:
     """A case by its name or from a YAML file, of one actuator or of several. Raises Unusable."""
-    if str(given) in BUILT_IN:
-        return BUILT_IN[str(given)]()
-    path = case_in(given)
-    return system_of(yaml_in(path), path.parent, path.stem)
+    return called_or_read(given, system_of)
 
 
 def system_of(data: Any, base: Path | None = Path(), name: str = "case") -> System:

@@ -12,9 +12,9 @@ from numpy.typing import NDArray
 
 from ident.errors import Unusable
 from ident.fit.result import FitResult
-from ident.hybrid.controller import Controller, SampledController, name_of
+from ident.hybrid.controller import Controller, SampledController, name_of, no_controller
 from ident.hybrid.coupled_case import CoupledCase
-from ident.hybrid.coupled_stability import DelayMap, coupled_critical_delay, coupled_poles
+from ident.hybrid.coupled_stability import DelayMap, coupled_critical_delay, coupled_poles, delay_map, with_poles
 from ident.hybrid.machine import Machine, machine
 from ident.hybrid.rig import HELD, RUNAWAY, HybridResult, notes_of
 from ident.hybrid.rig_assembly import rig_of, run
@@ -129,6 +129,25 @@ def simulate_coupled(
         for fit, (name, one) in zip(fits, found.parts.items(), strict=True)
     }
     return replace(found, parts=parts)
+
+
+def simulate_compared(
+    fits: Sequence[FitResult], case: CoupledCase, controllers: Sequence[Controller],
+    effects: Mapping[str, float] | None = None, *, without: bool, mapped: bool, report: Report = silent,
+) -> tuple[CoupledResult, CoupledResult | None]:  # fmt: skip
+    """The simulation, `mapped` with its map over delays; and the same `without` controllers, None if not wanted.
+
+    Raises Unusable before anything is simulated, also where there can be no map.
+    """
+    machines = machines_of(fits, case, effects)
+    if mapped:
+        with_poles(machines, controllers)
+    found = simulate_coupled(fits, case, controllers, effects, report)
+    nothing = [no_controller(case.sample_rate)] * len(fits)
+    alone = simulate_coupled(fits, case, nothing, effects, report) if without else None
+    if mapped:
+        found = replace(found, delay_map=delay_map(machines, case, controllers, report=report))
+    return found, alone
 
 
 def machines_of(

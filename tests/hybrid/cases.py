@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from ident.fit.result import Estimate, FitResult
-from ident.hybrid.case import Case, qian
+from ident.hybrid.case import Case, case_of, qian
 from ident.hybrid.ground import Ground
 from ident.presets import preset
 
@@ -35,6 +35,16 @@ def el_centro(case: Case, seconds: float | None = None) -> Case:
         pytest.skip("the measured record ../shared/data/ground_motion is not beside the project")
     shaken = case.with_ground(EL_CENTRO)
     return replace(shaken, ground=replace(shaken.ground, duration=seconds))
+
+
+def of_fifth_order(seconds: float) -> Case:
+    """A large rig for the fifth-order actuator: one storey of 20 t under a sine, so long."""
+    return case_of({
+        "structure": {"mass": "20 t", "stiffness": "0.8 MN/m", "damping": {"ratio": "20 %"}},
+        "physical": {"mass": "500 kg", "stiffness": "10 %"},
+        "gain": 100, "piston_area": "9050 mm^2", "supply_pressure": "210 bar",
+        "ground": {"kind": "sine", "frequency": "0.8 Hz", "amplitude": "0.1 g", "duration": f"{seconds} s"},
+    })  # fmt: skip
 
 
 def of_qian(seconds: float = 3.0, **changed: object) -> Case:

@@ -10,7 +10,7 @@ import pytest
 from ident.effects import EFFECTS
 from ident.errors import Cancelled, Unusable
 from ident.hybrid.acting import controller_called
-from ident.hybrid.case import case_of, qian
+from ident.hybrid.case import qian
 from ident.hybrid.compensation import Compensation
 from ident.hybrid.controller import SampledController
 from ident.hybrid.ground import Ground
@@ -24,7 +24,7 @@ from ident.hybrid.stability import critical_delay
 from ident.presets import preset
 from ident.run import Run, Specimen
 from ident.simulation.simulate import responses
-from tests.hybrid.cases import el_centro, fitted, noise, of_qian
+from tests.hybrid.cases import el_centro, fitted, noise, of_fifth_order, of_qian
 from tests.reference import hybrid_reference as reference
 
 FIT = fitted()
@@ -252,12 +252,7 @@ def test_what_does_not_go_together_is_refused():
 
 def test_the_fifth_order_actuator_follows_with_its_feedforward():
     """`strano` in the rig: the feedforward for the reference solution leaves a twentieth; no poles judge it."""
-    case = case_of({
-        "structure": {"mass": "20 t", "stiffness": "0.8 MN/m", "damping": {"ratio": "20 %"}},
-        "physical": {"mass": "500 kg", "stiffness": "10 %"},
-        "gain": 100, "piston_area": "9050 mm^2", "supply_pressure": "210 bar",
-        "ground": {"kind": "sine", "frequency": "0.8 Hz", "amplitude": "0.1 g", "duration": "4 s"},
-    })  # fmt: skip
+    case = of_fifth_order(4.0)
     fit = fitted("strano")
     alone, helped = (simulate_hybrid(fit, case, controller_called(name, fit, case)) for name in ("none", "feedforward"))
     assert helped.stable

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 import scipy.integrate
 
-from ident.hybrid.case import benchmark2020, case_of
+from ident.hybrid.case import benchmark2020
 from ident.hybrid.followed import followed_in
 from ident.hybrid.linear_plant import linear_plant
 from ident.hybrid.loop_shaping import design
@@ -19,7 +19,7 @@ from ident.hybrid.share_map import share_map
 from ident.hybrid.specimen_effects import reference_of
 from ident.hybrid.substructure import reference
 from ident.run import Specimen
-from tests.hybrid.cases import fitted, noise, of_qian
+from tests.hybrid.cases import fitted, noise, of_fifth_order, of_qian
 
 FIT = fitted()
 YIELD, WAY = 8.75, 5e-4
@@ -95,12 +95,7 @@ def test_an_effect_that_does_almost_nothing_leaves_the_exact_reference():
 
 def test_an_isolator_that_no_controller_knows_is_paid_for():
     """1 MN/m on a rig of fifth order: the feedforward leaves more of it, and the whole structure has the isolator."""
-    case = case_of({
-        "structure": {"mass": "20 t", "stiffness": "0.8 MN/m", "damping": {"ratio": "20 %"}},
-        "physical": {"mass": "500 kg", "stiffness": "10 %"},
-        "gain": 100, "piston_area": "9050 mm^2", "supply_pressure": "210 bar",
-        "ground": {"kind": "sine", "frequency": "0.8 Hz", "amplitude": "0.1 g", "duration": "2 s"},
-    })  # fmt: skip
+    case = of_fifth_order(2.0)
     isolator, fit = Specimen(0.0, 1e6, 0.0), fitted("strano")
     known, unknown = followed_in(fit, case), followed_in(fit, case, isolator=isolator)
     assert unknown.both_rms > 3 * known.both_rms
