@@ -253,7 +253,7 @@ class Run(Shown):
     def zero_at_rest(self) -> tuple[float, float] | None:
         """What the transducer of the output reads where the machine is at zero, and its standard error; None: unknown.
 
-        Nothing of it is told where its zero was set for this run alone.
+        It is not known where the zero was set for this run alone.
         """
         if self.zeroed.get(self.output):
             return None

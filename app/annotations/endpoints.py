@@ -16,7 +16,7 @@ router = APIRouter(prefix="/fits", tags=["fits"], responses=COMMON)
 
 @router.get("/{fit}/annotation", dependencies=[READERS])
 def get_annotation(here: Here, fit: str) -> AnnotationView:
-    """The name, the tags and the note that people wrote on a fit; empty where nobody did."""
+    """The name, the tags and the note that people wrote on a fit; empty if there are none."""
     return service.get(here, fit)
 
 

@@ -1,4 +1,4 @@
-"""Levels of the signals of a large matrix, stored as a blob beside its files: a plot reads them, and not the files."""
+"""Levels of the signals of a large matrix, stored as a blob: a plot reads the levels, not the files."""
 
 from __future__ import annotations
 

@@ -73,7 +73,7 @@ class Stream:
         return [rows.astype(_ROW, copy=False).tobytes(), *told]
 
     def _block(self, watch: Watch, r: Array, y: Array) -> tuple[Array, list[Alarm]]:
-        """What the filter makes of a block, told to who watches the stream."""
+        """The estimates of the filter for a block, published to the viewers of the stream."""
         rows, alarms = watch.block(r, y)
         if self.channel is not None:
             self.channel.publish(np.column_stack([r, y]), rows, alarms)

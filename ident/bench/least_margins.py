@@ -23,8 +23,8 @@ _SLOPE = 0.01  # of the delay, for the slope of a margin
 def least_margins(solution: Solution, loop: PositionControl, delay: DelayCheck | None) -> dict[str, Found]:
     """`gain_margin` (dB) and `phase_margin` (rad) over the amplitudes, each with its standard deviation.
 
-    A delay that the records ask for is in the loop, with T and B as they are beside it. A margin that no gain ends is
-    left out, and both where the actuator stands.
+    A delay that the records ask for is in the loop, with the T and B of the fit with a delay. A margin that no gain
+    ends is left out, and both where the actuator stands.
     """
     model, known = solution.model, delay if delay is not None and delay.doubt else None
     amplitudes = loop.amplitudes or tuple(multiple * model.dead_space for multiple in MULTIPLES)
@@ -61,7 +61,7 @@ def least_margins(solution: Solution, loop: PositionControl, delay: DelayCheck |
 
 
 def _beside(known: DelayCheck, model: Model, values: Mapping[str, float]) -> dict[str, float]:
-    """T and B as they are beside the delay, moved as the values are from those of the model."""
+    """T and B of the fit with a delay, moved as the values are from those of the model."""
     return {"T": known.T + values["T"] - model.T, "B": known.B + values["B"] - model.B}
 
 

@@ -74,7 +74,7 @@ def exported(
 
     The current of a bench's actuator is counted in rated currents; without a stated supply pressure none limits it.
 
-    Raises Unusable for one that something beside a held command drives, conditions that are not above 0, and values
+    Raises Unusable for one that is driven by more than a held command, conditions that are not above 0, and values
     that are missing.
     """
     preset = preset_with(fit.model, fit.effects, tuple(fit.settings.get("custom", ())))

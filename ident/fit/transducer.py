@@ -195,7 +195,7 @@ def _offset(here: Optimal, own: frozenset[int]) -> Offset:
 
 
 def is_large(runs: Sequence[NormalMatrices]) -> bool:
-    """Whether the means are the larger part of what is left of runs."""
+    """Whether the means are the larger part of the residuals of runs."""
     error, with_mean = over_runs([[run.error, np.hypot(run.error, run.offset)] for run in runs], runs)
     return bool(with_mean > MEAN_COUNTS * error)
 

@@ -1,6 +1,7 @@
 """JSON: a list of records, a record a line, an object of columns, or an object of tables, each a list of rows.
 
-Beside its columns an object may state ``sample_rate`` (Hz) or ``dt`` (s), and ``units`` by the names of columns.
+In addition to its columns an object may state ``sample_rate`` (Hz) or ``dt`` (s), and ``units`` by the names of the
+columns.
 """
 
 from __future__ import annotations

@@ -116,7 +116,7 @@ class CoupledCase:
 
     @property
     def coupling(self) -> Array:
-        """What joins the specimens, mass, damping and stiffness, (3, P, P): the specimen beside its diagonals."""
+        """The mass, damping and stiffness that join the specimens, (3, P, P): the entries off the diagonals."""
         return np.array([of - np.diag(np.diag(of)) for of in self.specimen])
 
     @property

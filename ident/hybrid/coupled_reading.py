@@ -75,7 +75,9 @@ def _alone(data: Mapping[str, Any], whole: Mapping[str, Any], entry: Fields, bas
     own = {key: entry.data.get(key, data.get(key)) for key in _OWN}
     physical = {key: entry.data[key] for key in ("storey", *QUANTITIES) if key in entry}
     if "specimen" in data and set(physical) - {"storey"}:
-        raise Unusable("bad-case", "the specimen is stated twice", entry.where, "state it here or under specimen")
+        raise Unusable(
+            "bad-case", "the specimen is stated twice", entry.where, "state it in the part, or under specimen"
+        )
     stated = {key: value for key, value in own.items() if value is not None}
     try:
         return case_of({**whole, **stated, "physical": physical}, base, name)

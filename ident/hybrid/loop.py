@@ -174,7 +174,7 @@ def _read(k: int, c: int, beside: float, rig: Any) -> None:
 
 @jit(nogil=True)
 def _advance_joined(k: int, rig: Any) -> None:
-    """As :func:`advance_machines`, step by step: each machine is told what the others make it feel."""
+    """As :func:`advance_machines`, step by step: each machine gets the force that the others exert on it."""
     steps, parts = rig.steps[0], len(rig.place)
     for step in range(k * steps, (k + 1) * steps):
         for g in range(len(rig.code)):

@@ -41,7 +41,7 @@ class Dialect:
     encoding: str = ""
 
     def over(self, other: Dialect) -> Dialect:
-        """What is stated here, completed by what is stated there."""
+        """This dialect, with the keys that it leaves open taken from another."""
         own = {one.name: getattr(self, one.name) for one in fields(self)}
         return replace(other, **{name: value for name, value in own.items() if value != getattr(FOUND, name)})
 

@@ -12,7 +12,7 @@ from ident.run import Run
 from ident.words.number import trimmed
 
 PREFIX = "condition."
-"""Before the name of a condition where it stands beside parameters: in queries and statistics."""
+"""Prefix of the name of a condition among the names of parameters, in queries and statistics."""
 
 
 @dataclass(frozen=True)

@@ -72,7 +72,7 @@ def write_rig_matrix(
 
 
 def _values(model: Preset, given: Mapping[str, float], composed: bool) -> dict[str, float]:
-    """Every parameter by the equations' names. Raises Unusable for one that nobody states."""
+    """Every parameter by the equations' names. Raises Unusable for one without a value."""
     missing = [p.name for p in model.parameters if composed and p.name not in given]
     if missing:
         raise Unusable(

@@ -39,7 +39,7 @@ _WRITTEN = {
 """The unit of an example where the SI unit would make an absurd one of a bench's number: 640 mm^2, not 640 m^2."""
 
 _USUAL = {"time": "ms", **_WRITTEN}
-"""A unit that benches use, beside the SI unit of a dimension."""
+"""A unit that benches use for a dimension, in addition to its SI unit."""
 
 PRINTED_Z0 = "m^3/(s*kPa) as printed"
 """The unit that Qian et al. 2014 print beside Z0, which is not its unit."""

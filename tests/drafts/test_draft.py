@@ -357,7 +357,7 @@ def test_a_current_beside_a_speed_is_no_command_unless_the_kind_is_of_a_bench():
 
 
 def test_a_first_column_without_a_name_that_increases_in_equal_steps_is_the_time():
-    """Its unit is asked; one that counts the rows is no clock, and nobody is asked for its unit."""
+    """Its unit is asked; one that counts the rows is no clock, and its unit is not asked."""
     timed = Draft([raw(table(",cmd_mm,pos_mm"))], Answers())
     assert [one.key for one in timed.missing] == ["serial", "unit time"]
     assert any("no name" in doubt for doubt in timed.doubts)

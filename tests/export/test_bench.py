@@ -1,4 +1,4 @@
-"""The actuator of a bench as C, MAT and FMU: beside the kernel, and beside an independent actuator of one flat file."""
+"""The actuator of a bench as C, MAT and FMU: against the kernel, and against an independent actuator in one file."""
 
 from __future__ import annotations
 
@@ -83,7 +83,7 @@ def test_the_code_of_a_control_unit_is_small_and_takes_no_memory(tmp_path):
     subprocess.run([compiler(), "-Os", "-std=c99", "-c", "unit.c"], cwd=tmp_path, check=True)
     tools = [shutil.which("size"), shutil.which("nm")]
     if not all(tools):
-        pytest.skip("no binutils here")
+        pytest.skip("no binutils on this machine")
     told, called = (
         subprocess.run([tool, *option, "unit.o"], cwd=tmp_path, check=True, capture_output=True, text=True).stdout
         for tool, option in zip(tools, ((), ("-u",)), strict=True)

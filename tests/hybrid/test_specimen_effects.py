@@ -51,7 +51,7 @@ def test_the_reference_with_hysteresis_is_that_of_scipy():
 
 
 def test_a_perfect_rig_gives_the_reference():
-    """Substructure and specimen apart, the one told the force of the other at once: at most 0.1 % off the reference."""
+    """Substructure and specimen apart, each given the force of the other at once: at most 0.1 % off the reference."""
     case = of_qian(3.0)
     ground = case.ground.samples(RATE)
     C, K = 3.5e3, 70e3

@@ -88,7 +88,7 @@ def test_a_split_that_cannot_be_is_refused(stated, where):
 
 
 def test_no_run_may_be_called_as_the_validation_data_of_another(tmp_path):
-    """They are told apart by their ids, whatever the case of the letters."""
+    """They differ by their ids, whatever the case of the letters."""
     run = {"file": "a.csv", "sample_rate": "1 Hz", "channels": {n: {"column": n, "unit": u} for n, u in UNITS.items()}}
     runs = [run | {"id": "a", "split": {"validation": [50, 90]}}, run | {"id": "A.Validation"}]
     (tmp_path / "matrix.yaml").write_text(json.dumps({"actuator": {"serial": "S"}, "runs": runs}))

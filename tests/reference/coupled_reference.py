@@ -12,7 +12,7 @@ chain of Qian et al. (2014), eqs. (1)-(7), and all rods move with the specimen t
 
 At sample j displacements and forces are read, u follows from the wanted d, and is held from sample j + delay on.
 Between samples the ground is a straight line, and the forces go on along the line through their last two readings.
-Every step is an exact one by a matrix exponential. Nothing here comes from the program's library.
+Every step is an exact one by a matrix exponential. Nothing in this file comes from the program's library.
 """
 
 from __future__ import annotations
@@ -47,7 +47,7 @@ class Loop(NamedTuple):
 
     @property
     def numeric(self) -> tuple[Array, Array, Array]:
-        """What is left to the computer."""
+        """The numerical part of the structure."""
         R = self.R
         return self.M - R.T @ self.Ms @ R, self.C - R.T @ self.Cs @ R, self.K - R.T @ self.Ks @ R
 
