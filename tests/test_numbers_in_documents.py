@@ -116,13 +116,15 @@ def of_diagnosis() -> Iterator[Tie]:
     yield D, "all effects gains of {} residuals", (of.surrogates,)
     yield D, "What gains {} of all that can be gained", ({0.5: "half"}[of.reaches],)
     yield D, "beyond a {} by its error", ({0.01: "hundredth"}[of.share],)
-    yield D, "blocks of {} correlation times", (word(of.correlation_times),)
+    yield D, "blocks of {} correlation times; those of a short record are shorter, but never below {}", (
+        word(of.correlation_times), word(of.least_correlation_times),
+    )  # fmt: skip
     yield D, "it is also a {} of the unexplained power", ({0.05: "twentieth"}[of.separation],)
 
 
 def of_others() -> Iterator[Tie]:
     """What decides elsewhere."""
-    yield "which-machine.md", "leaves less than {} of what the other leaves", (plain(CRITERIA.structure.much_less),)
+    yield "which-machine.md", "If the first model is then below {}", (plain(CRITERIA.structure.improbable),)
     yield "which-machine.md", "[{} effects](models.md#effects)", ({41: "Forty-one"}[len(EFFECTS)],)
     yield "lab.md", "within {} of it there is nothing left to find", (plain(next_view.NEAR),)
 

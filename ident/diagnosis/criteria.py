@@ -100,10 +100,10 @@ class StructureSelection:
     worse: float = 1.02
     """[ratio of errors] On held-out data beyond which a simpler machine is worse. Why: less is no reason for
     another parameter. Test: test_structure_selection.py::test_of_equals_the_one_with_fewer_parameters_is_taken"""
-    much_less: float = 0.7
-    """[ratio of errors] Of another machine with its best effect to that of the first. Why: a machine with more
-    parameters may have made up for a part of what is missing.
-    Test: test_structure_selection.py::test_more_parameters_do_not_make_up_for_an_effect"""
+    improbable: float = 0.01
+    """[probability] Of the first machine with its best effect, below which the most probable one comes before it. Why:
+    a machine with more parameters may have made up for a part of what is missing; the usual order gives way to nothing
+    less sure. Test: test_structure_selection.py::test_more_parameters_do_not_make_up_for_an_effect"""
     longer_gain: float = 10.0
     """[log-likelihood] That longer windows gain over the fitted ones, beyond the logarithm of the number of models.
     Why: one in 20,000 by chance."""

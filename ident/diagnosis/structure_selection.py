@@ -1,8 +1,8 @@
 """Which machine fits, where no model is named: those that the channels allow, compared on held-out data.
 
 Where the first of them leaves more than noise, something is missing, and a machine with more parameters may have made
-up for a part of it. So another with no more parameters comes before it that, with one effect of the catalogue, leaves
-much less than the first with its own; and one with fewer that leaves as little. Of the first, where the data ask for a
+up for a part of it. So another with no more parameters comes before it where, each with one effect of the catalogue,
+the first is improbable among them; and one with fewer that leaves as little. Of the first, where the data ask for a
 value of a parameter beyond its bound, it is known that it is another machine: then one that leaves less comes before.
 """
 
@@ -57,7 +57,7 @@ def compared_structures(
     """The models in question, the one to take first: the simplest whose held-out error is not worse.
 
     Of a machine that moves along a way the simplest that is not a motor, where one is no worse. Before it comes one
-    with no more parameters that leaves much less with one effect, or with fewer that leaves as little.
+    with no more parameters where the first is improbable, each with one effect; or with fewer that leaves as little.
 
     Raises Unusable where the channels allow none.
     """
@@ -87,9 +87,9 @@ def _compared(
     strange = {model.name for model in models if unusual(model, matrix.runs)}
     first = min(good, key=lambda one: (one.machine in strange, one.parameters))
     with_effects = _with_an_effect_each(first, tried, report)
-    best, why = _preferred(with_effects[first.machine], list(with_effects.values()), strange)
-    others = (with_effects.get(one.machine, one) for one in tried if one.machine != best.machine)
-    compared = [best, *others]
+    others = list(with_effects.values())
+    best, why = _preferred(with_effects[first.machine], others, strange, _probabilities(others))
+    compared = [best, *(with_effects.get(one.machine, one) for one in tried if one.machine != best.machine)]
     probable = _probabilities(compared)
     said = (
         model.structure(over, None if number else why, probable.get(model.machine))
@@ -125,17 +125,19 @@ def _with_an_effect_each(
 
 
 def _preferred(
-    first: _JudgedStructure, others: Collection[_JudgedStructure], strange: Collection[str]
-) -> tuple[_JudgedStructure, Message]:
+    first: _JudgedStructure, others: Collection[_JudgedStructure], strange: Collection[str],
+    probable: Mapping[str, float],
+) -> tuple[_JudgedStructure, Message]:  # fmt: skip
     """The one to take of models with an effect each, and why: the first, or a simpler one that says as much or more.
 
-    Much less is left by one that nothing else tells of, less by one whose parameters have values in their bounds where
-    those of the first have not; as little, and no more than by chance, by one that is not strange where the first is
-    not.
+    Where the first is improbable among them, the simplest of the most probable ones comes before it. So does one that
+    leaves less, whose parameters have values in their bounds where those of the first have not; and one that leaves as
+    little, and no more than by chance, and is not strange where the first is not.
     """
-    least = min((one.error for one in others), default=first.error)
-    if least <= CRITERIA.structure.much_less * first.error:
-        return _simplest(others), message("structure.much_less")
+    if probable.get(first.machine, 1.0) < CRITERIA.structure.improbable:
+        most = max(probable.values())
+        as_probable = (one for one in others if probable.get(one.machine, 0.0) > 0.5 * most)
+        return min(as_probable, key=lambda one: one.parameters), message("structure.more_probable")
     within = [one for one in others if one.error < first.error and not one.at_bound]
     if first.at_bound and within:
         return _simplest(within), message("structure.within")

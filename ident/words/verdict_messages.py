@@ -206,7 +206,7 @@ STRUCTURES: Mapping[str, str] = {
     "structure.parameters": "{count} parameters",
     "structure.effect": "{error:error} with {effect:title}",
     "structure.probability": "probability {probability:probability}",
-    "structure.much_less": "the error is much smaller with one effect",
+    "structure.more_probable": "with one effect it is far more probable than the usual model",
     "structure.within": "the error is smaller with one effect, and no parameter is at its bound",
     "structure.simpler": "the error is as small with one effect, and the model is simpler",
     "structure.simplest": "the simplest whose error is not larger",

@@ -192,7 +192,7 @@ def test_one_that_asks_beyond_its_bound_gives_way_to_one_that_does_not(first, ot
         )
 
     lag, motor = model("lag", 0.324, first), model("motor", 0.306, other)
-    assert _preferred(lag, [lag, motor], set())[0].machine == taken
+    assert _preferred(lag, [lag, motor], set(), {})[0].machine == taken
 
 
 @pytest.mark.parametrize(("left", "taken"), [(0.006, "open_valve"), (0.0, "first_order")])
@@ -210,7 +210,22 @@ def test_one_that_leaves_as_little_of_windows_has_to_be_as_likely(left, taken):
         )
 
     first, lag = model("open_valve", 6, 0.0), model("first_order", 2, left)
-    assert _preferred(first, [first, lag], set())[0].machine == taken
+    assert _preferred(first, [first, lag], set(), {})[0].machine == taken
+
+
+@pytest.mark.parametrize(
+    ("probabilities", "taken"),
+    [((0.005, 0.2, 0.79), "motor"), ((0.02, 0.2, 0.78), "open_valve"), ((0.001, 0.49, 0.5), "first_order")],
+)
+def test_an_improbable_machine_gives_way_to_the_most_probable(probabilities, taken):
+    """Of two that are nearly as probable the simpler one, and of as simple ones the first, is taken."""
+
+    def model(machine: str) -> SimpleNamespace:
+        return SimpleNamespace(machine=machine, parameters=2, error=0.1, best=None, with_effect=None, at_bound=False)
+
+    first, lag, motor = (model(name) for name in ("open_valve", "first_order", "motor"))
+    probable = dict(zip(("open_valve", "first_order", "motor"), probabilities, strict=True))
+    assert _preferred(first, [first, lag, motor], set(), probable)[0].machine == taken
 
 
 @pytest.mark.parametrize("model", ["motor", "open_valve"])

@@ -2,6 +2,9 @@
 
     mean of the blocks ± t s / √k       s their standard deviation, t Student's of k − 1 degrees of freedom
 
+The blocks of a short record are shorter, so that there are enough of them to tell their scatter. Whether a mean is
+above a value is one question with one answer: t is the point that chance passes on that side.
+
 With a fixed number of blocks that is the limit of the studentised mean of any stationary series, whatever its
 spectrum (Kiefer and Vogelsang 2005; Ibragimov and Müller 2010). So the mean difference of the losses of two models is
 judged, nested or not, of which both may be wrong (Vuong 1989).
@@ -30,10 +33,10 @@ class BlockMean:
     blocks: int
 
     def bound(self, criteria: EvidenceCriteria) -> float:
-        """Half of the interval that holds the mean, but for chance."""
+        """How far chance may carry the mean to one side."""
         if self.blocks < 2:
             return float("inf")
-        return self.error * float(stdtrit(self.blocks - 1, 1.0 - 0.5 * criteria.chance))
+        return self.error * float(stdtrit(self.blocks - 1, 1.0 - criteria.chance))
 
     def above(self, value: float, criteria: EvidenceCriteria) -> bool:
         """Whether the mean is above a value beyond its error."""
@@ -80,10 +83,17 @@ def _blocks(series: Sequence[Array], criteria: EvidenceCriteria) -> list[int]:
     """Into how many blocks the series of each run is cut."""
     if len(series) >= criteria.whole_runs:
         return [1] * len(series)
-    lengths = [criteria.correlation_times * correlation_time(run) for run in series]
     least, most = max(2, -(-criteria.least_blocks // len(series))), criteria.most_blocks
+    lengths = [_length_of_a_block(run, criteria) for run in series]
     counts = [int(np.clip(len(run) / length, least, most)) for run, length in zip(series, lengths, strict=True)]
     return [min(count, len(run)) for count, run in zip(counts, series, strict=True)]
+
+
+def _length_of_a_block(series: Array, criteria: EvidenceCriteria) -> float:
+    """That of a block in samples."""
+    time = correlation_time(series)
+    shortest, longest = criteria.least_correlation_times * time, criteria.correlation_times * time
+    return float(np.clip(len(series) / criteria.enough_blocks, shortest, longest))
 
 
 def _means(series: Sequence[Array], blocks: Sequence[int]) -> tuple[Array, Array]:
