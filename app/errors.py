@@ -48,7 +48,7 @@ class Removed(Unusable):
 
 def missing(kind: str, name: str, known: Iterable[str] = ()) -> Failure:
     """404 for something that is not there, with the nearest of the names that are `known`."""
-    remedy = did_you_mean(name, known, "list them to see which there are")
+    remedy = did_you_mean(name, known, "correct the name, or choose one from the list")
     return Failure(404, f"no-such-{kind}", f"there is no {kind} {name!r}", kind, remedy)
 
 

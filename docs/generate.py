@@ -143,7 +143,7 @@ def models() -> str:
         on = ", ".join(f"`{signal}` ({unit})" for signal, unit in effect.units.items())
         lines += [f"## {effect.name}", "", f"At the place *{effect.place}*, on {on}: {effect.meaning}.", ""]
         lines += [*(f"    {text}" for text in effect.texts), ""]
-        lines += [f"In data: {effect.looks}. Source: {effect.source}.", ""]
+        lines += [f"It shows as: {effect.looks}. Source: {effect.source}.", ""]
         lines += parameters(effect.parameters)
     return "\n".join(lines)
 

@@ -23,8 +23,6 @@ BANNED = {
     "beside the command": "in addition to the command", "beside the catalogue": "in addition to the library",
 }  # fmt: skip
 """Words of the old texts, each with the word that replaces it."""
-ELSEWHERE = {"ident/diagnosis", "ident/figures/residual_correlation.py"}
-"""What is not held yet; the texts of a verdict are, in ident/words/messages.py."""
 LONGEST = {"README.md": 18.0, "docs/index.md": 20.0, "docs/which-machine.md": 20.0, "docs/accuracy.md": 20.0,
            "docs/glossary.md": 20.0, "docs/diagnosis.md": 20.0,
            "docs/lab.md": 20.0, "docs/cli.md": 20.0, "CONTRIBUTING.md": 20.0}  # fmt: skip
@@ -57,13 +55,30 @@ class Text(HTMLParser):
         self.found.append(data)
 
 
+QUOTED = re.compile(r'"((?:[^"\\\n]|\\.)*)"|`((?:[^`\\]|\\.)*)`')
+"""A string in an expression of a template or in a script."""
+
+
+def quoted(text: str) -> list[str]:
+    """The strings of a text that are words: with a space in them, or a capital in front; others are names."""
+    found = ["".join(pair) for pair in QUOTED.findall(text)]
+    return [said for said in found if " " in said or said[:1].isupper()]
+
+
 @cache
 def template(file: Path) -> str:
-    """The text of a template, without what it is told to fill in."""
-    text = re.sub(r"\{#.*?#\}|\{%.*?%\}", " ", file.read_text(encoding="utf-8"), flags=re.DOTALL)
+    """The text of a template: what is filled in counts as a word, and the strings in its expressions follow."""
+    whole = re.sub(r"\{#.*?#\}", " ", file.read_text(encoding="utf-8"), flags=re.DOTALL)
+    filled = re.findall(r"\{\{.*?\}\}|\{%.*?%\}", whole, flags=re.DOTALL)
     reader = Text()
-    reader.feed(re.sub(r"\{\{.*?\}\}", "x", text, flags=re.DOTALL))
-    return "".join(reader.found)
+    reader.feed(re.sub(r"\{\{.*?\}\}", "x", re.sub(r"\{%.*?%\}", " ", whole, flags=re.DOTALL), flags=re.DOTALL))
+    return "\n\n".join(["".join(reader.found), *(said for part in filled for said in quoted(part))])
+
+
+def script(file: Path) -> str:
+    """The strings of a script, without its comments."""
+    text = re.sub(r"/\*.*?\*/|(?<!:)//.*?$", " ", file.read_text(encoding="utf-8"), flags=re.DOTALL | re.MULTILINE)
+    return "\n\n".join(quoted(text))
 
 
 def literals(file: Path) -> Iterator[str]:
@@ -86,11 +101,11 @@ def shown() -> dict[str, str]:
     """What a user meets, by the file that has it."""
     templates = (ROOT / "app" / "pages" / "templates").glob("*.html")
     found = {str(file.relative_to(ROOT)): template(file) for file in templates}
+    for file in (ROOT / "app" / "pages" / "static").glob("*.js"):
+        found[str(file.relative_to(ROOT))] = script(file)
     for folder in ("app", "ident"):
         for file in (ROOT / folder).rglob("*.py"):
-            name = str(file.relative_to(ROOT))
-            if not any(name.startswith(other) for other in ELSEWHERE):
-                found[name] = "\n\n".join(literals(file))
+            found[str(file.relative_to(ROOT))] = "\n\n".join(literals(file))
     return found | {name: (ROOT / name).read_text(encoding="utf-8") for name in LONGEST}
 
 

@@ -291,7 +291,7 @@ class Moves:
             nonlocal done
             refits = self.models.global_starts((*selection.base.effects, name))
             done += 1
-            self.report(Progress("looking farther", done, len(names)))
+            self.report(Progress("searching further", done, len(names)))
             return refits
 
         trials = (refit for refits in each(restarted, names) for refit in refits)

@@ -14,9 +14,9 @@ from ident.diagnosis.budget import SearchBudget
 from ident.errors import TimeIsUp, Unusable
 from ident.words.message import Message, message
 
-EFFECTS, FURTHER = "effects of the catalogue", "further effects"
+EFFECTS, FURTHER = "effects of the library", "further effects"
 LABELS, OTHERS, LAGS = "labels of the runs", "other models", "lags and delays"
-VERIFY, NOISE = "runs to verify", "whether the residual is noise"
+VERIFY, NOISE = "validation data", "whether the residual is noise"
 TERMS, NEXT_RUN, ERROR_BUDGET = "search for unknown terms", "next run", "error budget"
 _GIVEN = (NEXT_RUN, ERROR_BUDGET)
 """Stages that give a figure of their own, null where there was no time for them."""

@@ -10,6 +10,6 @@ ACQUISITION_LAG = Effect(
     strength=Parameter("time_constant", "T", "s", 0.0, 3e-3, 0.0, "time constant of the recorder", start=Starts.TIME),
     texts=("y = lag(y, T)",),
     units={"y": "m"},
-    looks="the same lag at every gain and specimen, with some loss of magnitude",
+    looks="the same phase lag at every gain and specimen, and a little less magnitude",
     source="anti-aliasing filter of the recorder",
 )

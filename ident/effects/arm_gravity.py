@@ -15,7 +15,7 @@ ARM_GRAVITY = Effect(
         Parameter("hanging", "x0", "m", -3.2, 3.2, 0.0, "angle at which the arm hangs down", searched=True),
         Parameter("gear", "ra", "m", 1e-2, 1e2, 1.0, "measured angle for each radian of the arm"),
     ),
-    looks="a torque that grows and falls again over a turn; oscillation about the angle at which it hangs",
+    looks="a load torque that varies as the sine of the angle; oscillation about the hanging position",
     source="pendulum behind a gear: J x'' = -m g l sin((x - x0)/r)",
     needs=angle_measured,
 )

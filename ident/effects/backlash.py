@@ -13,7 +13,7 @@ BACKLASH = Effect(
         "w = p",
     ),
     units={"w": "m"},
-    looks="phase lag and lost magnitude at small amplitudes, the same at every frequency; flat tops",
+    looks="more phase lag and less magnitude at small amplitudes, the same at every frequency; flat tops",
     source="Kononykhin, block b; play operator",
     steps=2,
 )

@@ -10,7 +10,7 @@ COMMAND_LIMIT = Effect(
     strength=Parameter("inverse_limit", "a", "1/m", 0.0, 200.0, 0.0, "inverse of the largest drive signal"),
     texts=("e = clip(e, -1 / max(a, 1e-9), 1 / max(a, 1e-9))",),
     units={"e": "m"},
-    looks="large amplitudes and gains lag and are cut, small ones are not; clipped speed",
+    looks="clipped speed, more phase lag and less magnitude at large amplitudes and gains, none at small ones",
     source="Khalil, Nonlinear Systems, saturation",
     steps=2,
 )

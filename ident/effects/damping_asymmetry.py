@@ -9,11 +9,11 @@ DAMPING_ASYMMETRY = Effect(
     place="load",
     meaning="damping is larger in one direction than in the other",
     strength=Parameter(
-        "coefficient", "ca", "N*s/m", -2e4, 2e4, 0.0, "half of the difference of the damping, forward less back"
+        "coefficient", "ca", "N*s/m", -2e4, 2e4, 0.0, "half of the difference between forward and backward damping"
     ),
     texts=("R = R + ca * abs(v)",),
     units={"R": "N"},
-    looks="the force over the speed has another slope on either side of zero",
+    looks="force over speed has two slopes, one for each direction",
     source="check valves of a damper that open one way: compression and rebound",
     needs=force_answers,
 )

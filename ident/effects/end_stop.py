@@ -6,7 +6,7 @@ from ident.parameter import Parameter, Starts
 END_STOP = Effect(
     name="end_stop",
     place="load",
-    meaning="the stroke ends, at 1/g to both sides of its middle, at a stop that gives way",
+    meaning="an elastic stop ends the stroke at 1/g on both sides of its middle",
     strength=Parameter(
         "inverse_way",
         "g",
@@ -14,7 +14,7 @@ END_STOP = Effect(
         0.0,
         1e3,
         0.0,
-        "inverse of the way to the stop",
+        "inverse of the distance to the stop",
         start=Starts.STROKE_END,
         of_motion=True,
     ),
@@ -26,7 +26,7 @@ END_STOP = Effect(
             "middle", "xm", "m", -10.0, 10.0, 0.0, "middle of the stroke", start=Starts.STROKE_MIDDLE, of_motion=True
         ),
     ),
-    looks="displacements beyond a certain one are cut, or need much more pressure",
+    looks="displacement is clipped at one level, or needs much more pressure beyond it",
     source="contact with a linear spring",
     steps=2,
 )

@@ -7,7 +7,7 @@ from ident.parameter import AtReversals, Parameter, Starts
 FRICTION_BEHIND_PLAY = Effect(
     name="friction_behind_play",
     place="load",
-    meaning="dry friction behind a play: after each reversal what rubs stands until the play is taken up",
+    meaning="dry friction behind a play: after each reversal there is no friction until the play is closed",
     strength=Parameter("force", "Fp", "N", 0.0, 200.0, 0.0, "dry friction force", at_reversals=AtReversals.FORCE),
     texts=(
         "d := clip(d + x - xr, -g, g)",
@@ -30,7 +30,7 @@ FRICTION_BEHIND_PLAY = Effect(
             at_reversals=AtReversals.WAY,
         ),
     ),
-    looks="after each reversal no friction over twice the half-width, then all of it at once",
+    looks="after each reversal no friction over the width of the play, then full friction at once",
     source="play operator before Coulomb friction: a friction damper with clearance in its joints",
     steps=2,
     needs=force_answers,

@@ -12,6 +12,6 @@ GAIN_ASYMMETRY = Effect(
     ),
     texts=("w = w * (1 + a * sgn(w))",),
     units={"w": "m"},
-    looks="one direction faster than the other; even harmonics, and an offset that grows with amplitude",
+    looks="one direction is faster than the other; even harmonics, and an offset that grows with amplitude",
     source="Strano and Terzo, slopes kqn and kqp",
 )

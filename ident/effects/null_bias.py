@@ -10,6 +10,6 @@ NULL_BIAS = Effect(
     strength=Parameter("bias", "b", "m", -2e-3, 2e-3, 0.0, "opening at zero drive signal"),
     texts=("w = w + b",),
     units={"w": "m"},
-    looks="an offset of each run in proportion to 1/Kp, else nothing in a linear chain",
+    looks="an offset of each run in proportion to 1/Kp; nothing else in a linear chain",
     source="Merritt, Hydraulic Control Systems, null shift",
 )

@@ -7,7 +7,7 @@ from ident.parameter import Parameter, Starts
 OVERFLOW = Effect(
     name="overflow",
     place="load",
-    meaning="a level does not rise far above an edge, at 1/g, over which the rest runs off",
+    meaning="the liquid overflows an edge at the level 1/g, so the level hardly rises above it",
     strength=Parameter(
         "inverse_level", "g", "1/m", 0.0, 1e3, 0.0, "inverse of the level of the edge", start=Starts.STROKE_END,
         of_motion=True,
@@ -17,7 +17,7 @@ OVERFLOW = Effect(
     shape=(
         Parameter("ratio", "ro", "1", 1.0, 30.0, 10.0, "outflow over the edge against the outflow below, for a level"),
     ),
-    looks="flat tops at one level, however large the command is",
+    looks="flat tops at one level, whatever the size of the command",
     source="weir, made linear in the small height above its edge",
     steps=2,
     needs=one_sided_position,

@@ -10,6 +10,6 @@ QUADRATIC_DAMPING = Effect(
     strength=Parameter("coefficient", "c2", "N*s^2/m^2", 0.0, 2e4, 0.0, "damping force for each squared speed"),
     texts=("R = R + c2 * v * abs(v)",),
     units={"R": "N"},
-    looks="magnitude at mid frequencies falls with amplitude",
+    looks="less magnitude at mid frequencies as the amplitude grows",
     source="turbulent damping",
 )

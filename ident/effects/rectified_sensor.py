@@ -8,7 +8,7 @@ RECTIFIED_SENSOR = Effect(
     name="rectified_sensor",
     place="sensor",
     meaning="the recorded speed is its absolute value",
-    strength=Parameter("share", "s", "1", 0.0, 1.0, 0.0, "share of the speed whose sign is lost"),
+    strength=Parameter("share", "s", "1", 0.0, 1.0, 0.0, "share of the speed that is recorded without its sign"),
     texts=("vy = vy + s * (abs(vy) - vy)",),
     units={"vy": "m/s"},
     looks="a speed that never falls below zero, with cusps where the motion reverses",

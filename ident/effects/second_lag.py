@@ -6,7 +6,7 @@ from ident.parameter import Parameter, Starts
 SECOND_LAG = Effect(
     name="second_lag",
     place="valve",
-    meaning="a second lag in series with that of the amplifier: together they are of second order",
+    meaning="a second lag in series with that of the amplifier; both together are a second-order system",
     strength=Parameter("time_constant", "T2", "s", 0.0, 0.1, 0.0, "time constant of the second lag", start=Starts.TIME),
     texts=("q = lag(q, T2)",),
     units={"q": "1"},

@@ -6,7 +6,7 @@ from ident.parameter import Parameter, Starts
 SENSOR_LAG = Effect(
     name="sensor_lag",
     place="sensor",
-    meaning="the transducer lags, inside the loop",
+    meaning="the transducer has a lag, inside the loop",
     strength=Parameter("time_constant", "T", "s", 0.0, 3e-3, 0.0, "time constant of the transducer", start=Starts.TIME),
     texts=(
         "y_fb = lag(y_fb, T)",

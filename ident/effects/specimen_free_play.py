@@ -6,8 +6,8 @@ from ident.parameter import Parameter
 SPECIMEN_FREE_PLAY = Effect(
     name="specimen_free_play",
     place="load",
-    meaning="the specimen's spring has play",
-    does="a spring with play",
+    meaning="the spring of the specimen has free play",
+    does="a spring with free play",
     strength=Parameter("half_width", "g", "m", 0.0, 2e-3, 0.0, "half of the play", of_motion=True),
     texts=("xk = xk - clip(xk, -g, g)",),
     units={"xk": "m"},

@@ -6,7 +6,7 @@ from ident.parameter import Parameter
 SPECIMEN_JOINT = Effect(
     name="specimen_joint",
     place="load",
-    meaning="the whole specimen sits behind a springy joint",
+    meaning="an elastic joint connects the specimen to the rod",
     does="a spring in series",
     strength=Parameter("compliance", "s", "m/N", 0.0, 1e-5, 0.0, "compliance of the joint, 1/kj"),
     texts=(
@@ -25,7 +25,7 @@ SPECIMEN_JOINT = Effect(
         "M = m0 + where(s > 0, 0, mL)",
     ),
     units={"xL": "m", "vL": "m/s", "F": "N", "a": "m/s^2", "M": "kg"},
-    looks="a second resonance that depends on the specimen's mass; none without specimen",
+    looks="a second resonance that depends on the mass of the specimen; none without specimen",
     source="mL x2'' = kj (x - x2) - S, solved for F = kj (x - x2): regular for s = 1/kj = 0",
     of_specimen=True,
 )

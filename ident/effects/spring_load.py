@@ -6,7 +6,7 @@ from ident.parameter import Parameter, Starts
 SPRING_LOAD = Effect(
     name="spring_load",
     place="load",
-    meaning="a load that grows with the position, so that the speed depends on it",
+    meaning="a spring loads the link, so the speed depends on the position",
     strength=Parameter(
         "rate",
         "cF",
@@ -20,6 +20,6 @@ SPRING_LOAD = Effect(
     texts=("Pn = Pn + s * cF * (x - x0)",),
     shape=(Parameter("centre", "x0", "m", -1.0, 1.0, 0.0, "position at which the load is zero", of_motion=True),),
     units={"Pn": "Pa"},
-    looks="speeds that differ from place to place, and a zero shift of each range of positions",
+    looks="a speed that depends on the position; a zero shift for each range of positions",
     source="hinge moment of a control surface; a spring that loads the link",
 )

@@ -10,6 +10,6 @@ STATIC_LOAD = Effect(
     strength=Parameter("force", "F0", "N", -500.0, 500.0, 0.0, "constant force on the rod"),
     texts=("R = R - F0",),
     units={"R": "N"},
-    looks="an offset of each run in proportion to 1/Kp through the leakage, else nothing in a linear chain",
+    looks="an offset of each run in proportion to 1/Kp, by the leakage; nothing else in a linear chain",
     source="weight, preload",
 )

@@ -6,7 +6,7 @@ from ident.parameter import Parameter, Starts
 STICTION = Effect(
     name="stiction",
     place="load",
-    meaning="pressure above friction that breaks a resting link loose",
+    meaning="a link at rest needs more pressure than friction to break away",
     strength=Parameter(
         "pressure",
         "Pst",
@@ -14,7 +14,7 @@ STICTION = Effect(
         0.0,
         5e6,
         0.0,
-        "pressure difference above friction that breaks loose",
+        "pressure difference above friction at breakaway",
         start=Starts.FRICTION,
     ),
     texts=(
@@ -22,7 +22,7 @@ STICTION = Effect(
         "Pn = Pn + Pst * (1 - g)",
     ),
     units={"Pn": "Pa"},
-    looks="movements that begin late and with a jump, and pressures beyond friction before them",
+    looks="movements begin late and with a jump; before them the pressure exceeds friction",
     source="static friction above the sliding one; g is 1 while the link moves",
     stride=2e-3,
 )

@@ -6,9 +6,9 @@ from ident.parameter import AtReversals, Parameter
 STRIBECK_FRICTION = Effect(
     name="stribeck_friction",
     place="load",
-    meaning="more friction at standstill than in motion",
+    meaning="friction is larger at standstill than in motion",
     strength=Parameter(
-        "force", "dF", "N", 0.0, 200.0, 0.0, "excess of the breakaway force", at_reversals=AtReversals.FORCE
+        "force", "dF", "N", 0.0, 200.0, 0.0, "breakaway force above sliding friction", at_reversals=AtReversals.FORCE
     ),
     texts=("Ff = Ff + dF * exp(-(v / vs)**2)",),
     units={"Ff": "N"},

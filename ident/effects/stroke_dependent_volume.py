@@ -6,8 +6,8 @@ from ident.parameter import Parameter
 STROKE_DEPENDENT_VOLUME = Effect(
     name="stroke_dependent_volume",
     place="pressure",
-    meaning="the oil volumes change along the stroke",
-    does="a spring that changes along the stroke",
+    meaning="the oil volume of each chamber changes along the stroke",
+    does="a stiffness that changes along the stroke",
     strength=Parameter(
         "curvature",
         "kappa",
@@ -19,6 +19,6 @@ STROKE_DEPENDENT_VOLUME = Effect(
     ),
     texts=("Ke = Ke * (1 - kappa * x**2)",),
     units={"Ke": "m^3/Pa"},
-    looks="stiffer oil away from mid-stroke; invisible at millimetres",
+    looks="a stiffer oil column away from mid-stroke; no effect at amplitudes of millimetres",
     source="Merritt, Hydraulic Control Systems, chamber volumes",
 )

@@ -6,7 +6,7 @@ from ident.parameter import Parameter, Starts
 SUPPLY_RIPPLE = Effect(
     name="supply_ripple",
     place="flow",
-    meaning="the pump's pulsation modulates the flow",
+    meaning="the pulsation of the pump modulates the flow",
     does="a gain that pulsates",
     strength=Parameter("depth", "r", "1", 0.0, 0.5, 0.0, "relative modulation of the flow"),
     texts=("Q = Q * (1 + r * sin(2 * pi * f * t + phi))",),
@@ -24,9 +24,17 @@ SUPPLY_RIPPLE = Effect(
             start=Starts.SPECTRAL_LINES,
         ),
         Parameter(
-            "phase", "phi", "1", -6.3, 6.3, 0.0, "its phase where the record begins", searched=True, start=Starts.PHASE
+            "phase",
+            "phi",
+            "1",
+            -6.3,
+            6.3,
+            0.0,
+            "phase of the pulsation at the start of the record",
+            searched=True,
+            start=Starts.PHASE,
         ),
     ),
-    looks="every line of the motion has two neighbours, as far from it as the pump's frequency",
+    looks="each spectral line of the motion has two sidebands, at a distance of the pump frequency",
     source="pump without accumulator; one phase for all runs, so runs begun at one angle of the pump or a single run",
 )

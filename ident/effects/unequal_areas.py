@@ -6,9 +6,9 @@ from ident.parameter import Parameter
 UNEQUAL_AREAS = Effect(
     name="unequal_areas",
     place="load",
-    meaning="the piston's area differs between out and in: it takes other flows and gives other forces",
+    meaning="the piston area differs between extending and retracting, and with it flow and force",
     strength=Parameter(
-        "asymmetry", "a", "1", -0.5, 0.5, 0.0, "relative difference of the two directions' areas from their mean"
+        "asymmetry", "a", "1", -0.5, 0.5, 0.0, "relative difference of each piston area from their mean"
     ),
     texts=(
         "L = L + a * A * abs(v)",
@@ -16,7 +16,7 @@ UNEQUAL_AREAS = Effect(
         "Ff = Ff + max(-a * A * P, 0)",
     ),
     units={"L": "m^3/s", "D": "N", "Ff": "N"},
-    looks="one direction faster and weaker than the other; even harmonics, and an offset that grows with amplitude",
+    looks="one direction is faster and weaker than the other; even harmonics, and an offset that grows with amplitude",
     source="single-rod cylinder, flow and force with A (1 + a sgn v); what opposes motion sticks",
     steps=4,
 )

@@ -7,7 +7,7 @@ from ident.parameter import Parameter
 UPPER_OVERFLOW = Effect(
     name="upper_overflow",
     place="flow",
-    meaning="the upper level does not rise far above an edge, at 1/g, over which the rest runs off or into the lower",
+    meaning="the upper tank overflows an edge at the level 1/g, partly into the lower tank",
     strength=Parameter("inverse_level", "g", "1/m", 0.0, 1e3, 0.0, "inverse of the level of the edge", of_motion=True),
     texts=(
         "ho = ho + ro * max(h - 1 / max(g, 1e-9), 0)",
@@ -16,9 +16,9 @@ UPPER_OVERFLOW = Effect(
     units={"ho": "m", "hi": "m"},
     shape=(
         Parameter("ratio", "ro", "1", 1.0, 30.0, 10.0, "outflow over the edge against the outflow below, for a level"),
-        Parameter("caught", "si", "1", 0.0, 1.0, 0.5, "share of what runs over the edge that the lower tank catches"),
+        Parameter("caught", "si", "1", 0.0, 1.0, 0.5, "share of the overflow that the lower tank receives"),
     ),
-    looks="a large command moves the level no more than a smaller one that lasts as long",
+    looks="a larger command of the same duration does not raise the level further",
     source="weir, made linear in the small height above its edge; Schoukens and Noël 2017",
     steps=2,
     needs=one_sided_position,

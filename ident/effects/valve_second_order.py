@@ -6,14 +6,14 @@ from ident.parameter import Parameter, Starts
 VALVE_SECOND_ORDER = Effect(
     name="valve_second_order",
     place="valve",
-    meaning="the valve has two more poles behind its lag",
-    does="two more poles behind the lag",
+    meaning="the valve has two more poles after its lag",
+    does="two more poles after the lag",
     strength=Parameter(
         "inverse_frequency", "Tn", "s", 0.0, 3e-3, 0.0, "inverse of the natural frequency, 1/ωn", start=Starts.TIME
     ),
     texts=("q = lag2(q, 2 * zeta * Tn, Tn**2)",),
     units={"q": "m"},
     shape=(Parameter("damping", "zeta", "1", 0.05, 2.0, 0.7, "damping ratio"),),
-    looks="extra phase lag that grows towards the natural frequency, the same at all amplitudes",
+    looks="more phase lag towards the natural frequency, the same at every amplitude",
     source="Strano and Terzo, second-order valve; Merritt, Hydraulic Control Systems",
 )

@@ -4,10 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
+_PERSONS = {"coulomb": "Coulomb", "stribeck": "Stribeck"}
+"""Words of a name that are names of persons."""
+
 
 def title(name: str) -> str:
-    """The name of an effect, a channel or a use of runs in words: dead_zone → dead zone."""
-    return name.replace("_", " ")
+    """The name of an effect, a channel or a use of runs in words: dead_zone → dead zone, Coulomb with a capital."""
+    return " ".join(_PERSONS.get(word, word) for word in name.split("_"))
 
 
 def with_effects(model: str, effects: Iterable[str]) -> str:

@@ -95,11 +95,11 @@ def the_first_page_leads_to_the_comparison(page, site):
     """With the error before and after, in the line and side by side."""
     page.goto(site.address)
     mended = page.locator("tbody tr").filter(has_text=LACKING).locator(".next")
-    expect(mended.locator("xpath=..").locator(".parameters")).to_contain_text("coulomb friction Fc")
+    expect(mended.locator("xpath=..").locator(".parameters")).to_contain_text("Coulomb friction Fc")
     expect(mended).to_contain_text(re.compile(r"The error fell from 1\d\.\d % to 0\.\d+ %"))
     mended.get_by_role("link", name="Compare before and after").click()
     expect(page.locator("h1")).to_have_text("Two fits side by side")
-    expect(page.locator("#main")).to_contain_text("+ coulomb friction + dead zone")
+    expect(page.locator("#main")).to_contain_text("+ Coulomb friction + dead zone")
 
 
 def test_a_new_user_finds_what_is_missing_adds_it_and_sees_the_error_fall(page, site, watch, screenshots):
@@ -107,8 +107,8 @@ def test_a_new_user_finds_what_is_missing_adds_it_and_sees_the_error_fall(page, 
     the_first_page_says_what_to_do(page, screenshots)
     before = page.url
     card = story.search(page, screenshots and screenshots / "searching.png")
-    expect(page.locator(".verdict")).to_contain_text(re.compile("Missing: coulomb friction .* and dead zone"))
-    expect(card).to_contain_text("coulomb friction")
+    expect(page.locator(".verdict")).to_contain_text(re.compile("Missing: Coulomb friction .* and dead zone"))
+    expect(card).to_contain_text("Coulomb friction")
     expect(card.locator(".evidence canvas")).to_be_visible(timeout=story.LONG)
     expect(
         page.get_by_role("button", name="Add all 2")
@@ -123,13 +123,13 @@ def test_a_new_user_finds_what_is_missing_adds_it_and_sees_the_error_fall(page, 
     story.section(page, "Missing effects")
     everywhere(page, screenshots, "missing")
 
-    first, second = story.add(page, page.locator("#missing"), "coulomb friction, dead zone")
+    first, second = story.add(page, page.locator("#missing"), "Coulomb friction, dead zone")
     assert first > 20 * NOISE
     assert second < 1.05 * NOISE
     expect(page.locator("#before")).to_contain_text(re.compile(r"1\d\.\d %"))
     added = page.locator("table.ladder tbody tr").last.inner_text()
     assert re.search(
-        r"coulomb friction, (59\.[89]|60\.[0-2])\d* ± 0\.\d+ N; dead zone, (39\d|40\d)\S* ± \S+ µm", added
+        r"Coulomb friction, (59\.[89]|60\.[0-2])\d* ± 0\.\d+ N; dead zone, (39\d|40\d)\S* ± \S+ µm", added
     ), added
     story.section(page, "History")
     page.locator("#figure-ladder").scroll_into_view_if_needed()

@@ -57,7 +57,7 @@ def test_what_is_printed_ends_with_the_command_that_makes_the_recommended_fit(ca
     assert "--start" not in printed(Verdict(standing="contradicted", contradicted_by=("dead_zone",)), ladder=ladder)
     told = printed(ladder=ladder, proposals=(term(LEAK, "coulomb_friction"),))
     assert (
-        f"{command}coulomb friction and proposed 1. It begins where the diagnosis ended, at an error of 10.0 %. --terms"
+        f"{command}Coulomb friction and proposed 1. It begins where the diagnosis ended, at an error of 10.0 %. --terms"
         in told
     )
     assert "--start" not in printed(ladder=(first,))

@@ -7,7 +7,7 @@ from ident.words.titles import of_parameter, title, with_effects
 
 def test_names_are_words():
     assert title("dead_zone") == "dead zone"
-    assert with_effects("Qian 2014", ["dead_zone", "coulomb_friction"]) == "Qian 2014 + dead zone + coulomb friction"
+    assert with_effects("Qian 2014", ["dead_zone", "coulomb_friction"]) == "Qian 2014 + dead zone + Coulomb friction"
     assert with_effects("Qian 2014", []) == "Qian 2014"
 
 

@@ -153,7 +153,7 @@ async function redraw(changed) {
   if (turn !== asked) return;
   const page = new DOMParser().parseFromString(await answer.text(), "text/html"), drawn = page.querySelector("[data-layouts]");
   if (!drawn) {
-    problem.textContent = page.querySelector("main p")?.textContent ?? "The service could not read the files so.";
+    problem.textContent = page.querySelector("main p")?.textContent ?? "The service could not read the files with these settings.";
     button.disabled = true;
     return;
   }

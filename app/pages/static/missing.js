@@ -26,7 +26,7 @@ for (const form of document.querySelectorAll("form[data-mend]")) {
   onSubmit(form, async () => {
     const { data: matrix } = await send("POST", form.dataset.mend, JSON.parse(form.dataset.change));
     const { data: fit } = await send("POST", "/api/v1/fits", { ...JSON.parse(form.dataset.again), matrix: matrix.id });
-    const links = [link(`/matrices/${matrix.id}`, "the revised matrix"), " and ", link(`/fits/${fit.id}`, "its fit")];
+    const links = [link(`/matrices/${matrix.id}`, "the revised data set"), " and ", link(`/fits/${fit.id}`, "its fit")];
     form.querySelector("[role=status]").replaceChildren("Corrected: ", ...links);
     form.querySelector("button").hidden = true;
   });

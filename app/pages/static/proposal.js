@@ -27,9 +27,9 @@ function tell(place, run) {
 
 function facts(run) {
   const rows = [["Sampled at", `${run.sample_rate} Hz`]];
-  if (run.separation !== null) rows.push(["Separation of the models", `${run.separation.toPrecision(3)} standard deviations of the noise`]);
-  if (run.so_far !== null) rows.push(["The runs so far do so by", run.so_far.toPrecision(3)]);
-  rows.push(["Teaches", `${run.information.toPrecision(3)} nats of the parameters`]);
+  if (run.separation !== null) rows.push(["Separation of the models by this run", `${run.separation.toPrecision(3)} standard deviations of the noise`]);
+  if (run.so_far !== null) rows.push(["Separation by the runs so far", `${run.so_far.toPrecision(3)} standard deviations of the noise`]);
+  rows.push(["Expected information gain", `${run.information.toPrecision(3)} nats`]);
   return rows;
 }
 

@@ -83,7 +83,7 @@ form?.addEventListener("submit", (event) => {
     const entry = data.runs.find(({ id }) => String(id) === run) ?? data.runs.find(({ id, split }) => split && run.startsWith(`${id}.`));
     if (!entry) throw new Error("This run is one output of a record. Edit the record on the page of the data set.");
     if (entry.time?.resample) throw new Error("This run is resampled. Edit its samples on the page of the data set.");
-    if (entry.split) throw new Error("This run is split already. Edit its validation samples on the page of the data set.");
+    if (entry.split) throw new Error("This run already has validation samples. Edit them on the page of the data set.");
     const { start, seconds } = shown();
     const before = Number(entry.rows?.[0] ?? 0);
     const first = Math.round(start * rate), end = Math.min(Number(samples), Math.round((start + seconds) * rate));

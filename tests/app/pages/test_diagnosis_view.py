@@ -47,7 +47,7 @@ def found() -> Stored:
 
 def test_a_group_is_one_card_that_names_all_and_adds_one():
     group, own = missing(found(), None).cards
-    assert group.title == "coulomb friction or stribeck friction"
+    assert group.title == "Coulomb friction or Stribeck friction"
     assert [member.name for member in group.addable] == ["coulomb_friction", "stribeck_friction"]
     assert (group.chosen, own.chosen) == (True, False)
     assert group.gauge == (50.0, 50.0, 25.0)
@@ -74,7 +74,7 @@ def test_the_section_is_markup_with_everything_escaped():
     assert "These 2 effects are" in text
     assert "{&#34;runs&#34;: {&#34;r &lt;1&gt;&#34;: {&#34;specimen&#34;: {&#34;mass&#34;: &#34;0.9 kg&#34;}}}}" in text
     assert text.count('data-add="/api/v1/fits/f/effects"') == 2  # the group and the one by chance
-    assert "In data: flat tops." in text
+    assert "It shows as: flat tops." in text
 
 
 def vague() -> Stored:

@@ -70,7 +70,7 @@ def test_every_figure_is_drawn_and_no_two_share_a_name(told):
 
 def test_it_says_parameters_errors_budget_and_verdict(told):
     """With units, in per cent, in words."""
-    for said in ("10⁻⁶ m⁴/s", "Repeat one run", "Dry friction is missing.", "coulomb friction and backlash", "0.520 %"):
+    for said in ("10⁻⁶ m⁴/s", "Repeat one run", "Dry friction is missing.", "Coulomb friction and backlash", "0.520 %"):
         assert said in told
 
 
