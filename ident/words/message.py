@@ -71,6 +71,7 @@ KINDS: Mapping[str, Callable[[Any], str]] = {
     "run": run_name,
     "first": first_of,
     "samples": lambda number: count(number, "sample"),
+    "effects": lambda number: count(number, "effect"),
     "runs": lambda number: count(number, "run"),
     "sets": lambda number: count(number, "set"),
     "quantity": lambda one: quantity(*one),

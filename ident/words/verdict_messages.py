@@ -13,13 +13,13 @@ SUMMARY: Mapping[str, str] = {
     "summary.helping_by_chance":
         "Probably nothing is missing. The error falls with {helping:all}, which may be chance.",
     "summary.contradicted":
-        "Not confirmed: {effects:all}. Estimation data ask for {effects:them}, but validation data contradict "
+        "Not confirmed: {effects:all}. Estimation data support {effects:them}, but validation data contradict "
         "{effects:them}.",
     "summary.label": "The label of {run:run} looks wrong: correct it before you conclude what is missing.",
-    "summary.stopped": "Nothing was found so far: the search was stopped.",
-    "summary.unlisted": "Missing: something that no listed effect explains.",
+    "summary.stopped": "Nothing was found yet: the search was stopped early.",
+    "summary.unlisted": "Missing: something that no effect in the library explains.",
     "summary.unlisted_probable":
-        "Missing: something that no listed effect explains (probability {probability:probability}).",
+        "Missing: something that no effect in the library explains (probability {probability:probability}).",
     "summary.nothing": "Nothing is missing.",
     "summary.nothing_probable": "Nothing is missing (probability {probability:probability}).",
     "summary.missing_input": "Missing: an input that is not in the record of {run:run}.",
@@ -81,7 +81,7 @@ EFFECTS: Mapping[str, str] = {
 
 VERDICT: Mapping[str, str] = {
     "verdict.stopped":
-        "The search was not over: other missing effects, and alternatives to those found, were not examined.",
+        "The search was stopped early: other missing effects, and alternatives to those found, were not examined.",
     "verdict.lacks": "The model lacks {effects:all}: with {effects:them} the error falls {change}.",
     "verdict.may_lack":
         "The error falls {change} with {effects:all}. More probably this has another cause, or is chance.",
@@ -93,7 +93,7 @@ VERDICT: Mapping[str, str] = {
     "verdict.nothing": "Nothing is missing: the error of {before:error} is measurement noise.",
     "verdict.nothing_probable":
         "Nothing is missing (probability {probability:probability}): the error of {before:error} is measurement noise.",
-    "verdict.none": "No listed effect lowers the error of {before:error} by more than chance.",
+    "verdict.none": "No effect in the library lowers the error of {before:error} by more than chance.",
     "verdict.missing_input":
         "An input is not recorded: {evidence}. No effect was looked for: any effect would only imitate this input. "
         "Record the input and add its channel, or leave out the rows in which the output moves by itself.",
@@ -102,12 +102,13 @@ VERDICT: Mapping[str, str] = {
     "verdict.oscillation": "The machine oscillates: {evidence}. {cause}.",
     "verdict.oscillation_of_several": "The machine oscillates: {evidence}; {others:all} oscillate, too. {cause}.",
     "verdict.bounded":
-        "The strength of {effect} ended at the bound of its search. It may be larger, or stand for another effect: "
-        "search within wider bounds.",
-    "verdict.group": "These data cannot distinguish {group:all}: with each the error is the same but for chance.",
+        "The strength of {effect} ended at the bound of its search. It may be larger, or {effect} may only imitate "
+        "another effect. Search within wider bounds.",
+    "verdict.group":
+        "These data cannot distinguish {group:all}: the errors with each of them differ by no more than chance.",
     "verdict.group_unexplained":
-        "These data cannot distinguish {group:all}: with each the error is the same but for chance, or for the "
-        "unexplained residual.",
+        "These data cannot distinguish {group:all}: the errors with each of them differ by no more than chance, or "
+        "than the unexplained residual.",
     "verdict.two":
         "These data cannot tell which two of these are present: {group:listed}. Their refits differ by less than "
         "chance.",
@@ -115,14 +116,13 @@ VERDICT: Mapping[str, str] = {
         "These data cannot tell which two of these are present: {group:listed}. Their refits differ by less than "
         "chance, or than the unexplained residual.",
     "verdict.label": "The label of {run:run} looks wrong ({what}): {evidence}.",
-    "verdict.unlisted": "Something remains that none of the listed effects explains.",
+    "verdict.unlisted": "Something remains that no effect in the library explains.",
     "verdict.unlisted_probable":
-        "Something remains that none of the listed effects explains (probability {probability:probability}).",
+        "Something remains that no effect in the library explains (probability {probability:probability}).",
     "verdict.remains": "Part of the error remains unexplained.",
     "verdict.remains_probable":
         "Part of the error remains unexplained (probability {probability:probability}).",
-    "verdict.limited":
-        "At most {limit} of the listed effects could be added (--max-effects): others may explain this part.",
+    "verdict.limited": "The search was limited to {limit:effects} (--max-effects). More effects may explain this part.",
     "verdict.not_repeated":
         "No run was recorded twice with the same command, so the noise in the band of the command is not known: part "
         "of the error may be this noise.",
@@ -135,39 +135,42 @@ VERDICT: Mapping[str, str] = {
         "With {named} the error on validation data rises from {before:error} to {after:error} ({deviations:.1f} "
         "standard errors): this effect may only imitate another one.",
     "contradicted.unstable":
-        "With {named} the model is {runs:unstable}; without, the error on validation data is {before:error}. What was "
-        "added may stand for another effect.",
+        "With {named} the model is {runs:unstable}; without, the error on validation data is {before:error}. This "
+        "effect may only imitate another one.",
     "alone.rises":
-        "With {equation} but without those after it the error on validation data rises from {before:error} to "
+        "With {equation}, and without the terms after it, the error on validation data rises from {before:error} to "
         "{after:error}.",
     "alone.unstable":
-        "With {equation} but without those after it the model is {runs:unstable}; the error on validation data was "
-        "{before:error}.",
-    "alternative.better": "Another model explains more: {models:listed} (--model).",
-    "alternative.equal": "These data cannot distinguish it from other models: {models:listed}.",
+        "With {equation}, and without the terms after it, the model is {runs:unstable}; the error on validation data "
+        "was {before:error}.",
+    "alternative.better": "Another model explains more: {models:listed}. Choose it with --model.",
+    "alternative.equal": "These data cannot distinguish this model from others: {models:listed}.",
     "dispensable.one":
-        "With the terms that a search proposes beyond the library, {effects:titles} is not needed: it stood for them.",
+        "With the proposed terms, which are not in the library, {effects:titles} is not needed: it only imitated "
+        "them.",
     "dispensable.several":
-        "With the terms that a search proposes beyond the library, {effects:titles} are not needed: they stood for "
+        "With the proposed terms, which are not in the library, {effects:titles} are not needed: they only imitated "
         "them.",
     "horizon.runs":
-        "These are errors over whole runs, where the fit was made over windows of {fitted:.3g} s: within these, what "
-        "is missing adds up to little.",
+        "These errors are over whole runs. The fit used windows of {fitted:.3g} s, in which the missing effect "
+        "accumulates little error.",
     "horizon.windows":
-        "These are errors over windows of {horizon:.3g} s, where the fit was made over windows of {fitted:.3g} s: "
-        "within these, what is missing adds up to little.",
-    "delay": "A slow command is answered {time} late. These data cannot tell by which lag or delay: {names:listed}.",
+        "These errors are over windows of {horizon:.3g} s. The fit used windows of {fitted:.3g} s, in which the "
+        "missing effect accumulates little error.",
+    "delay":
+        "At low frequency the output lags the command by {time}. These data cannot tell which lag or delay causes "
+        "it: {names:listed}.",
     "delay.before":
-        "A slow command is answered {time} late, {before} by the fitted model. These data cannot tell by which lag or "
-        "delay: {names:listed}.",
+        "At low frequency the output lags the command by {time}, and by {before} in the fitted model. These data "
+        "cannot tell which lag or delay causes it: {names:listed}.",
     "delay.without":
-        "Without {without:titles} a slow command is answered {time} late. These data cannot tell by which lag or "
-        "delay: {names:listed}.",
+        "Without {without:titles} the output lags the command by {time} at low frequency. These data cannot tell "
+        "which lag or delay causes it: {names:listed}.",
     "delay.without_before":
-        "Without {without:titles} a slow command is answered {time} late, {before} by the fitted model. These data "
-        "cannot tell by which lag or delay: {names:listed}.",
-    "proposed": "Beyond the library a search proposes: {terms:terms}.",
-    "proposed.instead": "Beyond the library a search proposes in place of {instead:titles}: {terms:terms}.",
+        "Without {without:titles} the output lags the command by {time} at low frequency, and by {before} in the "
+        "fitted model. These data cannot tell which lag or delay causes it: {names:listed}.",
+    "proposed": "The search proposes an addition that is not in the library: {terms:terms}.",
+    "proposed.instead": "In place of {instead:titles}, the search proposes: {terms:terms}.",
     "proposed.hypothesis": "This is a hypothesis.",
     "proposed.free_curve": "The last term is a free curve.",
     "proposed.error": "With {terms:them} the error is {error:error}.",
@@ -185,10 +188,13 @@ WHY: Mapping[str, str] = {
         "{floor:percent}.",
     "why.best": "No other effect does better.",
     "why.little":
-        "The effect explains {share:.2g} ± {error:.2g} % of the error above the noise floor. It counts from "
-        "{least:.2g} % on, beyond the standard error.",
-    "why.half": "The error rises on the {part} of the records: what only part of the data ask for is not added.",
-    "why.condition": "The error rises on one condition of the tests: what only part of the data ask for is not added.",
+        "The effect explains {share:.2g} ± {error:.2g} % of the error above the noise floor. At least {least:.2g} % "
+        "is required, beyond the standard error.",
+    "why.half":
+        "The error rises on the {part} of the records. An effect that only part of the data support is not added.",
+    "why.condition":
+        "The error rises under one condition of the tests. An effect that only part of the data support is not "
+        "added.",
     "why.chance": "That is no more than the best of all effects gains by chance.",
     "why.shows": "It shows as: {looks}.",
     "why.would_show": "It would show as: {looks}.",
@@ -196,7 +202,7 @@ WHY: Mapping[str, str] = {
 """Why the data speak for or against an effect."""
 
 STRUCTURES: Mapping[str, str] = {
-    "structures": "No model was named. Of these the first was chosen: {models:terms}.",
+    "structures": "No model was named. The first of these was chosen: {models:terms}.",
     "structures.one": "No model was named: {why}.",
     "structure.of": "{machine}, {why}",
     "structure": "{facts:listed} ({why})",
@@ -221,27 +227,27 @@ STRUCTURES: Mapping[str, str] = {
 """Why a model was chosen where none was named."""
 
 SEARCH: Mapping[str, str] = {
-    "verdict.unfitted": 
-        "The search was not over: there was no time to fit a model. Give more time (--time), or a fit (--fit).",
-    "verdict.unranked": 
-        "The search was not over: there was no time to examine any effect. Give more time (--time).",
+    "verdict.unfitted":
+        "The search was stopped early: there was no time to fit a model. Give more time (--time), or a fit (--fit).",
+    "verdict.unranked":
+        "The search was stopped early: there was no time to examine any effect. Give more time (--time).",
     "stage.no_time": "There was no time for the {stage}.",
     "stage.failed": "The stage '{stage}' failed: {why}. What was found before it is valid.",
     "stage.unusable": "{error}",
     "stage.memory": "it needs more memory than there is; use fewer or shorter runs",
     "stage.defect": "a defect of the program ({error}); its log has the details",
-    "stages.missed": "Not looked at: {stages:listed}.",
-    "terms.stopped": "The search for unknown terms was stopped before its end.",
+    "stages.missed": "Not examined: {stages:listed}.",
+    "terms.stopped": "The search for unknown terms was stopped early.",
     "terms.left_out":
-        "Of {looked_at} terms that were tried {left_out} were left out: no model can contain them, or what they add is "
-        "not finite.",
+        "Of {looked_at} terms that were tried, {left_out} were left out: no model can contain them, or their "
+        "contribution is not finite.",
     "terms.noise": "No unknown term was searched for: the error is measurement noise.",
-    "refused": "Of {looked_at} terms that were tried the best was rejected: {equation}.",
+    "refused": "Of {looked_at} terms that were tried, the best was rejected: {equation}.",
     "refused.given":
-        "Of {looked_at} terms that were tried in addition to {effects:titles} the best was rejected: {equation}.",
-    "refused.little": "Its evidence on data left out of its fit is {gain:.3g} nats, and {bar:.3g} are needed.",
+        "Of {looked_at} terms that were tried in addition to {effects:titles}, the best was rejected: {equation}.",
+    "refused.little": "Its evidence on held-out data is {gain:.3g} nats, and {bar:.3g} are needed.",
     "refused.some_runs":
-        "Its evidence on data left out of its fit is {gain:.3g} nats ({bar:.3g} are needed), but some runs get worse.",
+        "Its evidence on held-out data is {gain:.3g} nats ({bar:.3g} are needed), but the error of some runs rises.",
     "refused.error": "With it the error is {error:error}.",
     "refused.error_verify": "With it the error is {error:error} ({verify:error} on validation data).",
     "term.hypothesis": "{meaning} (a hypothesis: too few runs to confirm it)",

@@ -41,7 +41,7 @@ def test_without_a_model_that_which_fits_is_taken_and_the_others_are_told(servic
     assert fit["model"] == fit["settings"]["model"] == "motor"
     assert fit["structures"][0]["machine"] == "motor"
     assert len(fit["structures"]) == 3
-    assert fit["notes"][0].startswith("No model was named. Of these the first was chosen: motor, held-out error ")
+    assert fit["notes"][0].startswith("No model was named. The first of these was chosen: motor, held-out error ")
     assert service.get(f"/fits/{job['fit']}").status_code == 200
     assert "<td>motor</td>" in service.get(f"/matrices/{matrix}").text  # the list of fits
 

@@ -35,7 +35,7 @@ def test_the_model_is_chosen_and_what_cannot_be_drawn_is_named(servoident, folde
     assert done.returncode == 0, done.stderr
     fit = json.loads((tmp_path / "fit.json").read_text())
     assert (fit["model"], fit["structures"][0]["machine"]) == ("open_valve", "open_valve")
-    assert fit["notes"][0].startswith("No model was named. Of these the first was chosen: open_valve, held-out error ")
+    assert fit["notes"][0].startswith("No model was named. The first of these was chosen: open_valve, held-out error ")
     done = servoident("compare", folder, "--fit", tmp_path / "fit.json", "--out", tmp_path / "figures")
     assert done.returncode == 0, done.stderr
     assert "cannot be drawn: " in done.stdout

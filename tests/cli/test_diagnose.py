@@ -129,7 +129,9 @@ def test_a_proposed_term_goes_from_a_diagnosis_into_a_fit(servoident, tmp_path):
     assert term["equation"] == "w = w + s * (w * exp(-((x - xm) / d)**2))"
     assert "acts at one part of the way" in " ".join(done.stdout.split())
     assert f"`servoident fit {matrix} --start {found}`" in " ".join(done.stdout.split())
-    assert "Beyond the library a search proposes: w = w + s * (w * exp(" in " ".join(done.stdout.split())
+    assert "The search proposes an addition that is not in the library: w = w + s * (w * exp(" in " ".join(
+        done.stdout.split()
+    )
     promised = json.loads(found.read_text())["proposals"][0]["error"]["fit"]
     for how in ("--custom", "--start"):
         done = servoident("fit", matrix, how, found, "--json", fitted)

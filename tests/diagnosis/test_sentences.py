@@ -37,7 +37,7 @@ def test_a_part_that_nobody_described_is_named_by_what_it_does():
         bare.described("spool_stiction")
         == "spool stiction (the spool moves only above a breakaway signal, at the valve)"
     )
-    assert bare.described("cubic_stiffness") == "cubic stiffness (stiffening or softening with position, at the load)"
+    assert bare.described("cubic_stiffness") == "cubic stiffness (stiffness that changes with position, at the load)"
     assert bare.described("dead_zone") == "dead zone"
     valve = family(matrix(Actuator("ANY", servo_valve="D765")))
     assert valve.described("spool_stiction") == "spool stiction"
@@ -59,9 +59,9 @@ def test_an_effect_of_a_group_is_said_with_the_others_and_the_probability_of_the
 
 def test_where_no_more_effects_could_be_added_it_is_not_said_that_none_explains_the_rest():
     said = [verdict_text(("dead_zone",), (), (), True, {"fit": 0.1}, 0.2, limit=limit) for limit in (None, 1)]
-    assert "none of the listed effects explains" in said[0]
-    assert "none of the listed" not in said[1]
-    assert "At most 1 of the listed effects could be added (--max-effects): others may explain this part." in said[1]
+    assert "no effect in the library explains" in said[0]
+    assert "no effect in the library" not in said[1]
+    assert "The search was limited to 1 effect (--max-effects). More effects may explain this part." in said[1]
 
 
 @pytest.mark.parametrize("against", [True, False])
@@ -71,11 +71,11 @@ def test_a_verdict_says_what_an_effect_does_once(against):
     added = ("dead_zone", "cubic_stiffness", "spool_stiction")
     text = verdict_text(added, [("spool_stiction", "backlash")], (), False, {"fit": 0.01}, 0.2, against=rises,
                         described=models.described)  # fmt: skip
-    assert text.count("stiffening or softening") == 1
+    assert text.count("stiffness that changes with position") == 1
     assert text.count("the spool moves only above a breakaway signal, at the valve) ") == 0
     assert text.count("(the spool moves only above a breakaway signal, at the valve): ") == 1
     assert text.count("spool stiction") == 2
-    first = "cubic stiffness" if against else "cubic stiffness (stiffening or softening with position, at the load)"
+    first = "cubic stiffness" if against else "cubic stiffness (stiffness that changes with position, at the load)"
     assert f" by dead zone, {first} and" in text or f"lacks dead zone, {first} and" in text
 
 
@@ -94,8 +94,10 @@ def test_what_later_terms_bring_down_is_not_said_first(last, mended):
         Proposal(place=("force",), equation="R = R + s * x", effect={}, error={"fit": 0.1, "verify": last}, terms=2),
     ]
     text = proposed_text(terms)
-    alone = "With R = R + s * v but without those after it the error on validation data rises from 24.0 % to 31.0 %."
-    assert text.startswith("Beyond the library") is mended
+    alone = (
+        "With R = R + s * v, and without the terms after it, the error on validation data rises from 24.0 % to 31.0 %."
+    )
+    assert text.startswith("The search proposes") is mended
     assert text.endswith(alone) is mended
     assert text.startswith("With R = R + s * v the error on validation data rises") is not mended
 

@@ -50,7 +50,7 @@ def test_the_catalogues_verdict_stands_whatever_fails_later(monkeypatch, caplog)
     for stage in found.not_looked_at:
         assert f"The stage {stage!r} failed: {DEFECT}. What was found before it is valid." in found.notes
     assert (found.budget, found.next_experiment, found.proposals) == (None, None, ())
-    assert found.verdict.text.endswith(f"Not looked at: {LAGS}, {ERROR_BUDGET}, {NEXT_RUN}, {TERMS}.")
+    assert found.verdict.text.endswith(f"Not examined: {LAGS}, {ERROR_BUDGET}, {NEXT_RUN}, {TERMS}.")
     raised = [record.exc_info[0] for record in caplog.records if record.name == "servoident.diagnosis"]
     assert raised == [ZeroDivisionError] * 4
     before = heard[-1]  # told before the terms were searched for, and with all that was known by then

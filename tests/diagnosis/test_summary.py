@@ -87,7 +87,7 @@ def test_nothing_something_unlisted_and_what_is_contradicted_are_said():
     assert nothing.summary[1] == "The error on validation data is 11.0 %; the noise floor is 0.500 %."
     assert nothing.summary[2] == "Next: use the model as it is."
     unlisted = replace(nothing, verdict=Verdict(unexplained=True, probabilities={"unlisted": 0.9}))
-    assert unlisted.summary[0] == "Missing: something that no listed effect explains (probability 90 %)."
+    assert unlisted.summary[0] == "Missing: something that no effect in the library explains (probability 90 %)."
     against = lines(standing="contradicted", contradicted_by=("dead_zone",))
     assert against[0].startswith("Not confirmed: dead zone (")
     assert against[2].startswith("Next: do not add dead zone yet. Compare the validation runs with and without it")
@@ -103,7 +103,7 @@ def test_a_wrong_label_and_a_search_that_was_stopped_come_first():
     )
     stopped = replace(FOUND, complete=False, verdict=Verdict())
     assert stopped.summary[::2] == (
-        "Nothing was found so far: the search was stopped.",
+        "Nothing was found yet: the search was stopped early.",
         "Next: search again with more time.",
     )
 

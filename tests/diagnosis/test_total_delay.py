@@ -42,12 +42,12 @@ def test_where_disturbances_hide_the_shape_of_the_answer_lag_and_delay_are_one_g
     assert {"command_delay", "acquisition_lag"} <= set(late.in_place)
     assert abs(late.fitted.value - LAG) < 4 * late.fitted.std_error
     said = delay_sentence(late)
-    assert re.search(r"answered 0\.1\d* ± 0\.0\d+ s late", said)
+    assert re.search(r"lags the command by 0\.1\d* ± 0\.0\d+ s\.", said)
     assert "tau" in said
     assert "command delay" in said
-    assert said.startswith("A slow command")
+    assert said.startswith("At low frequency")
     assert delay_sentence(late, without=("spool_stiction",)).startswith(
-        "Without spool stiction a slow command is answered"
+        "Without spool stiction the output lags the command by"
     )
 
 
@@ -59,7 +59,7 @@ def test_a_clean_record_tells_a_lag_from_a_delay():
 @pytest.mark.usefixtures("few_effects")
 def test_a_diagnosis_says_it():
     found = diagnose(*fitted(3e-3), most=1, propose=False)
-    assert "These data cannot tell by which lag or delay: tau" in found.verdict.text
+    assert "These data cannot tell which lag or delay causes it: tau" in found.verdict.text
 
 
 def test_of_a_model_without_a_time_constant_of_its_own_nothing_is_said():

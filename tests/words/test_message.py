@@ -188,7 +188,8 @@ def test_a_value_is_put_into_words_by_its_kind_and_may_be_a_message():
     )
     late = message("late.seconds", value=0.0123, error=0.001)
     assert said([message("delay", time=late, names=["a"]), Message("next.use", {})]) == (
-        "A slow command is answered 0.0123 ± 0.001 s late. These data cannot tell by which lag or delay: a. "
+        "At low frequency the output lags the command by 0.0123 ± 0.001 s. These data cannot tell which lag or delay "
+        "causes it: a. "
         "Next: use the model as it is."
     )
 

@@ -55,7 +55,7 @@ def test_a_verify_error_above_the_catalogues_is_said_first_with_both() -> None:
     assert text.startswith(
         "With R = R + s * (v**3) in place of play and dead zone the error on validation data rises from 16"
     )
-    assert "Beyond the library a search proposes in place of play and dead zone: R = R + s * (v**3)." in text
+    assert "In place of play and dead zone, the search proposes: R = R + s * (v**3)." in text
 
 
 @pytest.mark.parametrize("share", [0.155, 0.10])
@@ -63,7 +63,7 @@ def test_one_that_is_no_worse_only_says_what_it_stands_instead_of(share: float) 
     told = found(share).instead(cast(FittedModel, Leaving(0.16)), ("play",), verify())
     assert told.found[-1].contradicted is None
     assert told.found[-1].instead_of == ("play",)
-    assert proposed_text(told.found).startswith("Beyond the library a search proposes in place of play: ")
+    assert proposed_text(told.found).startswith("In place of play, the search proposes: ")
 
 
 def test_without_runs_to_verify_nothing_is_known() -> None:
@@ -86,18 +86,18 @@ def test_of_two_searches_what_was_refused_and_would_leave_less_is_told() -> None
             assert (told.rejected, told.looked_at) == (plain.rejected, 8000)
     assert plain.rejected is not None
     assert beside.rejected is not None
-    assert "max(Q, 0) * w). Its evidence on data left out of its fit is 10.3 nats" in plain.rejected.sentences(8000)
+    assert "max(Q, 0) * w). Its evidence on held-out data is 10.3 nats" in plain.rejected.sentences(8000)
     assert plain.rejected.sentences(8000).endswith(
         "13.4 are needed. With it the error is 30.0 % (40.0 % on validation data)."
     )
     assert (
-        "in addition to dead zone the best was rejected: R = R + s * (x). Its evidence on"
+        "in addition to dead zone, the best was rejected: R = R + s * (x). Its evidence on"
         in beside.rejected.sentences(8000)
     )
     assert found(0.1).or_rejected(plain).rejected is None
     unsteady = refused("w = w + s * (w * abs(v))", 1291.0).rejected
     assert unsteady is not None
-    assert "(13.4 are needed), but some runs get worse. With it the" in unsteady.sentences(8000)
+    assert "(13.4 are needed), but the error of some runs rises. With it the" in unsteady.sentences(8000)
 
 
 def test_where_a_verify_run_cannot_be_followed_a_refused_term_tells_no_error_of_it() -> None:
@@ -122,7 +122,7 @@ def test_what_the_terms_do_without_is_named_no_more() -> None:
     assert (after.standing, after.contradicted_by) == ("stand_in", ())
     assert after.indistinguishable == (("entrained_air", "backlash"),)
     assert conclude(replace(before, dispensable=named)).standing == "nothing"
-    told = "one way leakage and gain asymmetry are not needed: they stood for them."
+    told = "one way leakage and gain asymmetry are not needed: they only imitated them."
     assert next(dispensable_sentence(needless)).endswith(told)
 
 
