@@ -49,9 +49,7 @@ def signals(
     for place, name in enumerate(channels):
         shown = {run.id: _part(run, name, first, length) for run in runs if name in run.channels}
         unit = next(run.units.get(name, "1") for run in runs if name in run.channels)
-        factor, printed = words.engineering(
-            (float(np.abs(one[1]).max()) for one in shown.values() if len(one[1])), unit
-        )
+        factor, printed = words.engineering((run.largest(name) for run in runs if name in run.channels), unit)
         tables[f"channel{place}"] = [row for run, one in shown.items() for row in _rows(*one, factor, run, len(runs))]
         values[f"across{place}"] = [title(name).capitalize(), words.axis("", printed).strip()]
     named = ", ".join(run.id for run in runs)

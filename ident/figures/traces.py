@@ -6,6 +6,8 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import partial
 
+import numpy as np
+
 from ident.decimation.envelope import Real, envelope
 from ident.decimation.levels import Levels
 from ident.figures import words
@@ -32,6 +34,10 @@ class Trace:
     def duration(self) -> float:
         """Length of the record in s (or in samples)."""
         return self.length / self.sample_rate
+
+    def largest(self, channel: str) -> float:
+        """The largest magnitude of a channel over the whole record (SI): its unit is the same in every stretch."""
+        return float(np.abs(self.envelope(channel, 0, self.length, 1)[1]).max())
 
 
 def traced(run: Run, levels: Levels | None = None) -> Trace:

@@ -67,3 +67,29 @@ def test_a_range_chosen_with_the_mouse_is_validation_data(page, site, matrix):
     page.get_by_label("Gap before them").fill("")
     page.get_by_role("button", name="Save as new revision").click()
     expect(page.get_by_role("button", name=re.compile(r"^Edit .*\.validation$"))).to_have_count(0, timeout=60_000)
+
+
+def test_the_points_that_are_there_follow_the_wheel_before_the_service_answers(page, site, matrix):
+    """The line is stretched about the pointer on the figure's canvas; the sharp points replace it once they come."""
+    held = []
+    page.goto(f"{site.address}/matrices/{matrix}")
+    page.locator("#run-0 a").click()
+    figure = page.locator("#figure-signals")
+    canvas = figure.locator("canvas")
+    expect(canvas).to_be_visible(timeout=120_000)
+    expect(figure.locator(".plot")).to_have_attribute("aria-busy", "false")
+    canvas.scroll_into_view_if_needed()
+    box = canvas.bounding_box()
+    page.mouse.move(box["x"] + 0.6 * box["width"], box["y"] + 0.4 * box["height"])
+    drawn = canvas.evaluate("canvas => canvas.toDataURL()")
+    page.route("**/figures/signals.json*", lambda route: held.append(route))
+    with page.expect_request("**/figures/signals.json*"):
+        page.mouse.wheel(0, -100)
+    stretched = canvas.evaluate("canvas => canvas.toDataURL()")
+    assert stretched != drawn
+    expect(figure.locator(".plot")).to_have_attribute("aria-busy", "true")
+    for route in held:
+        route.continue_()
+    page.unroute("**/figures/signals.json*")
+    expect(figure.locator(".plot")).to_have_attribute("aria-busy", "false")
+    assert canvas.evaluate("canvas => canvas.toDataURL()") != stretched

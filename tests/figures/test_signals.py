@@ -34,6 +34,17 @@ def test_a_spike_of_one_sample_is_drawn_at_every_zoom(start, seconds):
     assert len(rows) <= 702
 
 
+def test_a_quiet_stretch_has_the_unit_of_the_whole_record():
+    """So that points of one stretch can be drawn over those of another."""
+    loud = Run("one", "-", RATE, {"command": TIME**4}, {"command": "m"}, output="command")
+    shown = [
+        figure("signals", Recorded([loud], Actuator("SW-1")), start=start, seconds=0.1).to_dict(live=True)["params"]
+        for start in (None, 0.0, 6.0)
+    ]
+    (unit,) = {param["value"][1] for params in shown for param in params if param["name"] == "across0"}
+    assert unit == "(m)"
+
+
 def test_the_rows_of_eight_channels_fit_into_a_step_of_the_wheel():
     """200 kB, so that a link of 10 Mbit/s brings them in a sixth of a second."""
     noise = np.random.default_rng(0).standard_normal((8, N))

@@ -82,6 +82,7 @@ async function draw(figure) {
     const answer = await fetch(address, { credentials: "same-origin", signal: figure.asked.signal });
     const spec = await answer.json();
     if (!answer.ok) throw new Error([spec.what ?? spec.detail ?? spec.title, spec.remedy].filter(Boolean).join("; "));
+    figure.dispatchEvent(new CustomEvent("arrived", { detail: spec }));
     if (turn !== figure.turn) return;
     const kept = frame(spec);
     if (!(await refilled(figure, spec, kept))) await embedded(figure, plot, spec, turn);

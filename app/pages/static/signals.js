@@ -1,15 +1,16 @@
-// Signals are zoomed and moved: the axis follows at once, and at rest the service sends the points of what is shown.
+// Signals are zoomed and moved: the points that are there follow at once, and at rest the service sends those of what is shown.
 
 import { guarded, send } from "./api.js";
+import { preview, remember } from "./preview.js";
 
 const section = document.querySelector("#signals");
 const figure = section.querySelector(".figure");
 const plot = figure.querySelector(".plot");
 const { start: from, seconds: long } = figure.querySelector("form").elements;
 const whole = Number(section.dataset.duration), shortest = Number(section.dataset.shortest);
-const REST = 120; // ms after the last movement until the points are asked for
+const REST = 100; // ms after the last movement until the points are asked for
 const STEP = 1.25; // by how much a turn of the wheel or a key zooms
-let rest, held, frame, along;
+let rest, held, frame;
 
 const shown = () => {
   const start = Number(from.value);
@@ -17,8 +18,21 @@ const shown = () => {
 };
 
 function follow() {
+  cancelAnimationFrame(frame);
   frame = undefined;
-  figure.view?.signal("begin", along[0]).signal("end", along[1]).runAsync();
+  const { start, seconds } = shown();
+  if (figure.view) preview(figure.view, start, start + seconds);
+}
+
+// Points that come are on the screen at once. Vega follows, with axes of these points.
+figure.addEventListener("arrived", ({ detail }) => {
+  remember(detail);
+  follow();
+});
+
+function ask() {
+  delete figure.dataset.drawn; // the canvas shows something else by now
+  from.form.dispatchEvent(new Event("change"));
 }
 
 function show(start, seconds) {
@@ -26,10 +40,9 @@ function show(start, seconds) {
   const first = Math.min(Math.max(start, 0), whole - length);
   from.value = first ? Number(first.toPrecision(9)) : "";
   long.value = length < whole ? Number(length.toPrecision(9)) : "";
-  along = [first, first + length];
-  frame ??= requestAnimationFrame(follow);  // turns of a wheel come faster than frames
+  frame ??= requestAnimationFrame(follow); // turns of a wheel come faster than frames
   clearTimeout(rest);
-  rest = setTimeout(() => from.form.dispatchEvent(new Event("change")), REST);
+  rest = setTimeout(ask, REST);
 }
 
 function zoom(factor, share = 0.5) {
