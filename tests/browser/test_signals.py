@@ -82,7 +82,11 @@ def test_the_points_that_are_there_follow_the_wheel_before_the_service_answers(p
     box = canvas.bounding_box()
     page.mouse.move(box["x"] + 0.6 * box["width"], box["y"] + 0.4 * box["height"])
     drawn = canvas.evaluate("canvas => canvas.toDataURL()")
-    page.route("**/figures/signals.json*", lambda route: held.append(route))
+
+    def hold(route):
+        held.append(route)
+
+    page.route("**/figures/signals.json*", hold)
     with page.expect_request("**/figures/signals.json*"):
         page.mouse.wheel(0, -100)
     stretched = canvas.evaluate("canvas => canvas.toDataURL()")
