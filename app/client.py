@@ -25,6 +25,7 @@ from uuid import uuid4
 import httpx
 
 from schemas.annotation import AnnotationView
+from schemas.deletion import DeletionView
 from schemas.diagnosis import DiagnosisRequest, DiagnosisView
 from schemas.draft import DraftView
 from schemas.fit import ComparisonView, FitRequest, FitView, JobView
@@ -123,6 +124,10 @@ class Client:
         """Write a name, tags and a note on a fit, in the place of those before."""
         written = {"name": name, "tags": list(tags), "note": note}
         return AnnotationView.model_validate_json(self.request("PUT", f"/fits/{fit}/annotation", json=written).content)
+
+    def delete_fit(self, fit: str) -> DeletionView:
+        """Delete a fit and all that was made of it; what something else uses is refused."""
+        return DeletionView.model_validate_json(self.request("DELETE", f"/fits/{fit}").content)
 
     def withdraw(self, fit: str, why: str = "") -> FitView:
         """Take a fit out of force: its serial number has no current set until one is approved."""

@@ -57,6 +57,7 @@ FEATURES = (
     "fits",
     "approvals",
     "annotations",
+    "deletions",
     "figures",
     "profiles",
     "diagnoses",

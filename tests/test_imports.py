@@ -129,7 +129,7 @@ ROOMS_OF_THE_SERVICE = (
     "client", "blobs", "context", "errors", "form", "paging", "security", "reserve", "idempotency", "access", "openapi",
     "catalogue", "parameters", "webhooks", "matrices", "drafts", "live", "stream", "backup",
     "jobs", "retention", "workers", "operation", "own_effects", "limits", "statistics",
-    "fits", "approvals", "annotations", "diagnoses", "profiles", "refits", "hybrid", "plans", "regress",
+    "fits", "approvals", "annotations", "diagnoses", "profiles", "refits", "hybrid", "plans", "regress", "deletions",
     "actuators", "verdicts", "report", "figures",
     "kinds", "pages", "main", "cli", "__main__",
 )  # fmt: skip

@@ -20,6 +20,7 @@ from app.cli.bench import bench
 from app.cli.check import check
 from app.cli.compare import compare
 from app.cli.control import control
+from app.cli.delete import delete
 from app.cli.demo import demo
 from app.cli.diagnose import diagnose
 from app.cli.effects import program as effects
@@ -68,6 +69,7 @@ GROUPS = {
         query,
         revise,
         annotate,
+        delete,
         migrate,
         backup,
         restore,

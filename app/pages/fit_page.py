@@ -36,6 +36,7 @@ from ident.words.percent import percent_in_print
 from ident.words.titles import with_effects
 from ident.words.uses import data
 from schemas.annotation import AnnotationView
+from schemas.deletion import DeletionView
 from schemas.fit import LadderView
 from schemas.matrix import MatrixView
 from schemas.parameters import ParameterSetView
@@ -101,12 +102,13 @@ class FitPageView:
     kept: tuple[KeptRow, ...]
     keeping: tuple[Keeping, ...]
     written: AnnotationView
+    deletion: DeletionView
 
 
 def fit_page(
     stored: Stored, matrix: MatrixView, lacks: MissingView, ladder: LadderView, step: Next, objections: tuple[str, ...],
     others: Iterable[ParameterSetView] = (), newer: str | None = None, kept: Sequence[Kept] = (),
-    written: AnnotationView | None = None,
+    written: AnnotationView | None = None, deletion: DeletionView | None = None,
 ) -> FitPageView:  # fmt: skip
     """The page of a fit of this matrix; `others` are fits of the same actuator, to compare it with.
 
@@ -165,6 +167,7 @@ def fit_page(
         kept=tuple(kept_rows(suited(kept, fit.model), fit.effects)),
         keeping=tuple(keeping(lacks, kept)),
         written=written or AnnotationView(),
+        deletion=deletion or DeletionView(fit=stored.id, serial=stored.serial),
     )
 
 

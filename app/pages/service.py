@@ -9,6 +9,7 @@ from app.actuators import service as actuators
 from app.annotations import service as annotated
 from app.approvals import service as approvals
 from app.context import Context
+from app.deletions import service as deletions
 from app.diagnoses import service as diagnoses
 from app.errors import Failure
 from app.fits import service as fits
@@ -196,4 +197,5 @@ def fit(context: Context, fit_id: str) -> FitPageView | JobPageView:
     step = of_fit(context, fit_id)
     against = fits.against(context, fit_id)
     kept, written = own_effects.every(context), annotated.get(context, fit_id)
-    return fit_page(stored, matrix, lacks, way, step, against, others, newer, kept, written)
+    going = deletions.shown(context, fit_id)
+    return fit_page(stored, matrix, lacks, way, step, against, others, newer, kept, written, going)

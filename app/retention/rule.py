@@ -56,7 +56,7 @@ def carry_out(context: Context, digest: str) -> RetentionView:
                           "show the list again, and confirm the new digest")  # fmt: skip
         for goer in goers:
             goer.row.removed_at, goer.row.source = now(), {}
-    _remove(context, {blob for goer in goers for blob in goer.blobs})
+    remove_unnamed(context, {blob for goer in goers for blob in goer.blobs})
     return view
 
 
@@ -106,7 +106,7 @@ def _view(context: Context, goers: Sequence[Goer], sizes: Mapping[str, int]) -> 
     )  # fmt: skip
 
 
-def _remove(context: Context, blobs: set[str]) -> None:
+def remove_unnamed(context: Context, blobs: set[str]) -> None:
     """Remove blobs that no record names: what stays behind, by a kill say, `servoident tidy` removes."""
     with context.sessions() as session:
         free = blobs - set(_in_use(session))

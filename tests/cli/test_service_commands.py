@@ -138,6 +138,16 @@ def test_a_fit_is_annotated_and_what_no_option_names_stays(service, servoident, 
     assert servoident("annotate", "nothing", "--name", "x", *service.options).returncode == 2
 
 
+def test_a_fit_is_deleted_once_that_is_confirmed(service, servoident, stored):
+    short = {"population": 20, "generations": 3, "elite": 2}
+    fit = service.ended(service.fit(stored["id"], set={"m0": "4.25 kg"}, options=short))["fit"]
+    shown = servoident("delete", fit, *service.options)
+    assert shown.stdout == f"fit {fit} of SIM-0001 would be deleted (nothing was made of it); to delete it: --yes\n"
+    done = servoident("delete", fit, "--yes", *service.options)
+    assert done.stdout == f"fit {fit} of SIM-0001 is deleted (nothing was made of it)\n", done.stderr
+    assert servoident("delete", fit, "--yes", *service.options).returncode == 2
+
+
 def test_what_the_service_refuses_is_one_line_and_exit_2(service, servoident):
     """Its problem document becomes the line."""
     done = servoident("approve", "nothing", *service.options)

@@ -108,6 +108,8 @@ OF_API = (
     Call("POST", "/fits/{fit}/approve", LAB, changes=True),
     read("/fits/{fit}/annotation"),
     Call("PUT", "/fits/{fit}/annotation", LAB, {"name": "cold oil"}, changes=True),
+    read("/fits/{fit}/deletion"),
+    Call("DELETE", "/fits/{fit}", LAB, changes=True),
     Call("POST", "/fits/{fit}/withdraw", LAB, changes=True),
     Call("POST", "/fits/{fit}/effects", LAB, {"effect": "dead_zone"}, changes=True),
     Call("POST", "/fits/{fit}/what-if", EVERY, {"gain": [2, 3]}),

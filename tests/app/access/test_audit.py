@@ -34,6 +34,9 @@ def made(service: TestClient, matrix: str, fitted: str) -> Iterator[dict[str, st
     tokens = [
         service.post(f"{API}/tokens", json={"name": name, "role": "admin"}).json() for name in ("auditor", "other")
     ]
+    short = {"matrix": matrix, "options": {"population": 20, "generations": 3, "elite": 2}}
+    deleted = service.post(f"{API}/fits", json=short).json()["id"]
+    assert '"state":"succeeded"' in service.get(f"{API}/jobs/{deleted}/events").text
     diagnosis = service.post(f"{API}/diagnoses", json={"fit": fitted}).json()["id"]
     draft = service.post(f"{API}/drafts", files={"files": ("run.csv", RAW)}).json()["id"]
     asked = {"url": "http://127.0.0.1:9/", "events": ["limit.broken"]}
@@ -44,6 +47,7 @@ def made(service: TestClient, matrix: str, fitted: str) -> Iterator[dict[str, st
         "draft": draft,
         "matrix": matrix,
         "fit": fitted,
+        "deleted": deleted,
         "job": diagnosis,
         "name": "leak",
         "model": "qian2014",
@@ -111,7 +115,8 @@ def test_a_change_leaves_one_line_and_is_none_without_it(
     """
     quiet(service)
     before, rows, request = lines(service), stored(service), uuid4().hex
-    path, sent = API + call.path.format(**made), content(call, made)
+    of = made | ({"fit": made["deleted"]} if call.name == "DELETE /fits/{fit}" else {})
+    path, sent = API + call.path.format(**of), content(call, made)
     headers = {"Authorization": f"Bearer {made['bearer']}", "X-Request-ID": request, "Idempotency-Key": request}
     with monkeypatch.context() as patch:
         patch.setattr(noting.repository, "note", full)
@@ -127,7 +132,7 @@ def test_a_change_leaves_one_line_and_is_none_without_it(
     document = service.get(f"{API}/openapi.json").json()["paths"][API + call.path][call.method.lower()]
     assert (line["token"], line["name"], line["request"]) == (made["id"], "auditor", request)
     assert line["action"] == document["operationId"]
-    named = (API + (call.path[: call.path.rfind("}") + 1] or call.path)).format(**made)
+    named = (API + (call.path[: call.path.rfind("}") + 1] or call.path)).format(**of)
     assert f"{API}/{line['object']}" == answer.headers.get("Location", named)
     assert line["at"] > max((each["at"] for each in before), default="")
 

@@ -1,0 +1,1 @@
+"""Fits that are deleted, with all that was made of them."""
