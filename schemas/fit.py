@@ -98,7 +98,8 @@ class ProgressView(BaseModel):
 class JobSettings(SettingsView):
     """What a job was asked for: the fit, and of a diagnosis what to add at most, its time, and a search made anew.
 
-    Of a hybrid simulation the names of its case, controller and ground motion, of a profile its parameter.
+    Of a hybrid simulation the names of its case, controller and ground motion, of a profile its parameter, of a test
+    plan its program.
     """
 
     max_effects: int | None = None
@@ -108,6 +109,7 @@ class JobSettings(SettingsView):
     controller: str | None = None
     ground: str | None = None
     parameter: str | None = None
+    program: str | None = None
 
 
 class JobProblem(BaseModel):
@@ -122,7 +124,8 @@ class JobProblem(BaseModel):
 class JobView(BaseModel):
     """A queued, running or ended job; `parent` is the fit that it starts from, `problem` says why it failed.
 
-    `fit`, `diagnosis` and `hybrid_simulation` are the ids of what it made.
+    `fit`, `diagnosis`, `hybrid_simulation` and `plan` are the ids of what it made. `matrix` and `serial` are "" where
+    a job needs no runs and is about no actuator: a plan without a fit.
     """
 
     id: str
@@ -136,6 +139,7 @@ class JobView(BaseModel):
     fit: str | None
     diagnosis: str | None
     hybrid_simulation: str | None = None
+    plan: str | None = None
     problem: JobProblem | None
     created_at: str
     ended_at: str | None

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from datetime import datetime
 from typing import Any
 
-from sqlalchemy import ColumnElement, Select, or_, select, text, tuple_, update
+from sqlalchemy import ColumnElement, Select, and_, func, or_, select, text, tuple_, update
 from sqlalchemy.dialects import postgresql, sqlite
 from sqlalchemy.orm import Session
 
@@ -15,11 +15,11 @@ from app.tables import FitRow, JobRow, MatrixRow, TallyRow, now
 OPEN = ("queued", "running")
 ENDED = ("succeeded", "failed", "cancelled")
 JobOf = tuple[JobRow, str]
-"""A job and the serial number of the actuator that it is about."""
+"""A job and the serial number of the actuator that it is about; "" where it is about none."""
 
 
 def add(
-    session: Session, job: str, matrix: str, settings: dict[str, Any], parent: str | None, kind: str = "fit",
+    session: Session, job: str, matrix: str | None, settings: dict[str, Any], parent: str | None, kind: str = "fit",
     who: str = "",
 ) -> JobRow:  # fmt: skip
     """A queued job."""
@@ -44,13 +44,19 @@ def fit(session: Session, fit_id: str) -> FitRow | None:
 
 
 def matrix_of(session: Session, job_id: str) -> MatrixRow | None:
-    """The matrix of a job."""
+    """The matrix of a job; None where it needs none."""
     return session.scalar(select(MatrixRow).join(JobRow, JobRow.matrix == MatrixRow.id).where(JobRow.id == job_id))
+
+
+def serial_of(session: Session, job_id: str) -> str:
+    """The serial number of the actuator that a job is about; "" where it is about none."""
+    found = with_serial(session, job_id)
+    return "" if found is None else found[1]
 
 
 def with_serial(session: Session, job_id: str) -> JobOf | None:
     """A job by id, with its actuator's serial number."""
-    found = session.execute(_jobs().where(JobRow.id == job_id)).one_or_none()
+    found = session.execute(of_actuators().where(JobRow.id == job_id)).one_or_none()
     return None if found is None else (found[0], found[1])
 
 
@@ -59,7 +65,7 @@ def page(
     state: str | None = None, serial: str | None = None, matrix: str | None = None, of_fits: bool = False,
 ) -> Sequence[JobOf]:  # fmt: skip
     """Jobs, newest first: all, or those in a state, of an actuator, of a matrix, and only those that make a fit."""
-    query = _jobs().order_by(JobRow.created_at.desc(), JobRow.id.desc()).limit(limit)
+    query = of_actuators().order_by(JobRow.created_at.desc(), JobRow.id.desc()).limit(limit)
     for column, wanted in ((JobRow.state, state), (MatrixRow.serial, serial), (JobRow.matrix, matrix)):
         if wanted is not None:
             query = query.where(column == wanted)
@@ -72,18 +78,21 @@ def page(
 
 def open_of_actuators(session: Session, serials: Sequence[str]) -> Sequence[JobOf]:
     """Jobs that are to make a fit of these actuators and have not ended, oldest first."""
-    query = _jobs().where(JobRow.state.in_(OPEN), MatrixRow.serial.in_(serials), _makes_fit())
+    query = of_actuators().where(JobRow.state.in_(OPEN), MatrixRow.serial.in_(serials), _makes_fit())
     query = query.order_by(JobRow.created_at)
     return [(job, of) for job, of in session.execute(query)]
 
 
-def _jobs() -> Select[JobRow, str]:
-    return select(JobRow, MatrixRow.serial).join(MatrixRow, JobRow.matrix == MatrixRow.id)
+def of_actuators() -> Select[JobRow, str]:
+    """Jobs with the serial number of their matrix, without one that of the fit that they start from."""
+    serial = func.coalesce(MatrixRow.serial, FitRow.serial, "")
+    joined = select(JobRow, serial).join(MatrixRow, JobRow.matrix == MatrixRow.id, isouter=True)
+    return joined.join(FitRow, and_(JobRow.matrix.is_(None), JobRow.parent == FitRow.id), isouter=True)
 
 
 def _makes_fit() -> ColumnElement[bool]:
     """A diagnosis makes one where it was given none."""
-    return or_(JobRow.kind == "fit", JobRow.parent.is_(None))
+    return or_(JobRow.kind == "fit", and_(JobRow.kind == "diagnosis", JobRow.parent.is_(None)))
 
 
 def unfinished(session: Session) -> Sequence[str]:

@@ -24,15 +24,16 @@ _log = logging.getLogger("servoident.jobs")
 
 
 def record(
-    context: Context, job: str, matrix: str, settings: dict[str, Any], parent: str | None, kind: str, who: str = ""
-) -> JobView:
-    """Record and queue a job; one that is recorded under this id already is taken for it.
+    context: Context, job: str, matrix: str | None, settings: dict[str, Any], parent: str | None, kind: str,
+    who: str = "",
+) -> JobView:  # fmt: skip
+    """Record and queue a job; one that is recorded under this id already is taken for it. Some need no matrix.
 
     Raises Removed where the raw runs that it is to work on are gone.
     """
     about(f"jobs/{job}")
     with context.sessions() as session:
-        of = repository.matrix(session, matrix)
+        of = None if matrix is None else repository.matrix(session, matrix)
         if of is not None:
             check_there(of)
         try:
@@ -115,9 +116,8 @@ def end(session: Session, row: JobRow, state: str, problem: dict[str, Any] | Non
     """End a job that has not ended: recorded and tallied once, and told to whoever listens, in one transaction."""
     if not repository.end(session, row, state, problem):
         return
-    matrix = repository.matrix_of(session, row.id)
     job = EndedJob(
-        id=row.id, kind=row.kind, state=state, serial=matrix.serial if matrix else "", matrix=row.matrix,
+        id=row.id, kind=row.kind, state=state, serial=repository.serial_of(session, row.id), matrix=row.matrix or "",
         parent=row.parent, problem=None if problem is None else JobProblem(**problem),
     )  # fmt: skip
     announce(session, JobEnded, job=job)
@@ -141,12 +141,13 @@ def view(row: JobRow, serial: str) -> JobView:
     made = row.state == "succeeded" or (diagnosis and bool(row.progress.get("verdict")))
     makes_fit = row.kind == "fit" or (diagnosis and row.parent is None)
     return JobView(
-        id=row.id, kind=row.kind, state=row.state, matrix=row.matrix, serial=serial,
+        id=row.id, kind=row.kind, state=row.state, matrix=row.matrix or "", serial=serial,
         settings=JobSettings(**row.settings),
         progress=ProgressView(**row.progress), parent=row.parent,
         fit=row.id if made and makes_fit else None,
         diagnosis=row.id if made and diagnosis else None,
         hybrid_simulation=row.id if made and row.kind == "hybrid simulation" else None,
+        plan=row.id if made and row.kind == "plan" else None,
         problem=None if row.problem is None else JobProblem(**row.problem),
         created_at=row.created_at, ended_at=row.ended_at,
     )  # fmt: skip

@@ -132,8 +132,7 @@ class Run(Work):
             if row is None:
                 return
             if last["outcome"] is None:
-                matrix = repository.matrix_of(session, job)
-                self.kind.keep(session, row, matrix.serial if matrix else "", last["state"])
+                self.kind.keep(session, row, repository.serial_of(session, job), last["state"])
             state = last["outcome"] or "succeeded"
             problem = last["state"] if state == "failed" else None
             end(session, row, state, problem)
@@ -154,7 +153,7 @@ class Run(Work):
         with self.runs.sessions() as session:
             row, matrix = repository.find(session, job), repository.matrix_of(session, job)
             parent = repository.fit(session, row.parent) if row is not None and row.parent is not None else None
-        if row is None or matrix is None:
+        if row is None or (matrix is None and row.matrix is not None):
             raise Unusable("no-such-job", "the job is not recorded", job, "start it again")
         if row.parent is not None and parent is None:
             raise Unusable("no-such-fit", "the fit is not stored any more", row.parent, "start again from another")
@@ -178,8 +177,7 @@ class Run(Work):
             row = self._held(session)
             if row is None or row.cancel:
                 raise Cancelled
-            matrix = repository.matrix_of(session, self.lease.job)
-            self.kind.keep(session, row, matrix.serial if matrix else "", made)
+            self.kind.keep(session, row, repository.serial_of(session, self.lease.job), made)
 
     def _note(self, values: dict[str, Any]) -> bool:
         """Write progress; whether the job is to keep what it found and end. Raises Cancelled, Superseded."""

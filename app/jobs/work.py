@@ -33,20 +33,21 @@ class MadeSoFar(Progress):
 
 @dataclass(frozen=True)
 class Task:
-    """What a job is asked: its settings, the stored fit that it starts from, if any, whom it tells of its progress.
+    """What a job is asked: its settings, the stored fit and the matrix, if any, whom it tells of its progress.
 
     All but the last may pass from one process to another.
     """
 
     settings: dict[str, Any]
     parent: dict[str, Any] | None
-    recorded: MatrixRow
+    recorded: MatrixRow | None
     storage: Storage
     report: Report = silent
 
     @property
     def matrix(self) -> Matrix:
-        """The samples. Raises Unusable."""
+        """The samples, of a job that has a matrix. Raises Unusable."""
+        assert self.recorded is not None
         return load_row(self.storage, self.recorded)
 
     @property

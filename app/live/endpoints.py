@@ -25,7 +25,7 @@ _QUIET = 375  # looks without anything new until a sign of life: 15 s
 
 @router.get("", dependencies=[READERS])
 def list_streams() -> LiveList:
-    """The named streams of this process: those under way, and the newest that have ended."""
+    """The named streams of this service: those under way, and the newest that have ended."""
     return service.listed()
 
 

@@ -11,6 +11,7 @@ from schemas.fit import JobProblem, JobView
 
 _OPEN = ("queued", "running")
 _PLACES = {"diagnosis": "#missing", "profile": "#profile", "hybrid simulation": "/use?simulation={job}#hybrid"}
+_PLAN = "/plan?plan={job}#made"
 
 
 @dataclass(frozen=True)
@@ -62,7 +63,9 @@ def job_page(job: JobView) -> JobPageView:
 
 
 def _at(job: JobView) -> str:
-    """The page that shows a job: that of its fit where it makes none."""
+    """The page that shows a job: that of its fit where it makes none; a plan has a page of its own."""
+    if job.kind == "plan":
+        return _PLAN.format(job=job.id)
     if job.parent is not None and job.kind in _PLACES:
         return f"/fits/{job.parent}{_PLACES[job.kind].format(job=job.id)}"
     return f"/fits/{job.id}"
@@ -71,7 +74,7 @@ def _at(job: JobView) -> str:
 def settings_facts(settings: dict[str, Any]) -> tuple[tuple[str, str], ...]:
     """What the user chose, as far as it is not empty."""
     names = ("model", "effects", "method", "seed", "budget", "bounds", "fixed", "load", "options", "max_effects",
-             "time", "parameter", "case", "controller", "ground")  # fmt: skip
+             "time", "parameter", "case", "controller", "ground", "program")  # fmt: skip
     start = settings.get("start")
     of_search = () if not start or start["search"] else ("method", "seed", "options")
     chosen = ((name, settings.get(name)) for name in names if name not in of_search)

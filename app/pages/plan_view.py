@@ -6,7 +6,10 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from app.context import Context
+from app.errors import missing
 from app.fits import service as fits
+from app.jobs import service as jobs
+from app.pages.job_view import JobPageView, job_page
 from app.plans import service as plans
 from ident.fit.result import FitResult
 from ident.planning.files import WRITERS
@@ -63,21 +66,23 @@ class PlanShown:
 
 @dataclass(frozen=True)
 class PlanPageView:
-    """The form, filled with the limits of the fit's matrix, and the plan that is shown."""
+    """The form, filled with the limits of the fit's matrix; the plan that is shown, or the job that is to make it."""
 
     fit: str
     serial: str
     known: Mapping[str, str]
     shown: PlanShown | None
+    job: JobPageView | None
     limits: Mapping[str, tuple[str, str]]
     example: str = OWN
     formats: tuple[str, ...] = tuple(WRITERS)
 
 
 def plan_page(context: Context, fit: str, plan: str) -> PlanPageView:
-    """The page for a fit, or for none, with a plan. Raises Failure 404."""
-    found = plans.get(context, plan) if plan else None
-    fit = fit or (found.fit or "" if found else "")
+    """The page for a fit, or for none, with a plan or its job. Raises Failure 404."""
+    found = plans.made_as(context, plan) if plan else None
+    job = _job(context, plan) if plan and found is None else None
+    fit = fit or (found.fit if found else job.parent if job else None) or ""
     row = fits.find(context, fit) if fit else None
     actuator = FitResult.from_json(row.result).actuator if row is not None else None
     stated = actuator.rig_limits.stated if actuator is not None else {}
@@ -85,8 +90,16 @@ def plan_page(context: Context, fit: str, plan: str) -> PlanPageView:
         stated = {name: value for name, value in found.limits.model_dump().items() if value is not None}
     known = {name: f"{value:.6g} {UNITS[name]}" for name, value in stated.items()}
     return PlanPageView(
-        fit, row.serial if row is not None else "", known, None if found is None else _shown(found), LIMITS
+        fit, row.serial if row is not None else "", known, None if found is None else _shown(found), job, LIMITS
     )
+
+
+def _job(context: Context, plan: str) -> JobPageView:
+    """The job that has not made a plan. Raises Failure 404."""
+    job = jobs.get(context, plan)
+    if job.kind != plans.KIND:
+        raise missing("plan", plan)
+    return job_page(job)
 
 
 def _shown(found: PlanView) -> PlanShown:

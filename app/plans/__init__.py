@@ -1,1 +1,1 @@
-"""Test plans for a rig: made on request, kept, and sent as an archive of command files."""
+"""Test plans for a rig: made by a job, kept, and sent as an archive of command files."""

@@ -1,4 +1,4 @@
-"""/plans: the command files of a program of runs, inside the limits of a rig."""
+"""/plans: the command files of a program of runs, inside the limits of a rig, which a job plans."""
 
 from __future__ import annotations
 
@@ -11,8 +11,10 @@ from starlette.background import BackgroundTask
 from app.access.roles import LAB, READERS
 from app.context import Here
 from app.errors import COMMON
-from app.idempotency import Answer, Key, fingerprint, once
+from app.idempotency import Key, fingerprint
+from app.jobs.queueing import queued_once
 from app.plans import service
+from schemas.fit import JobView
 from schemas.plan import PlanPage, PlanRequest, PlanView
 
 router = APIRouter(prefix="/plans", tags=["plans"], responses=COMMON)
@@ -21,19 +23,11 @@ Limit = Annotated[int, Query(ge=1, le=200)]
 Format = Annotated[str, Query(max_length=10, description="Of the command files: csv, mat or tdms")]
 
 
-@router.post("", dependencies=[LAB], status_code=201, response_model=PlanView)
-def make_plan(here: Here, request: PlanRequest, key: Key = None) -> Response:
-    """Plan a program of runs for a rig and keep it: each run scaled to stay inside the limits, or refused."""
-
-    def answer(made: PlanView) -> Answer:
-        return 201, made.model_dump(mode="json"), f"/api/v1/plans/{made.id}"
-
-    def find(plan: str) -> Answer | None:
-        found = service.made_as(here, plan)
-        return None if found is None else answer(found)
-
+@router.post("", dependencies=[LAB], status_code=202, response_model=JobView)
+def start_plan(here: Here, request: PlanRequest, key: Key = None) -> Response:
+    """Queue a plan of runs for a rig: each is scaled to stay inside the limits, or refused; Location is its job."""
     asked = fingerprint("plan", request.model_dump())
-    return once(here.sessions, key, asked, lambda plan: answer(service.make(here, request, plan)), find)
+    return queued_once(here, key, asked, lambda job: service.submit(here, request, job))
 
 
 @router.get("", dependencies=[READERS])

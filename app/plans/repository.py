@@ -19,7 +19,7 @@ def find(session: Session, plan: str) -> PlanRow | None:
 
 
 def add(session: Session, plan: str, fit: str | None, result: dict[str, Any]) -> PlanRow:
-    """A new plan; the commit raises IntegrityError where the id is there already."""
+    """The plan that a job of this id made."""
     row = PlanRow(id=plan, fit=fit, result=result)
     session.add(row)
     return row

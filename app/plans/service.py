@@ -1,4 +1,4 @@
-"""Plans: make, keep, look, and as an archive of command files."""
+"""Plans: queue, look, and as an archive of command files."""
 
 from __future__ import annotations
 
@@ -6,75 +6,40 @@ import shutil
 import tempfile
 import zipfile
 from pathlib import Path
-from typing import Any
 
-from sqlalchemy.exc import IntegrityError
-
-from app.access.noting import about
 from app.context import Context
 from app.errors import Failure, missing
 from app.fits import service as fits
+from app.jobs import service as jobs
 from app.paging import cursor, keys_of
 from app.plans import repository
+from app.plans.asked import asked_plan
 from app.tables import PlanRow
-from ident.design.spread import USUAL, Spread
-from ident.errors import Unusable
 from ident.fit.result import FitResult
-from ident.planning.bench_program import KONONYKHIN
 from ident.planning.files import WRITERS
-from ident.planning.plan import Plan, plan
-from ident.planning.programs import QIAN
-from ident.readers.rig import rig_of
-from ident.units.quantity import parameter_value, shown
+from ident.planning.plan import Plan
 from ident.words.nearest import did_you_mean
+from schemas.fit import JobView
 from schemas.plan import PlanPage, PlanRequest, PlanView
 
-NAMED = (QIAN, KONONYKHIN)
-_LONGEST = 5e7  # samples of all runs together: the archive of their commands is of about a gigabyte before it is packed
+KIND = "plan"
 _QUICK = 1  # level of the packing: numbers in text shrink to a third, and better ones take ten times as long
 
 
-def make(context: Context, request: PlanRequest, identity: str) -> PlanView:
-    """Make a plan and keep it under this id. Raises Unusable, and Failure 404 where there is no such fit."""
+def submit(context: Context, request: PlanRequest, job: str) -> JobView:
+    """Queue a plan under the id decided for its job. Raises Failure 404, and Unusable for what cannot be a plan."""
     fit = None if request.fit is None else FitResult.from_json(fits.find(context, request.fit).result)
-    made = plan(
-        _program(request), fit, rig_of(request.rig) if request.rig else None,
-        _seconds(request.seconds, "seconds"), _seconds(request.ramp, "ramp"), request.seed, _spread(request),
-        request.least,
-    )  # fmt: skip
-    samples = sum(run.signal.samples for run in made.runs if run.signal is not None)
-    if samples > _LONGEST:
-        raise Unusable("too-large", f"{samples} samples of commands", "program", "ask for fewer or shorter runs")
-    about(f"plans/{identity}")
-    with context.sessions() as session:
-        try:
-            repository.add(session, identity, request.fit, made.to_json())
-            session.commit()
-        except IntegrityError:  # by the process before, which did not live to answer
-            session.rollback()
-    return get(context, identity)
-
-
-def _program(request: PlanRequest) -> str | dict[str, Any]:
-    """The name of a program, or one of the asker's own: never the path of a file. Raises Unusable."""
-    if isinstance(request.program, str) and request.program not in NAMED:
-        raise Unusable("no-such-program", f"no program {shown(request.program)!r}", "program",
-                       did_you_mean(request.program, NAMED, f"give {' or '.join(NAMED)}, or an object"))  # fmt: skip
-    return request.program
-
-
-def _seconds(given: float | str | None, name: str) -> float | None:
-    return None if given is None else parameter_value(given, "time", name)
-
-
-def _spread(request: PlanRequest) -> Spread:
-    usual = USUAL if request.spread is None else parameter_value(request.spread, "1", "spread")
-    stated = {name: parameter_value(share, "1", f"spreads {name}") for name, share in request.spreads.items()}
-    return Spread(usual, stated)
+    asked = asked_plan(request)
+    program = asked.check()
+    settings = {
+        "model": "none" if fit is None else fit.model, "effects": [] if fit is None else list(fit.effects),
+        "method": "none", "seed": request.seed, "program": program, "asked": request.model_dump(),
+    }  # fmt: skip
+    return jobs.record(context, job, None, settings, request.fit, KIND)
 
 
 def made_as(context: Context, identity: str) -> PlanView | None:
-    """The plan that was kept under this id."""
+    """The plan of this id; None where there is none, or its job has not made it."""
     with context.sessions() as session:
         row = repository.find(session, identity)
     return None if row is None else view(row)

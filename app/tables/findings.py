@@ -63,7 +63,7 @@ class ProfileRow(Base):
 
 
 class PlanRow(Base):
-    """A test plan for a rig, of a fit or of none: what its command files are made from."""
+    """A test plan for a rig, of a fit or of none: what its command files are made from. Its id is that of its job."""
 
     __tablename__ = "plans"
     id: Mapped[str] = mapped_column(String(64), primary_key=True)

@@ -11,7 +11,7 @@ from app.tables.base import Base, now
 
 
 class JobRow(Base):
-    """A job and where it is. `parent` is the fit that it starts from, if any.
+    """A job and where it is. `parent` is the fit that it starts from, if any; `matrix` has the runs that it needs.
 
     `who` asked for it. It is to stop where it is told to `cancel`, and keeps what it found where it is told to
     `conclude`. `worker` has it under way, by the turn `fence`: see `app/jobs/lease.py`.
@@ -22,7 +22,7 @@ class JobRow(Base):
     id: Mapped[str] = mapped_column(String(64), primary_key=True)
     kind: Mapped[str] = mapped_column(String(20), default="fit")
     state: Mapped[str] = mapped_column(String(20), default="queued", index=True)
-    matrix: Mapped[str] = mapped_column(ForeignKey("matrices.id"), index=True)
+    matrix: Mapped[str | None] = mapped_column(ForeignKey("matrices.id"), index=True)
     parent: Mapped[str | None] = mapped_column(String(64), index=True)
     settings: Mapped[dict[str, Any]]
     progress: Mapped[dict[str, Any]] = mapped_column(default=dict)

@@ -8,8 +8,8 @@ from typing import Any
 from sqlalchemy import delete, func, select, update
 from sqlalchemy.orm import Session
 
-from app.jobs.repository import OPEN
-from app.tables import JobRow, MatrixRow, WorkerRow
+from app.jobs.repository import OPEN, JobOf, of_actuators
+from app.tables import JobRow, WorkerRow
 
 
 def enter(session: Session, name: str, **values: Any) -> None:
@@ -44,10 +44,9 @@ def every(session: Session) -> Sequence[WorkerRow]:
     return session.scalars(select(WorkerRow).order_by(WorkerRow.name)).all()
 
 
-def under_way(session: Session) -> Mapping[str, tuple[JobRow, str]]:
+def under_way(session: Session) -> Mapping[str, JobOf]:
     """The job that each worker has, and the serial number that it is about."""
-    query = select(JobRow, MatrixRow.serial).join(MatrixRow, JobRow.matrix == MatrixRow.id)
-    found = session.execute(query.where(JobRow.state == "running", JobRow.worker.is_not(None)))
+    found = session.execute(of_actuators().where(JobRow.state == "running", JobRow.worker.is_not(None)))
     return {job.worker: (job, serial) for job, serial in found if job.worker is not None}
 
 

@@ -138,15 +138,11 @@ def plan(
     actuator = replace(actuator, rig=limits or None)
     settings, spread = Settings(seconds, ramp, seed), spread or Spread()
     within = Inside(limits, least)
-    if program == KONONYKHIN:
-        if seconds is not None or ramp is not None:
-            raise Unusable(
-                "bad-option", "the laws of a bench have their own lengths and ramps", "seconds, ramp", "leave them out"
-            )
+    asked = asked_program(program, settings)
+    if asked is None:
         machine = None if fit is None else uncertain_bench(fit, spread, actuator, limits)
         name, judged = KONONYKHIN, list(_bench_runs(machine, limits, within, report))
     else:
-        asked = _asked(program, settings)
         name, judged = asked.name, list(_loop_runs(asked.runs, fit, spread, actuator, within, report))
     runs = tuple(one for one in judged if isinstance(one, PlannedRun))
     refused = tuple(one for one in judged if isinstance(one, RefusedRun))
@@ -158,8 +154,17 @@ def plan(
     return Plan(name, model, str(spread) if model else "", actuator, limits, runs, refused, unjudged)
 
 
-def _asked(program: str | Path | Mapping[str, Any], settings: Settings) -> Program:
-    """The runs of a position loop or a valve that a program asks for."""
+def asked_program(program: str | Path | Mapping[str, Any], settings: Settings) -> Program | None:
+    """The runs of a position loop or a valve that a program asks for; None for Kononykhin's laws, which a bench plays.
+
+    Raises Unusable.
+    """
+    if program == KONONYKHIN:
+        if settings.seconds is not None or settings.ramp is not None:
+            raise Unusable(
+                "bad-option", "the laws of a bench have their own lengths and ramps", "seconds, ramp", "leave them out"
+            )
+        return None
     if isinstance(program, Mapping):
         return program_of(program, settings)
     return qian_program(settings) if program == QIAN else read_program(program, settings)

@@ -1,27 +1,12 @@
 // An identified machine put to use: forms that make a controller or queue a hybrid simulation, fields that come and go.
 
 import { send, submitted } from "./api.js";
+import { recall, remember } from "./chosen.js";
 import "./progress.js";
 
-// What was chosen is there again on the page that shows what came of it; no browser lets a page choose a file.
-const named = ({ name, type }) => name && !["hidden", "file"].includes(type);
-const memory = (form) => `${location.pathname} ${form.dataset.make}`;
+const key = (form) => `${location.pathname} ${form.dataset.make}`;
 
-function remember(form) {
-  const chosen = [...form.elements].filter(named).map(({ name, type, value, checked }) => [name, type === "checkbox" ? checked : value, value]);
-  sessionStorage.setItem(memory(form), JSON.stringify(chosen));
-}
-
-function recall(form) {
-  for (const [name, state, value] of JSON.parse(sessionStorage.getItem(memory(form)) ?? "[]")) {
-    const field = [...form.elements].find((one) => one.name === name && (typeof state !== "boolean" || one.value === value));
-    if (!field) continue;
-    if (typeof state === "boolean") field.checked = state;
-    else if (!field.options || [...field.options].some((option) => option.value === state)) field.value = state;
-  }
-}
-
-for (const form of document.querySelectorAll("form[data-make]")) recall(form);
+for (const form of document.querySelectorAll("form[data-make]")) recall(form, key(form));
 
 // Fields that belong to one choice are there, and sent, only while that is chosen.
 for (const form of document.querySelectorAll("form")) {
@@ -57,7 +42,7 @@ const made = { controller: controller, simulation: simulation };
 for (const form of document.querySelectorAll("form[data-make]")) {
   submitted(form, async () => {
     const { data } = await send("POST", form.action, await made[form.dataset.make](form));
-    remember(form);
+    remember(form, key(form));
     if (form.dataset.make === "controller") choose(data.id);
     show(form.dataset.make, data.id, form.closest("section").id);
   });
@@ -67,7 +52,7 @@ for (const form of document.querySelectorAll("form[data-make]")) {
 function choose(id) {
   const form = document.querySelector("form[data-make=simulation]");
   form.elements.controller.add(new Option("", id, true, true));
-  remember(form);
+  remember(form, key(form));
 }
 
 // The same page with what was made; what else it shows stays.
