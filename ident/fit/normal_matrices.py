@@ -24,6 +24,10 @@ Array = NDArray[np.float64]
 _BLOCKS = 32  # of a record; each is one sample of the score, long enough to hold the residual's own correlation
 _SETTLED = 1e-6  # of a residual's power
 _MUCH = 0.1  # of it: more than this a step promises only as far as the model is straight
+TOLD = 1e-6
+"""[of the samples] Fewer tell no mean, as where a first position does the same as an offset.
+
+Test: tests/fit/test_windows.py::test_what_a_first_position_does_as_well_as_an_offset_is_the_first_position"""
 _ESCAPED = 1e12  # times the record's power: the model has run away, and its nuisances would explain anything
 
 
@@ -128,6 +132,20 @@ class NormalMatrices:
         """How many samples tell the mean: all of them where no first state does the same."""
         return float(self._level @ self.blocks.sum(axis=0) @ self._level)
 
+    def begun_without_offset(self) -> NormalMatrices:
+        """The same with what the first states do as well as an offset left to them: then they tell the mean alone.
+
+        The first position of a machine that integrates moves its whole record, as an offset does. Of both together
+        only the sum is known, and the least squares of least norm would share it between them by chance.
+        """
+        if not len(self.release) or self.informing > TOLD * self.length:
+            return self
+        p = self.remove.shape[1] - 1
+        alike = -self._level[p:-2]  # what of each first state does the same as an offset of 1
+        size = np.sqrt(self.total / self.length)
+        release = self.release + self.offset * size * alike
+        return replace(self, release=release, offset=0.0, means=np.zeros_like(self.means))
+
     def about(self, means: Array) -> NormalMatrices:
         """The same with the mean counted: [J, r] have these means, (p+1,)."""
         p, remove = len(means) - 1, self.remove + np.outer(self._level, means)
@@ -179,7 +197,7 @@ def normal_matrices_of(runs: Sequence[Run], blocks: Array, p: int) -> list[Norma
         scores = (blocks @ remove[:, None, :, -1:])[..., 0] @ remove[:, :, :p]
     release = -remove[:, p:-1]  # of each nuisance in each of [J, r], the constant last
     release[:, -1, -1] += means
-    return [
+    found = [
         escaped(p, blocks.shape[1])
         if not sound[i]
         else NormalMatrices(
@@ -190,6 +208,7 @@ def normal_matrices_of(runs: Sequence[Run], blocks: Array, p: int) -> list[Norma
         )
         for i, run in enumerate(runs)
     ]  # fmt: skip
+    return [run.begun_without_offset() for run in found]
 
 
 def escaped(p: int, blocks: int = 0) -> NormalMatrices:

@@ -22,14 +22,13 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from ident.fit.normal_matrices import NormalMatrices
+from ident.fit.normal_matrices import TOLD, NormalMatrices
 from ident.run import Run, over_runs
 from ident.words.error import MEAN_COUNTS
 
 Array = NDArray[np.float64]
 _ROUNDS = 200  # of reweighting
 _SETTLED = 1e-13  # of the largest mean: a step that changes nothing
-_TOLD = 1e-6  # of the samples: fewer tell no mean, as where a first position does the same as an offset
 RECOGNISED = 3.0
 """Standard errors beyond which an offset that nobody stated is one: chance passes that once in 370 records.
 
@@ -222,6 +221,6 @@ def _by_transducer(runs: Sequence[NormalMatrices], asked: Sequence[bool]) -> Map
     """The numbers of the runs that are asked for, by their transducer: those that tell a mean of a shared offset."""
     found: dict[str, list[int]] = {}
     for i, (run, is_asked) in enumerate(zip(runs, asked, strict=True)):
-        if is_asked and run.transducer and run.informing > _TOLD * run.length:
+        if is_asked and run.transducer and run.informing > TOLD * run.length:
             found.setdefault(run.transducer, []).append(i)
     return found

@@ -241,3 +241,24 @@ def test_a_command_held_at_nothing_but_for_rounding_is_held():
     assert shaken.dwell == run.dwell
     assert shaken.begins == run.begins
     assert replace(shaken, channels={**run.channels, "command": 1.0 + 1e-15 * u}).stepped
+
+
+def moving_motor(use: str, seed: int) -> Run:
+    """0.1 v' + v = u, x' = v at 20 Hz, exact for held commands; its record begins in motion, at 3 m; noise of 1 mm."""
+    rng = np.random.default_rng([31, seed])
+    u, x, v = np.repeat(rng.uniform(-1, 1, 60), 20), np.zeros(1200), 0.8
+    x[0], held = 3.0, np.exp(-1 / RATE / 0.1)
+    for k in range(len(u) - 1):
+        x[k + 1] = x[k] + u[k] / RATE + 0.1 * (1 - held) * (v - u[k])
+        v = u[k] + held * (v - u[k])
+    channels = {"command": u, "displacement": x + 1e-3 * rng.standard_normal(len(u))}
+    return Run(use, "", RATE, channels, {"command": "V", "displacement": "rad"}, hold="zoh", use=use)
+
+
+def test_what_a_first_position_does_as_well_as_an_offset_is_the_first_position():
+    """They move the whole record alike, and only their sum is known: a share of each would be taken for an offset."""
+    matrix = Matrix(Actuator("M"), (moving_motor("fit", 1), moving_motor("verify", 2)))
+    fit = identify(matrix, replace(MOTOR, effects=("coulomb_friction",)))
+    assert fit.window is None
+    assert fit.error["fit"] < 1e-3
+    assert max(fit.error_with_mean.values()) < 1e-3
