@@ -17,13 +17,16 @@ _PLAIN = re.compile(r"\S+")
 def did_you_mean(name: object, known: Iterable[str], otherwise: str = "") -> str:
     """The remedy ``did you mean dead_zone?`` with the known name that is nearest; where none is near, `otherwise`.
 
+    Where several known names contain the given one, all of them are said: ``did you mean pressure_a or pressure_b?``
+
     Without `otherwise` the known names are listed. Neither case, separators nor spaces count for how near a name is;
     what is no text, such as a number in its place, is taken as it would be written.
     """
     names = list(dict.fromkeys(known))
-    found = nearest(str(name), names)
-    if found is not None:
-        return f"did you mean {found if _PLAIN.fullmatch(found) else repr(found)}?"
+    *others, near = _containing(str(name), names) or [nearest(str(name), names)]
+    if near is not None:
+        first = f"{', '.join(map(_quoted, others))} or " if others else ""
+        return f"did you mean {first}{_quoted(near)}?"
     return otherwise or (f"choose from {', '.join(names)}" if names else "leave it out")
 
 
@@ -35,6 +38,17 @@ def nearest(name: str, known: Iterable[str]) -> str | None:
     letters = _letters(name)
     near = get_close_matches(letters, spelt, 1, _NEAR_IF_SHORT if len(letters) <= _SHORT else _NEAR)
     return spelt[near[0]] if near and letters else None
+
+
+def _quoted(name: str | None) -> str:
+    return name if name is not None and _PLAIN.fullmatch(name) else repr(name)
+
+
+def _containing(name: str, known: Iterable[str]) -> list[str | None]:
+    """The known names that contain a longer one as one of their words."""
+    letters = _letters(name)
+    words = ((one, re.split(r"[\W_]+", one.casefold())) for one in known)
+    return [one for one, of in words if len(letters) > _SHORT and letters in of]
 
 
 def _letters(name: str) -> str:

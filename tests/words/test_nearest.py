@@ -43,6 +43,13 @@ def test_what_is_no_text_is_answered_too():
         check_settings(settings_of({"load": 5}))
 
 
+def test_all_names_that_contain_the_given_word_are_said():
+    """Of which there may be several; one letter is no word."""
+    known = ("load_pressure", "pressure_a", "spool", "a")
+    assert did_you_mean("Pressure", known) == "did you mean load_pressure or pressure_a?"
+    assert did_you_mean("presure_a", known) == "did you mean pressure_a?"
+
+
 def test_a_name_with_spaces_stands_in_quotes():
     assert did_you_mean("Weg [m]", ("Weg [mm]", "Zeit")) == "did you mean 'Weg [mm]'?"
 
