@@ -84,6 +84,12 @@ def counted(share: float) -> np.ndarray:
     return speed + share * (np.abs(speed) - speed)
 
 
+def moved() -> np.ndarray:
+    """The force of a spring and a damper that are moved at a given speed."""
+    way = scipy.integrate.cumulative_trapezoid(SPEED, dx=1.0 / RATE, initial=0.0)
+    return np.asarray(STIFFNESS * way + DAMPING * SPEED)
+
+
 def played(friction: float, half_width: float = 0.2, fine: int = 64) -> np.ndarray:
     """The force of a spring and a damper with dry friction behind a play, moved at a given speed."""
     speed = np.interp(np.arange((len(T) - 1) * fine + 1) / fine, np.arange(len(T)), SPEED)
@@ -141,6 +147,9 @@ CASES = {
     "friction_behind_play": Case(
         "specimen", {"friction_behind_play.force": 25.0, "friction_behind_play.half_width": 0.2},
         lambda k: played(25.0 * k), {"velocity": SPEED}, 1e-2, output="force"),
+    "pressure_force": Case(
+        "specimen", {"pressure_force.area": 5e-3},
+        lambda k: moved() - 5.0 * k * SQUEEZE, {"velocity": SPEED, "load_pressure": 1e3 * SQUEEZE}, output="force"),
     "arm_gravity": Case(
         "drive", {"arm_gravity.torque": 30.0, "arm_gravity.hanging": 0.5},
         lambda k: mass(lambda _t, x, _v: 30.0 * k * np.sin(x - 0.5)), {}),
@@ -218,6 +227,9 @@ def test_an_effect_is_looked_for_only_where_the_record_could_show_it():
     assert not of_records & candidates("drive", driven, **recorded)
     found = candidates("drive", driven, vertical_load=SQUEEZE, load_pressure=SQUEEZE, **recorded)
     assert of_records & found == {"normal_force_friction", "pressure_friction"}
+    answers = Run("r", "", RATE, {"velocity": SPEED, "force": FORCE, "load_pressure": SQUEEZE}, {}, output="force")
+    moves = CandidateModels.of(Matrix(Actuator("A"), (answers,)), Settings(model="specimen")).effects
+    assert {"pressure_friction", "pressure_force"} <= set(moves)
     speed, volts = np.cos(T), {"command": "V", "velocity": "rad/s"}
     assert not of_records & candidates("motor", volts, command=FORCE, velocity=speed)
     assert of_records & candidates("motor", volts, command=FORCE, velocity=np.abs(speed)) == {"rectified_sensor"}

@@ -12,16 +12,16 @@ from ident.fit.settings import Settings
 from ident.presets import PRESETS, preset
 
 TAKEN = {
-    "qian2014": 48,
+    "qian2014": 49,
     "first_order": 18,
     "two_tanks": 19,
-    "drive": 23,
-    "open_valve": 45,
-    "motor": 32,
-    "specimen": 15,
-    "force_loop": 48,
+    "drive": 24,
+    "open_valve": 46,
+    "motor": 33,
+    "specimen": 16,
+    "force_loop": 49,
     "kononykhin": 8,
-    "strano": 45,
+    "strano": 46,
 }
 LOOPS = {
     "qian2014": {"v", "y"}, "first_order": set(), "drive": set(), "open_valve": {"v"}, "motor": set(),
