@@ -10,7 +10,7 @@ import pytest
 from numpy.typing import NDArray
 from scipy.signal import lfilter
 
-from ident.diagnosis.evidence.blocks import BlockMean, block_mean
+from ident.diagnosis.evidence.blocks import BlockMean
 from ident.diagnosis.evidence.chance import bar
 from ident.diagnosis.evidence.comparison import (
     Evidence,
@@ -270,33 +270,6 @@ def test_what_noise_leaves_of_the_means_is_not_to_be_gained() -> None:
         unlisted.append(probabilities(gaining(evidence.most, a=evidence.gain)).unlisted)
     assert np.median(unlisted) < 0.05
     assert max(unlisted) < 0.3
-
-
-def test_the_error_of_a_difference_holds_for_correlated_residuals(full: bool) -> None:
-    """Chance carries a mean of AR(0.95) beyond its error about once in twenty to each side; seeds 800 and up."""
-    count = 1000 if full else 60
-    held = 0
-    for seed in range(800, 800 + count):
-        found = block_mean([slow(np.random.default_rng(seed), 1500, 0.95)], EVIDENCE_CRITERIA)
-        held += not (found.above(0.0, EVIDENCE_CRITERIA) or found.below(0.0, EVIDENCE_CRITERIA))
-    assert held >= 0.84 * count
-    assert block_mean([white(np.random.default_rng(8), 20_000)], EVIDENCE_CRITERIA).blocks > 50
-
-
-def test_the_error_of_a_difference_holds_for_a_record_of_twenty_correlation_times(full: bool) -> None:
-    """Blocks of four correlation times hold zero as often as two of ten do, and can be passed; seeds 900 up."""
-    count, held, two, bounds = (1000 if full else 60), 0, 0, []
-    few = replace(EVIDENCE_CRITERIA, enough_blocks=1, least_blocks=2)
-    for seed in range(900, 900 + count):
-        series = slow(np.random.default_rng(seed), 800, 0.95)
-        found, of_few = block_mean([series], EVIDENCE_CRITERIA), block_mean([series], few)
-        assert found.blocks >= 4
-        held += abs(found.mean) <= found.bound(EVIDENCE_CRITERIA)
-        two += abs(of_few.mean) <= of_few.bound(few)
-        bounds.append(found.bound(EVIDENCE_CRITERIA) / of_few.bound(few))
-    assert held >= 0.8 * count  # both sides: 10 % are chance
-    assert held >= two - 0.06 * count
-    assert np.median(bounds) < 0.8
 
 
 def test_what_only_one_of_many_runs_asks_for_does_not_improve() -> None:

@@ -51,30 +51,30 @@ class EvidenceCriteria:
     correlation_times: float = 10.0
     """[correlation times] Length of a block. Why: means of blocks so long are independent to a tenth of their
     variance (Flegal and Jones 2010).
-    Test: test_evidence.py::test_the_error_of_a_difference_holds_for_correlated_residuals"""
+    Test: test_blocks.py::test_the_error_of_a_difference_holds_for_correlated_residuals"""
     least_correlation_times: float = 4.0
     """[correlation times] Shortest length of a block. Why: means of blocks so long are independent to a quarter of
     their variance: the error is one eighth too small, which Student's value of more blocks more than makes up for.
-    Test: test_evidence.py::test_the_error_of_a_difference_holds_for_a_record_of_twenty_correlation_times"""
+    Test: test_blocks.py::test_the_error_of_a_difference_holds_for_a_record_of_twenty_correlation_times"""
     enough_blocks: int = 12
     """[blocks] Of a record, up to which its blocks may be shorter than ten correlation times. Why: Student's value of
     twelve is 1.8, one tenth above that of many; that of four is 2.4, and their scatter is hardly known.
-    Test: test_evidence.py::test_the_error_of_a_difference_holds_for_a_record_of_twenty_correlation_times"""
+    Test: test_blocks.py::test_the_error_of_a_difference_holds_for_a_record_of_twenty_correlation_times"""
     whole_runs: int = 4
     """[runs] Runs from which on whole runs are the blocks. Why: what differs from run to run shows between runs
     only; of fewer than four their scatter tells nothing.
     Test: test_evidence.py::test_what_only_one_of_many_runs_asks_for_does_not_improve"""
     least_blocks: int = 4
     """[blocks] Fewest blocks of all runs together. Why: with two Student's value is 6.3, and nothing matters.
-    Test: test_evidence.py::test_the_error_of_a_difference_holds_for_a_record_of_twenty_correlation_times"""
+    Test: test_blocks.py::test_the_error_of_a_difference_holds_for_a_record_of_twenty_correlation_times"""
     most_blocks: int = 64
     """[blocks] Most blocks of a record. Why: student's critical value hardly falls beyond, and longer blocks are
     safer.
-    Test: test_evidence.py::test_the_error_of_a_difference_holds_for_correlated_residuals"""
+    Test: test_blocks.py::test_the_error_of_a_difference_holds_for_correlated_residuals"""
     correlation_window: float = 5.0
     """[correlation times] Over which the correlations of a series are summed to its correlation time. Why: the
     automatic window of Sokal (1997): fewer leave out a part of the sum, more add noise.
-    Test: test_evidence.py::test_the_error_of_a_difference_holds_for_correlated_residuals"""
+    Test: test_blocks.py::test_the_error_of_a_difference_holds_for_correlated_residuals"""
     samples_of_a_harmonic: int = 8
     """[samples] Of a record for each harmonic that is told apart. Why: a harmonic has two degrees of freedom: so
     three quarters of them stay for the noise between.

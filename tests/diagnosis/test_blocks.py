@@ -1,0 +1,38 @@
+"""The error of the mean of a correlated series. Seeds stand in each test."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from ident.diagnosis.evidence.blocks import block_mean
+from ident.diagnosis.evidence.criteria import EVIDENCE_CRITERIA
+from tests.diagnosis.test_evidence import slow, white
+
+
+def test_the_error_of_a_difference_holds_for_correlated_residuals(full: bool) -> None:
+    """Chance carries a mean of AR(0.95) beyond its error about once in twenty to each side; seeds 800 and up."""
+    count = 1000 if full else 60
+    held = 0
+    for seed in range(800, 800 + count):
+        found = block_mean([slow(np.random.default_rng(seed), 1500, 0.95)], EVIDENCE_CRITERIA)
+        held += not (found.above(0.0, EVIDENCE_CRITERIA) or found.below(0.0, EVIDENCE_CRITERIA))
+    assert held >= 0.84 * count
+    assert block_mean([white(np.random.default_rng(8), 20_000)], EVIDENCE_CRITERIA).blocks > 50
+
+
+def test_the_error_of_a_difference_holds_for_a_record_of_twenty_correlation_times(full: bool) -> None:
+    """Blocks of four correlation times hold zero as often as two of ten do, and can be passed; seeds 900 up."""
+    count, held, two, bounds = (1000 if full else 60), 0, 0, []
+    few = replace(EVIDENCE_CRITERIA, enough_blocks=1, least_blocks=2)
+    for seed in range(900, 900 + count):
+        series = slow(np.random.default_rng(seed), 800, 0.95)
+        found, of_few = block_mean([series], EVIDENCE_CRITERIA), block_mean([series], few)
+        assert found.blocks >= 4
+        held += abs(found.mean) <= found.bound(EVIDENCE_CRITERIA)
+        two += abs(of_few.mean) <= of_few.bound(few)
+        bounds.append(found.bound(EVIDENCE_CRITERIA) / of_few.bound(few))
+    assert held >= 0.8 * count  # both sides: 10 % are chance
+    assert held >= two - 0.06 * count
+    assert np.median(bounds) < 0.8
