@@ -111,7 +111,7 @@ async def _gone(_: Request, __: Exception) -> Response:  # which nobody reads an
 
 
 async def _unstorable(_: Request, __: Exception) -> Response:
-    return problem(422, "unusable-text", "it holds text that cannot be stored", "request", "write plain text")
+    return problem(422, "unusable-text", "it has characters that cannot be stored", "request", "write plain text")
 
 
 async def unavailable(request: Request, error: Exception) -> Response:

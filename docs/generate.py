@@ -7,9 +7,9 @@ import inspect
 import json
 import re
 import sys
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import fields
-from itertools import pairwise
+from itertools import pairwise, product
 from pathlib import Path
 from typing import Any
 
@@ -221,7 +221,7 @@ def documented(file: Path, section: str) -> dict[str, tuple[str, str, str]]:
 
 
 def errors() -> str:
-    """Every error code, with what it says and its remedy; {…} stands for what is filled in."""
+    """Every error code, with what it says and its remedy; a name in braces stands for what is filled in."""
     rows = sorted({found for folder in SOURCES for file in source_files(folder) for found in codes(file)} - PASSED_ON)
     head = [
         "# Errors",
@@ -229,7 +229,7 @@ def errors() -> str:
         "",
         "What cannot be used or done is refused with a code, with what is wrong, where, and the remedy. The command",
         "line prints it in one line and exits with 2; the service answers with problem+json whose `code` is this one,",
-        "and the HTTP status below. In the table, … stands for what is filled in.",
+        "and the HTTP status below. A name in braces, such as {name}, stands for a value; … stands for a whole text.",
         "",
     ]
     return "\n".join([*head, *table(("code", "HTTP", "what", "remedy"), rows), ""])
@@ -242,28 +242,88 @@ def source_files(folder: str) -> Iterator[Path]:
 
 def codes(file: Path) -> Iterator[tuple[str, str, str, str]]:
     """Code, HTTP status, what and remedy of every refusal in a file."""
-    for node in ast.walk(ast.parse(file.read_text(encoding="utf-8"))):
+    tree = ast.parse(file.read_text(encoding="utf-8"))
+    for node, assigned in calls(tree, {}):
         match node:
             case ast.Call(ast.Name("Unusable"), [code, what, _, remedy]):
-                yield from ((f"`{name}`", "422", words(what), words(remedy)) for name in alternatives(code))
+                given, status = (code, what, remedy), "422"
             case ast.Call(ast.Name("Removed"), [code, what, _, remedy]):
-                yield f"`{words(code)}`", "410", words(what), words(remedy)
-            case ast.Call(ast.Name("Failure" | "problem"), [ast.Constant(status), code, what, _, remedy]):
-                yield f"`{words(code)}`", str(status), words(what), words(remedy)
+                given, status = (code, what, remedy), "410"
+            case ast.Call(ast.Name("Failure" | "problem"), [ast.Constant(number), code, what, _, remedy]):
+                given, status = (code, what, remedy), str(number)
+            case _:
+                continue
+        names, whats, remedies = (alternatives(one, assigned) for one in given)
+        paired = len(whats) == len(remedies)  # each was assigned where the other was
+        for name, (what, remedy) in product(
+            names, zip(whats, remedies, strict=True) if paired else product(whats, remedies)
+        ):
+            yield f"`{name}`", status, what, remedy
 
 
-def alternatives(node: ast.expr) -> list[str]:
-    """A code, or both of a choice between two."""
-    return [words(node.body), words(node.orelse)] if isinstance(node, ast.IfExp) else [words(node)]
+Assigned = Mapping[str, list[ast.expr]]
+"""What the names of a function are assigned, in the order of the source."""
+
+
+def calls(node: ast.AST, assigned: Assigned) -> Iterator[tuple[ast.Call, Assigned]]:
+    """Every call below a node, with what the names of its function are assigned."""
+    if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef):
+        assigned = assignments(node)
+    if isinstance(node, ast.Call):
+        yield node, assigned
+    for child in ast.iter_child_nodes(node):
+        yield from calls(child, assigned)
+
+
+def assignments(function: ast.AST) -> Assigned:
+    """By name, also where several are assigned at once."""
+    found: dict[str, list[ast.expr]] = {}
+    for node in ast.walk(function):
+        match node:
+            case ast.Assign([ast.Name(name)], value):
+                found.setdefault(name, []).append(value)
+            case ast.Assign([ast.Tuple(names)], ast.Tuple(values)) if len(names) == len(values):
+                for target, value in zip(names, values, strict=True):
+                    found.setdefault(ast.unparse(target), []).append(value)
+    return found
+
+
+def alternatives(node: ast.expr, assigned: Assigned) -> list[str]:
+    """The texts that an expression may be: those of a choice, or those that its name is assigned."""
+    match node:
+        case ast.IfExp():
+            return [*alternatives(node.body, assigned), *alternatives(node.orelse, assigned)]
+        case ast.Name(name) if name in assigned:
+            rest = {other: values for other, values in assigned.items() if other != name}
+            return [text for value in assigned[name] for text in alternatives(value, rest)]
+        case _:
+            return [words(node)]
 
 
 def words(node: ast.expr) -> str:
-    """The text of a string in the source; … where something is filled in."""
+    """The text of a string in the source, with the name of each value that is filled in; … where it has none."""
     match node:
         case ast.Constant():
             return str(node.value)
         case ast.JoinedStr():
             return "".join(words(part) for part in node.values)
+        case ast.FormattedValue(value):
+            return f"{{{named(value)}}}"
+        case ast.Call(ast.Name("did_you_mean"), [_, _, ast.Constant(otherwise)]):
+            return f"did you mean {{name}}?, or: {otherwise}"
+        case ast.Call(ast.Name("did_you_mean")):
+            return "did you mean {name}?, or the names to choose from"
+        case _:
+            return "…"
+
+
+def named(value: ast.expr) -> str:
+    """The name of a value in a text: of what is counted, joined or looked up in it."""
+    match value:
+        case ast.Name(name) | ast.Attribute(attr=name):
+            return name.strip("_").lower()
+        case ast.Subscript(inner) | ast.Call(args=[inner, *_]) | ast.Call(ast.Attribute(inner)):
+            return named(inner)
         case _:
             return "…"
 

@@ -81,7 +81,7 @@ def _dataclass(kind: Any) -> Reader:
 
     def made(data: Any) -> Any:
         if not isinstance(data, Mapping):
-            raise Misfit("is no object")
+            raise Misfit("is not an object")
         found = {}
         for field, reader in known:
             given, needed = data.get(field.name), field.default is MISSING and field.default_factory is MISSING
@@ -154,7 +154,7 @@ def _list(reader: Reader) -> Reader:
 
     def several(data: Any) -> tuple[Any, ...]:
         if not isinstance(data, list | tuple):
-            raise Misfit("is no list")
+            raise Misfit("is not a list")
         try:
             return tuple(map(reader, data))
         except Misfit:
@@ -168,7 +168,7 @@ def _row(readers: tuple[Reader, ...]) -> Reader:
 
     def entries(data: Any) -> tuple[Any, ...]:
         if not isinstance(data, list | tuple) or len(data) != len(readers):
-            raise Misfit(f"is no list of {len(readers)}")
+            raise Misfit(f"is not a list of {len(readers)}")
         return tuple(_at(f"[{i}]", reader, entry) for i, (reader, entry) in enumerate(zip(readers, data, strict=True)))
 
     return entries
@@ -179,7 +179,7 @@ def _mapping(reader: Reader) -> Reader:
 
     def named(data: Any) -> dict[str, Any]:
         if not isinstance(data, Mapping):
-            raise Misfit("is no object")
+            raise Misfit("is not an object")
         return {str(name): _at(f".{name}", reader, entry) for name, entry in data.items()}
 
     return named
@@ -189,18 +189,18 @@ def _number(data: Any) -> float:
     """A number as it is written, so that 20 does not go out as 20.0."""
     if isinstance(data, float) or (isinstance(data, int) and not isinstance(data, bool) and abs(data) < _HUGE):
         return data
-    raise Misfit("is no number")
+    raise Misfit("is not a number")
 
 
 def _whole(data: Any) -> int:
     if isinstance(data, bool) or not (isinstance(data, int) or (isinstance(data, float) and data.is_integer())):
-        raise Misfit("is no whole number")
+        raise Misfit("is not a whole number")
     return int(data)
 
 
 def _text(data: Any) -> str:
     if not isinstance(data, str):
-        raise Misfit("is no text")
+        raise Misfit("is not text")
     return data
 
 

@@ -40,6 +40,36 @@ def test_the_reference_pages_are_what_the_program_says(name):
     assert (DOCS / name).read_text(encoding="utf-8") == pages()[name], "run: .venv/bin/python docs/generate.py"
 
 
+REFUSALS = """
+def check(name, rows):
+    what, remedy = f"row {len(rows)} is empty", "fill it"
+    if name:
+        what, remedy = f"no run {name!r}", did_you_mean(name, rows)
+    raise Unusable("bad-run", what, "file", remedy)
+
+def other(what):
+    raise Failure(404, "no-run" if what else "no-file", "it is gone", "file", f"see {_LIST[0].title}")
+"""
+
+
+def test_the_table_of_errors_has_the_texts_that_were_chosen_before_and_the_names_of_their_values(tmp_path):
+    """A text that depends on the case gives a row for each case."""
+    file = tmp_path / "refusals.py"
+    file.write_text(REFUSALS, encoding="utf-8")
+    assert set(generator().codes(file)) == {
+        ("`bad-run`", "422", "row {rows} is empty", "fill it"),
+        ("`bad-run`", "422", "no run {name}", "did you mean {name}?, or the names to choose from"),
+        ("`no-run`", "404", "it is gone", "see {title}"),
+        ("`no-file`", "404", "it is gone", "see {title}"),
+    }
+
+
+def test_most_errors_are_in_the_table_with_their_text():
+    """What another part of the program words, or a system call, has none: fewer than one in twenty."""
+    rows = [row.split(" | ") for row in pages()["errors.md"].splitlines() if row.startswith("| `")]
+    assert sum(row[2] == "…" for row in rows) < 0.05 * len(rows)
+
+
 def test_every_command_of_the_contract_is_documented():
     """The names that scripts rely on are on the page of the command line."""
     promised = (

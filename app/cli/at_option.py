@@ -36,10 +36,12 @@ def moved_to(fit: FitResult, at: str | None, over: str, sets: Path | None) -> Mo
 
     if at is None:
         if sets is not None:
-            raise Unusable("bad-option", "sets without a condition", "--sets", "write --at '60 degC' with it")
+            raise Unusable(
+                "bad-option", "parameter sets were given, but no condition", "--sets", "write --at '60 degC' with it"
+            )
         return Moved(fit, ())
     value = condition_value(over, at)
     if sets is None:
         remedy = "write the sets by `servoident query --json FILE`, and give --sets FILE"
-        raise Unusable("bad-option", "a condition without sets", "--at", remedy)
+        raise Unusable("bad-option", "a condition was given, but no parameter sets", "--at", remedy)
     return AtCondition(over, value, tuple(sets_in(sets, fit.model)), sets.name).move(fit)

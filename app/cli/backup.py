@@ -37,7 +37,7 @@ def backup(
     check_target(file)
     if server:
         if data or database or blobs:
-            raise Unusable("bad-option", "the data of a service that is asked are where it has them", "--server",
+            raise Unusable("bad-option", "a running service uses its own data folder", "--server",
                            "leave --data, --database and --blobs out")  # fmt: skip
         print(f"{file}: {receive(server, token, '/backups', file) / 1e6:.3f} MB")
         return

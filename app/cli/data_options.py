@@ -45,7 +45,7 @@ def settings(data: Path | None, database: str, **others: Any) -> Settings:
     if others.get("log", "text") not in ("text", "json"):
         raise Unusable(
             "bad-option",
-            f"{others['log']!r} is no form of a log",
+            f"{others['log']!r} is not a form of a log",
             "--log",
             did_you_mean(others["log"], ("text", "json")),
         )

@@ -86,7 +86,7 @@ def _file(name: str) -> Path:
 
     if not is_name(name):
         raise Unusable(
-            "bad-name", f"{name!r} is no name of an effect", "name", "see `servoident effects` for the names"
+            "bad-name", f"{name!r} is not a name of an effect", "name", "see `servoident effects` for the names"
         )
     return folder() / f"{name}.json"
 

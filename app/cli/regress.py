@@ -42,7 +42,7 @@ def regress(
     """
     check_target(junit)
     if not 0 <= tolerance < math.inf:
-        raise Unusable("bad-number", f"{tolerance:g} is no tolerance", "--tolerance", "give 0 or a number above")
+        raise Unusable("bad-number", f"{tolerance:g} is not a tolerance", "--tolerance", "give 0 or a number above")
     asked = {"serial": serial, "batch": batch, "model": model}
     if server is None:
         rows = _here(data, database, asked, tolerance, junit)

@@ -29,7 +29,7 @@ def retention(
     from app.cli.tables import output, table
 
     if show and confirm:
-        raise Unusable("bad-option", "it is either shown or removed", "--confirm", "leave --show out")
+        raise Unusable("bad-option", "--show and --confirm cannot be combined", "--confirm", "leave --show out")
     check_target(json)
     if confirm:
         found = request(server, token, "POST", "/retention", json={"digest": confirm}).json()

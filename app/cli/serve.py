@@ -94,6 +94,6 @@ def networks(texts: list[str]) -> tuple[str, ...]:
             ip_network(text)
         except ValueError:
             raise Unusable(
-                "bad-address", f"{text!r} is no address", "--proxy", "write 10.0.0.7 or 10.0.0.0/24"
+                "bad-address", f"{text!r} is not an address", "--proxy", "write 10.0.0.7 or 10.0.0.0/24"
             ) from None
     return tuple(texts)

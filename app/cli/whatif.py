@@ -189,7 +189,7 @@ def _target(peak: str | None, tolerance: str | None, axes: list[str], up_to: str
 
     if peak is None:
         if tolerance or axes or up_to:
-            raise Unusable("bad-option", "no peak is asked for", "--peak", "write --peak '45 Hz' with it")
+            raise Unusable("bad-option", "no peak was given", "--peak", "write --peak '45 Hz' with it")
         return None
     frequency = quantity(peak, "frequency", "--peak")
     near = _NEAR * frequency if tolerance is None else quantity(tolerance, "frequency", "--tolerance")

@@ -24,7 +24,7 @@ def acting(given: str | dict[str, Any], fit: FitResult, case: Case, wanted: Any 
     """As :func:`ident.hybrid.acting.controller_called`: the controller of that name, or of that JSON."""
     if isinstance(given, str):
         if given not in NAMED:
-            raise Unusable("unknown-controller", f"{shown(given)!r} is no controller", "controller",
+            raise Unusable("unknown-controller", f"{shown(given)!r} is not a controller", "controller",
                            did_you_mean(given, NAMED, f"give {', '.join(NAMED)}, or the id of one"))  # fmt: skip
         return NAMED[given](fit, case, wanted)
     rows = given.get("A")
@@ -32,5 +32,5 @@ def acting(given: str | dict[str, Any], fit: FitResult, case: Case, wanted: Any 
         raise Unusable("bad-controller", f"{len(rows)} states", "controller", f"give at most {MOST_STATES}")
     name = given.get("name") or ""
     if not isinstance(name, str) or len(name) > _LONGEST or not name.isprintable():
-        raise Unusable("bad-controller", "its name is no line of text", "controller name", "give a short text")
+        raise Unusable("bad-controller", "its name is not a line of text", "controller name", "give a short text")
     return for_rate(SampledController.from_json(given), case)

@@ -59,7 +59,7 @@ class AskedCase:
         if isinstance(self.ground, str):
             if self.ground not in MOTIONS:
                 remedy = did_you_mean(self.ground, MOTIONS, f"give {' or '.join(MOTIONS)}, or a record as text")
-                raise Unusable("bad-ground", f"{shown(self.ground)!r} is no motion", "ground", remedy)
+                raise Unusable("bad-ground", f"{shown(self.ground)!r} is not a motion", "ground", remedy)
             return replace(own, kind=self.ground)
         return ground_of(_with(self.ground, self.text), None, own)
 
@@ -167,7 +167,7 @@ def peak_of(request: WhatIfRequest) -> PeakTarget | None:
     """The peak that is asked for. Raises Unusable."""
     if request.peak is None:
         if request.tolerance is not None or request.axes or request.up_to is not None:
-            raise Unusable("bad-request", "no peak is asked for", "peak", "give a frequency with it")
+            raise Unusable("bad-request", "no peak was given", "peak", "give a frequency with it")
         return None
     frequency = parameter_value(request.peak, "frequency", "peak")
     near, end = request.tolerance, request.up_to

@@ -16,7 +16,7 @@ def moved_to(context: Context, fit: FitResult, asked: AtRequest | None) -> Moved
     if asked is None:
         return Moved(fit, ())
     if asked.serial is not None and asked.batch is not None:
-        raise Unusable("bad-request", "sets of a serial number and of a batch", "at", "give one of them")
+        raise Unusable("bad-request", "a serial number and a batch were both given", "at", "give one of them")
     wanted, of = Wanted(model=fit.model, current=True), f"model {fit.model}"
     if asked.serial is not None:
         wanted, of = Wanted(serial=asked.serial, model=fit.model, approved=True), f"serial number {asked.serial}"

@@ -108,7 +108,7 @@ class Run(Work):
             return _failed("out-of-memory", what, self.kind.name, "use shorter runs")
         except Unreachable:
             what = "the store of raw uploads has not answered for ten minutes"
-            return _failed("no-blobs", what, "blobs", "see to it, and start the job again")
+            return _failed("no-blobs", what, "blobs", "check, and start the job again")
         except Exception as error:
             if is_full(error):
                 return _failed("disk-full", "no space is left on the disk", "data", "free some and start the job again")

@@ -1,4 +1,4 @@
-"""A matrix whose raw runs were removed by the rule: what was found from them stays."""
+"""A matrix whose raw runs were removed by the rule: results from them are kept."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ def check_there(row: MatrixRow) -> None:
     if row.removed_at is not None:
         raise Removed(
             "removed-by-rule",
-            f"its raw runs were removed by the rule on {row.removed_at[:10]}; what was found from them stays",
+            f"its raw runs were removed by the rule on {row.removed_at[:10]}; results from them are kept",
             f"matrix {row.id}",
             "upload them again to work on them",
         )

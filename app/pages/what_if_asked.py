@@ -43,7 +43,9 @@ def _quantities(dimensions: Mapping[str, str], stated: Mapping[str, str]) -> dic
 def _at(stated: dict[str, str]) -> dict[str, str] | None:
     """The condition of the machine; the name of the condition always stands in the form."""
     if "value" not in stated and len(stated) > ("over" in stated):
-        raise Unusable("bad-request", "sets without a condition", "at", "give its value, such as 60 degC")
+        raise Unusable(
+            "bad-request", "parameter sets were given, but no condition", "at", "give its value, such as 60 degC"
+        )
     return stated if "value" in stated else None
 
 
@@ -95,5 +97,5 @@ def _axes(stated: Mapping[str, str], gain: tuple[float, float] | None) -> list[d
 
 def _whole(text: str) -> int:
     if not text.isdecimal() or int(text) >= 2**31:
-        raise Unusable("bad-number", f"{text[:40]!r} is no seed", "seed", "give a whole number from 0")
+        raise Unusable("bad-number", f"{text[:40]!r} is not a seed", "seed", "give a whole number from 0")
     return int(text)

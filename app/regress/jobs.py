@@ -79,7 +79,7 @@ def junit(context: Context, regression: str) -> bytes:
     with context.sessions() as session:
         row, found = _find(session, regression), repository.rechecks(session, regression)
     if any(job.state not in ENDED for _, job in found):
-        raise Unusable("still-running", "its jobs have not all ended", regression, "ask again in a while")
+        raise Unusable("still-running", "its jobs have not all ended", regression, "ask again later")
     return as_junit([_recheck(one, job, row.tolerance) for one, job in found])
 
 

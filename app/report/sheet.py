@@ -107,4 +107,4 @@ def logo(path: Path) -> Logo:
     for start, (ending, media) in _MEDIA.items():
         if content.startswith(start) and len(content) <= _LARGEST:
             return Logo(content, ending, media)
-    raise Unusable("bad-logo", "it is no PNG or JPEG of at most 1 MB", f"logo {path.name}", "save it as PNG")
+    raise Unusable("bad-logo", "it is not a PNG or JPEG of at most 1 MB", f"logo {path.name}", "save it as PNG")

@@ -52,7 +52,7 @@ def carry_out(context: Context, digest: str) -> RetentionView:
                 409, "no-rule", "the service has no rule for raw runs", "retention", "start it with --keep-raw DAYS"
             )
         if view.digest != digest:
-            raise Failure(409, "not-as-shown", "other raw runs would go than were shown", "digest",
+            raise Failure(409, "not-as-shown", "the list of runs to delete has changed since it was shown", "digest",
                           "show the list again, and confirm the new digest")  # fmt: skip
         for goer in goers:
             goer.row.removed_at, goer.row.source = now(), {}

@@ -47,10 +47,10 @@ def _read(text: str, where: str, remedy: str) -> httpx.URL:
     try:
         url = httpx.URL(text)
     except (httpx.InvalidURL, UnicodeError):
-        raise Unusable("bad-url", f"{text[:200]!r} is no address", where, remedy) from None
+        raise Unusable("bad-url", f"{text[:200]!r} is not an address", where, remedy) from None
     plain = _HOST.fullmatch(url.raw_host.decode()) and not url.userinfo and not url.fragment and text.isprintable()
     if url.scheme not in _PORTS or not plain:
-        raise Unusable("bad-url", f"{text[:200]!r} is no plain http or https address", where, remedy)
+        raise Unusable("bad-url", f"{text[:200]!r} is not a plain http or https address", where, remedy)
     return url
 
 

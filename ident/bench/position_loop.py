@@ -140,7 +140,9 @@ def position_loop(fit: FitResult, regulator: Regulator, amplitudes: Sequence[flo
     stated = tuple(amplitudes) or tuple(multiple * model.dead_space for multiple in MULTIPLES)
     for amplitude in stated:
         if not 0 < amplitude < math.inf:
-            raise Unusable("bad-amplitude", f"{amplitude:g} is no amplitude", "amplitude", "give one above 0, as 2 %")
+            raise Unusable(
+                "bad-amplitude", f"{amplitude:g} is not an amplitude", "amplitude", "give one above 0, as 2 %"
+            )
     found = tuple(margins(model, regulator, amplitude) for amplitude in stated)
     return PositionLoop(
         model=fit.model,

@@ -49,7 +49,7 @@ def curve_of(fields: Fields) -> tuple[Line, tuple[Parameter, ...]] | None:
 def _listed(entry: Fields, key: str) -> list[Any]:
     found = entry.need(key, f"write {_EXAMPLE}")
     if not isinstance(found, list):
-        raise Unusable("bad-curve", f"{key} is no list", f"curve {key}", f"write {_EXAMPLE}")
+        raise Unusable("bad-curve", f"{key} is not a list", f"curve {key}", f"write {_EXAMPLE}")
     return found
 
 

@@ -141,7 +141,7 @@ def _models(model: str) -> tuple[Preset, ...]:
 def _name(fields: Fields) -> str:
     name = fields.text("name")
     if not is_name(name):
-        raise Unusable("bad-name", f"{shown(name)!r} is no name of an effect", "effect name",
+        raise Unusable("bad-name", f"{shown(name)!r} is not a name of an effect", "effect name",
                        "give letters, digits and single underscores, a letter first")  # fmt: skip
     if name in {effect.name for effect in CATALOGUE}:
         raise Unusable("name-taken", f"the effect library has an effect {name}", "effect name", "give it another name")

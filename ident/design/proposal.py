@@ -68,7 +68,10 @@ def propose(in_question: Rivals, matrix: Matrix, seed: int = 0) -> Experiment:
     worths = _judged(rivals, _candidates(rivals, seed))
     if not worths:
         raise Unusable(
-            "no-experiment", "the models are stable in no run that could be proposed", "models", "fit the models again"
+            "no-experiment",
+            "the models are unstable in every run that could be proposed",
+            "models",
+            "fit the models again",
         )
     pairs = [worth.separation or 0.0 for worth in worths]
     so_far = _so_far(rivals)
@@ -119,7 +122,7 @@ def _rivals(in_question: Rivals, matrix: Matrix) -> list[Rival]:
     """Each model with what the trusted runs of the matrix say of it."""
     noise, trusted = in_question.noise, in_question.trusted(matrix)
     if not in_question.models:
-        raise Unusable("no-model", "no model is in question", "models", "give at least one fitted model")
+        raise Unusable("no-model", "no model was given", "models", "give at least one fitted model")
     if not 0 < noise < np.inf:
         raise Unusable("bad-value", f"noise {noise:g}", "noise floor", "give a positive share of the output")
     found = []

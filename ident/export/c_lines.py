@@ -35,7 +35,7 @@ def _needed(lines: Sequence[str], rows: Collection[int]) -> list[ast.Assign]:
     for line in reversed(lines):
         node = statement_of(line)
         if not isinstance(node, ast.Assign):
-            raise TypeError(f"{line!r} is no line of a kernel")
+            raise TypeError(f"{line!r} is not a line of a kernel")
         (place,) = node.targets
         if place.id in wanted if isinstance(place, ast.Name) else _row(place) in rows:
             kept.append(node)
@@ -52,7 +52,7 @@ def _row(node: ast.expr) -> int:
     match node:
         case ast.Subscript(slice=ast.BinOp(left=ast.Constant(value=int(offset)))):
             return offset // LANES
-    raise TypeError(f"{ast.unparse(node)!r} is no place of the buffer")
+    raise TypeError(f"{ast.unparse(node)!r} is not a place of the buffer")
 
 
 def _c_statement(node: ast.Assign, declared: set[str]) -> str:

@@ -117,7 +117,7 @@ EXPORT fmi2Status fmi2DoStep(void *c, double at, double length, int final)
     double samples = floor(length * SERVOIDENT_SAMPLE_RATE + 0.5);
     (void)at; (void)final;
     if (samples < 1.0 || fabs(length * SERVOIDENT_SAMPLE_RATE - samples) > 1e-6 * samples)
-        return refused(i, "the communication step is no whole number of samples");
+        return refused(i, "the communication step is not a whole number of samples");
     for (; samples > 0.0; samples -= 1.0)
         servoident_step(&i->now.machine, i->now.u, i->now.y);
     show(&i->now);

@@ -124,8 +124,8 @@ def _check_driven(fit: FitResult, preset: Preset, specimen: Specimen) -> None:
         raise Unusable("no-export", "a measured force drives this machine in addition to its command", "fit",
                        "fit a model whose load is a specimen")  # fmt: skip
     if fit.settings.get("load") == "force" and specimen == Specimen():
-        raise Unusable("not-stated", "the load of this fit was the measured force, which its machine has not elsewhere",
-                       "export", "state the specimen that it is to move")  # fmt: skip
+        raise Unusable("not-stated", "the load of this fit was the measured force, known for the measured runs only",
+                       "export", "state the specimen that it moves")  # fmt: skip
     if preset.data.driven_by in MOTIONS and INPUT_RATE in read:
         what = f"the {preset.data.driven_by} is drawn through its samples, and an exported machine holds its input"
         raise Unusable("no-export", what, "fit", "export a machine that a command or a force drives")

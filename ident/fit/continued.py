@@ -62,7 +62,7 @@ class ContinuedIdentification(Identification):
         self._left_out = tuple(run for run in self._start.left_out if run in left_out)
         fitted = tuple(run for run in self._runs if run.id not in left_out)
         if not fitted:
-            raise Unusable("no-fit-runs", "every run to fit is left out by the start", "start",
+            raise Unusable("no-fit-runs", "the start leaves out every estimation run", "start",
                            "fit without a start, or mark further runs use: fit")  # fmt: skip
         self.objective = self.searched = self._over(fitted)
         if isinstance(self.objective, SimulatedFitness):

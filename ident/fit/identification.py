@@ -62,7 +62,7 @@ class Identification:
         self.settings, self.report = settings, report
         check_settings(settings)
         if not matrix.of_use("fit"):
-            what = "every run is to verify, none to fit"
+            what = "every run is validation data, and none is estimation data"
             raise Unusable("no-fit-runs", what, "runs", "mark at least one run use: fit")
         named = preset_with(settings.model, settings.effects, settings.custom)
         self.preset, prepared = prepare(named, matrix, settings.load, settings.preprocessing)
@@ -311,9 +311,9 @@ def _fed_back(preset: Preset, runs: Sequence[Run]) -> tuple[str, ...]:
 def _biased(runs: Sequence[str]) -> Unusable:
     """What is said of a fit by plain output error of records in closed loop."""
     return Unusable(
-        "closed-loop", "a controller made this command of the output, by which a fit of the output error is biased",
+        "closed-loop", "a controller computed this command from the output, so an output-error fit is biased",
         f"run {', '.join(runs)}", "give the controller's reference as command, with gain or controller; or say "
-        "closed_loop: false where nothing feeds back",
+        "closed_loop: false where there is no feedback",
     )  # fmt: skip
 
 

@@ -63,7 +63,7 @@ def controller_called(given: str, fit: FitResult, case: Case, wanted: Array | No
         return NAMED[given](fit, case, wanted)
     path = Path(given)
     if not path.is_file() or path.stat().st_size > _LARGEST:
-        raise Unusable("unknown-controller", f"{shown(given)!r} is no controller", "controller",
+        raise Unusable("unknown-controller", f"{shown(given)!r} is not a controller", "controller",
                        did_you_mean(given, NAMED, f"give {', '.join(NAMED)}, or the controller.json of "
                                     "`servoident control`"))  # fmt: skip
     try:

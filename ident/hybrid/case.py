@@ -100,7 +100,7 @@ class Case:
         for what in _STRUCTURE:
             given: Array = getattr(self, what)
             if given.shape != (n, n) or not 1 <= n <= _STOREYS or not np.allclose(given, given.T, rtol=1e-6):
-                raise Unusable("bad-case", f"{what} is no symmetric matrix of {n} rows", "structure",
+                raise Unusable("bad-case", f"{what} is not a symmetric matrix of {n} rows", "structure",
                                f"give three symmetric matrices of one size, at most {_STOREYS}")  # fmt: skip
         parts = (self.mass, self.stiffness, self.damping, *vars(self.physical).values(), self.gain,
                  self.piston_area or 0.0)  # fmt: skip
@@ -112,7 +112,10 @@ class Case:
             raise Unusable("bad-case", f"storey {self.place + 1} of {n}", "physical", f"give a storey from 1 to {n}")
         if np.linalg.eigvalsh(self.stiffness).min() < -1e-9 * np.abs(self.stiffness).max():
             raise Unusable(
-                "bad-case", "the structure does not stand by itself", "structure stiffness", "correct its stiffness"
+                "bad-case",
+                "the structure is not stable without the specimen",
+                "structure stiffness",
+                "correct its stiffness",
             )
         if not 1 <= self.delay <= _LATEST:
             raise Unusable("bad-case", f"a delay of {self.delay:.6g} samples", "delay",
@@ -244,7 +247,9 @@ def modal_damping(mass: Array, stiffness: Array, ratio: float) -> Array:
     except (scipy.linalg.LinAlgError, ValueError):  # a mass that is none, or numbers beyond a computer's
         squares, modes = np.zeros(1), np.zeros((1, 1))
     if not squares.min() > 0:
-        raise Unusable("bad-case", "the structure does not stand by itself", "structure", "correct its stiffness")
+        raise Unusable(
+            "bad-case", "the structure is not stable without the specimen", "structure", "correct its stiffness"
+        )
     shape = mass @ modes
     return np.asarray(shape @ np.diag(2 * ratio * np.sqrt(squares)) @ shape.T)
 

@@ -58,7 +58,7 @@ class CoupledCase:
             raise Unusable("bad-case", f"{len(names)} parts, {len(set(names))} names", "physical",
                            f"give 1 to {MOST} parts, each its own name")  # fmt: skip
         if len(set(self.places)) < len(names):
-            raise Unusable("bad-case", "two parts stand at one place", "physical", "give each its own")
+            raise Unusable("bad-case", "two parts have the same place", "physical", "give each its own")
         if not np.allclose(self.specimen, np.swapaxes(self.specimen, 1, 2)):
             raise Unusable("bad-case", "a matrix of the specimen is not symmetric", "specimen", "correct it")
         if np.linalg.eigvalsh(self.numerical_mass).min() <= 0:
@@ -182,7 +182,7 @@ def in_coordinates_of(rows: Array) -> Array:
     count, n = rows.shape
     if count > n or np.linalg.matrix_rank(rows) < count:
         raise Unusable("bad-case", "the places of the parts are not independent", "physical place",
-                       "let no part move as the others prescribe")  # fmt: skip
+                       "give each part a place that does not follow from the others")  # fmt: skip
     return np.vstack([rows, scipy.linalg.null_space(rows).T])
 
 

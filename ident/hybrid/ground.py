@@ -133,7 +133,7 @@ def record_of(text: str, where: str, column: int | None = None) -> Array:
         if all(_NUMBER.fullmatch(word) for word in words):
             rows.append([float(re.sub("[dD]", "e", word)) for word in words])
         elif rows:
-            raise Unusable("bad-ground", f"{shown(line)!r} is no row of numbers", f"{where} line {number}",
+            raise Unusable("bad-ground", f"{shown(line)!r} is not a row of numbers", f"{where} line {number}",
                            "leave numbers alone in the file")  # fmt: skip
     if column is not None:
         if any(len(row) <= column for row in rows):

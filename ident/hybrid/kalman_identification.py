@@ -56,7 +56,10 @@ class KalmanIdentification(Identification):
         runs = matrix.of_use("fit")
         if not runs:
             raise Unusable(
-                "no-fit-runs", "every run is to verify, none to fit", "runs", "mark at least one run use: fit"
+                "no-fit-runs",
+                "every run is validation data, and none is estimation data",
+                "runs",
+                "mark at least one run use: fit",
             )
         started = time.monotonic()
         self.found = filtered(runs, report)

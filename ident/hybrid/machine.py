@@ -184,7 +184,7 @@ def _stated(preset: Preset, fit: FitResult, case: Case) -> dict[str, float]:
     if "A" in preset.chain.symbols:
         known = case.piston_area or preset.search.bounds_hold_for
         if not ratios & set(fit.parameters) and known is None:
-            raise Unusable("missing-area", "the fit stands on a piston area", "case piston_area", "state it")
+            raise Unusable("missing-area", "the fit was made with a piston area", "case piston_area", "state it")
         found["A"] = 1.0 if ratios & set(fit.parameters) or known is None else known
     return found
 

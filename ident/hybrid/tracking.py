@@ -52,7 +52,7 @@ class Noise:
     def __post_init__(self) -> None:
         for name, value in vars(self).items():
             if not (math.isfinite(value) and (value > 0 or (value == 0 and name != "measurement"))):
-                raise Unusable("bad-noise", f"{value:g} is no size of a noise", f"noise {name}",
+                raise Unusable("bad-noise", f"{value:g} is not a size of a noise", f"noise {name}",
                                "give a standard deviation above 0, of what is fictitious also 0")  # fmt: skip
 
     @classmethod

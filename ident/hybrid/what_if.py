@@ -67,7 +67,7 @@ class Before:
     def __post_init__(self) -> None:
         if self.gain is not None and not 0 < self.gain < np.inf:
             raise Unusable(
-                "bad-gain", f"{self.gain:g} is no gain above 0", "before gain", "give the one it was stable with"
+                "bad-gain", f"{self.gain:g} is not a gain above 0", "before gain", "give the one it was stable with"
             )
 
 
@@ -198,7 +198,7 @@ def _gains(machine: ChangedMachine, gains: tuple[float, float] | None) -> tuple[
     known = machine.preset.data.gains.get("Kp")
     lower, upper = gains or (USUAL_GAINS if known is None else (known, known))
     if not (0 < lower <= upper < np.inf):
-        raise Unusable("bad-gain", f"{lower:g} to {upper:g} is no range of gains above 0", "gain", "write it as 2:3")
+        raise Unusable("bad-gain", f"{lower:g} to {upper:g} is not a range of gains above 0", "gain", "write it as 2:3")
     return (lower,) if lower == upper else (lower, upper)
 
 

@@ -175,7 +175,7 @@ def _nothing_left(first: RefusedRun) -> Unusable:
     remedy = "give a rig with wider limits, or another gain"
     if first.factor is not None:
         remedy = f"shrink its amplitude to {first.factor:.3g} times what is asked, or allow that by a smaller least"
-    return Unusable("beyond-limits", f"no run can be: {first.why}", run_name(first.id), remedy)
+    return Unusable("beyond-limits", f"no run keeps the limits: {first.why}", run_name(first.id), remedy)
 
 
 @dataclass(frozen=True)

@@ -139,7 +139,7 @@ def _gains(fields: Fields) -> Iterator[float]:
     for one in _list(fields, "gains", []):
         gain = loop_gain(Fields({"gain": one}, fields.place("gains"), ("gain",)))
         if gain is None or gain <= 0:
-            raise Unusable("bad-gain", f"{shown(one)!r} is no gain above 0", fields.place("gains"), "correct it")
+            raise Unusable("bad-gain", f"{shown(one)!r} is not a gain above 0", fields.place("gains"), "correct it")
         yield gain
 
 
@@ -166,7 +166,7 @@ def _kind(given: Any, where: str, band: float, rate: float) -> tuple[str, float]
     fields = Fields({"kind": given} if isinstance(given, str) else given, where, ("kind", "frequency"))
     kind = fields.text("kind")
     if kind not in KINDS:
-        raise Unusable("unknown-kind", f"{shown(kind)!r} is no kind of command", where, did_you_mean(kind, KINDS))
+        raise Unusable("unknown-kind", f"{shown(kind)!r} is not a kind of command", where, did_you_mean(kind, KINDS))
     frequency = fields.positive("frequency", "frequency") or band
     if frequency > 0.45 * rate:
         raise Unusable(

@@ -78,10 +78,10 @@ def described(data: Any, where: str = "machine") -> Description:
         places["of"] = CHOICES["of"][0]  # nothing is compared
     shown = data.get("sensor") or ()
     if not isinstance(shown, str | list | tuple):
-        raise _bad(f"{shown!r} is no list of channels", f"{where} sensor", f"choose from {', '.join(SHOWN)}")
+        raise _bad(f"{shown!r} is not a list of channels", f"{where} sensor", f"choose from {', '.join(SHOWN)}")
     sensor = tuple(dict.fromkeys([shown] if isinstance(shown, str) else map(str, shown)))
     if strange := [name for name in sensor if name not in SHOWN]:
-        raise _bad(f"{strange[0]!r} is no channel of a machine", f"{where} sensor", did_you_mean(strange[0], SHOWN))
+        raise _bad(f"{strange[0]!r} is not a channel of a machine", f"{where} sensor", did_you_mean(strange[0], SHOWN))
     return Description(places, sensor or (_usual(places),), _gains(data.get("gains") or {}, places, f"{where} gains"))
 
 

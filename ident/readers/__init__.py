@@ -114,7 +114,7 @@ def limits_text(source: Source, name: str, limits: Limits) -> str:
     try:
         return source.read(name, limits.description).decode("utf-8")
     except UnicodeDecodeError:
-        raise Unusable("not-text", "the limits file is no text in UTF-8", name, "write it as YAML") from None
+        raise Unusable("not-text", "the limits file is not text in UTF-8", name, "write it as YAML") from None
 
 
 def read_runs(

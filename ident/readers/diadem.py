@@ -161,14 +161,14 @@ def _number(head: _Head, code: int, usual: str, where: str) -> float:
     """An entry that is a number. Raises Unusable."""
     text = head.get(code) or usual
     if not is_number(text, None) or not np.isfinite(value := float(text.replace(",", "."))):
-        raise broken(f"entry {code} of channel {head.get(200, '')!r} is no number", where)
+        raise broken(f"entry {code} of channel {head.get(200, '')!r} is not a number", where)
     return value
 
 
 def _whole_number(head: _Head, code: int, usual: str, where: str) -> int:
     value = _number(head, code, usual, where)
     if value != int(value) or value < 0:
-        raise broken(f"entry {code} of channel {head.get(200, '')!r} is no whole number", where)
+        raise broken(f"entry {code} of channel {head.get(200, '')!r} is not a whole number", where)
     return int(value)
 
 

@@ -17,7 +17,7 @@ def describe_regulator(data: Any, where: str = "regulator") -> PositionControl:
     values = {name: fields.number(name, unit) for name, unit in REGULATOR_UNITS.items()}
     given = data.get("amplitudes") or []
     if not isinstance(given, list):
-        raise Unusable("not-a-list", f"{shown(given)!r} is no list", fields.place("amplitudes"), "write [2 %, 10 %]")
+        raise Unusable("not-a-list", f"{shown(given)!r} is not a list", fields.place("amplitudes"), "write [2 %, 10 %]")
     amplitudes = tuple(parameter_value(one, "1", fields.place("amplitudes")) for one in given)
     if any(one <= 0 for one in amplitudes):
         raise Unusable("bad-amplitude", "an amplitude is not above 0", fields.place("amplitudes"), "write [2 %, 10 %]")

@@ -364,6 +364,6 @@ def test_a_running_diagnosis_is_stopped_and_keeps_what_it_found(service, linear)
     assert '"state":"succeeded"' in service.get(f"{API}/jobs/{job}/events").text
     found = service.get(f"{API}/diagnoses/{job}").json()
     assert not found["complete"]
-    assert "The search was not over" in found["verdict"]["text"]
+    assert "The search was stopped early" in found["verdict"]["text"]
     refused = service.post(f"{API}/jobs/{linear}/conclude")
     assert (refused.status_code, refused.json()["code"]) == (409, "not-a-diagnosis")

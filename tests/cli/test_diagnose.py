@@ -82,7 +82,7 @@ def test_a_search_whose_time_is_over_tells_what_it_has(servoident, matrix, tmp_p
     assert done.returncode == 0, done.stderr
     found = json.loads(file.read_text())
     assert (found["complete"], found["verdict"]["effects"]) == (False, [])
-    assert found["verdict"]["text"].startswith("The search was not over")
+    assert found["verdict"]["text"].startswith("The search was stopped early")
     assert " ".join(found["verdict"]["text"].split()) in " ".join(done.stdout.split())
 
 

@@ -200,7 +200,7 @@ def simulated(own: Effect) -> np.ndarray:
 def test_an_effect_is_refused_by_a_model_that_lacks_its_place():
     """The same definition, asked for with another model."""
     assert preset_with("qian2014", ("overlap",), (GOOD,)).effects[0].name == "overlap"
-    with pytest.raises(Unusable, match="no signal that stands"):
+    with pytest.raises(Unusable, match="not a signal of the place"):
         preset_with("drive", ("overlap",), (GOOD,))
 
 

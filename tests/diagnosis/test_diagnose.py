@@ -57,7 +57,7 @@ def test_each_step_is_told_as_it_is_found(dead_zone):
     assert not first.complete
     assert first.verdict.effects == ("dead_zone",)
     assert first.ladder == dead_zone.ladder[: len(first.ladder)]
-    assert first.verdict.text.startswith("The search was not over")
+    assert first.verdict.text.startswith("The search was stopped early")
     assert Diagnosis.from_json(first.to_json()) == first
     assert dead_zone.complete
     assert dead_zone.to_json()["complete"] is True

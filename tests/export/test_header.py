@@ -94,7 +94,7 @@ MEASURED_LOAD = {"controller": "p", "of": "displacement", "valve": "first", "flo
     ("model", "settings", "what"),
     [
         ("measured load", {}, "a measured force drives this machine"),
-        ("qian2014", {"load": "force"}, "state the specimen that it is to move"),
+        ("qian2014", {"load": "force"}, "state the specimen that it moves"),
         ("specimen", {}, "velocity is drawn through its samples"),
     ],
 )

@@ -111,7 +111,7 @@ def test_a_machine_has_its_description_for_a_name():
         ({"vlave": "first"}, "unknown key 'vlave'"),
         ({"controller": "p", "gains": {"I": 2}, "flow": "to_speed"}, "has no gain 'I'; give P"),
         ({"controller": "pi", "gains": {"I": "much"}, "flow": "to_speed"}, "give a positive number"),
-        ({"sensor": ["weight"]}, "'weight' is no channel of a machine"),
+        ({"sensor": ["weight"]}, "'weight' is not a channel of a machine"),
         ("first", "'first' is not a list of place: choice"),
     ],
 )

@@ -76,13 +76,19 @@ def test_the_first_versions_knew_less_and_later_ones_know_more():
 @pytest.mark.parametrize(
     ("change", "said"),
     [
-        ({"candidates": 3}, "candidates is no list"),
-        ({"candidates": [{"effect": "lead", "error": {"fit": "small"}}]}, r"candidates\[0\]\.error\.fit is no number"),
-        ({"verdict": {"effects": [1]}}, r"verdict\.effects\[0\] is no text"),
+        ({"candidates": 3}, "candidates is not a list"),
+        (
+            {"candidates": [{"effect": "lead", "error": {"fit": "small"}}]},
+            r"candidates\[0\]\.error\.fit is not a number",
+        ),
+        ({"verdict": {"effects": [1]}}, r"verdict\.effects\[0\] is not text"),
         ({"verdict": {"unexplained": 0}}, r"verdict\.unexplained is neither true nor false"),
-        ({"seed": 1.5}, "seed is no whole number"),
+        ({"seed": 1.5}, "seed is not a whole number"),
         ({"budget": {"linear": 0.1}}, r"budget\.noise is missing"),
-        ({"budget": {"noise": 0, "linear": 0, "nonlinear": 0, "bounds": {"noise": [1]}}}, "bounds.noise is no list of"),
+        (
+            {"budget": {"noise": 0, "linear": 0, "nonlinear": 0, "bounds": {"noise": [1]}}},
+            "bounds.noise is not a list of",
+        ),
     ],
 )
 def test_what_is_no_diagnosis_is_refused_with_the_entry_at_fault(change, said):

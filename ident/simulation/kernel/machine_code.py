@@ -107,7 +107,7 @@ class _Writer:
             case ast.Assign(targets=[ast.Subscript() as place], value=value):
                 self.store(_offset(place), self._value(value))
             case _:
-                raise TypeError(f"{text!r} is no line of a kernel")
+                raise TypeError(f"{text!r} is not a line of a kernel")
 
     def store(self, offset: int, value: str) -> None:
         """Put a value into the buffer."""
@@ -175,7 +175,7 @@ def _offset(node: ast.Subscript) -> int:
     match node.slice:
         case ast.BinOp(left=ast.Constant(value=int(offset)), op=ast.Add(), right=ast.Name(id="lane")):
             return offset
-    raise TypeError(f"{ast.unparse(node)!r} is no place of the buffer")
+    raise TypeError(f"{ast.unparse(node)!r} is not a place of the buffer")
 
 
 def _number(value: float) -> str:
