@@ -142,7 +142,7 @@ class Client:
         return self.actuator(serial).approvals
 
     def verdict(self, serial: str) -> LineVerdictView:
-        """Pass, fail or unknown, with the reasons: the set in force against the limits of its model and batch."""
+        """Pass, fail or unknown, with the reasons: the approved set against the limits of its model and batch."""
         answer = self.request("GET", f"/actuators/{_segment(serial)}/verdict")
         return LineVerdictView.model_validate_json(answer.content)
 

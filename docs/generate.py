@@ -229,7 +229,7 @@ def errors() -> str:
         "",
         "What cannot be used or done is refused with a code, with what is wrong, where, and the remedy. The command",
         "line prints it in one line and exits with 2; the service answers with problem+json whose `code` is this one,",
-        "and the HTTP status below. A name in braces, such as {name}, stands for a value; … stands for a whole text.",
+        "and the HTTP status below. A name in braces, such as {name}, is a value; … is a whole text.",
         "",
     ]
     return "\n".join([*head, *table(("code", "HTTP", "what", "remedy"), rows), ""])
@@ -255,10 +255,10 @@ def codes(file: Path) -> Iterator[tuple[str, str, str, str]]:
                 continue
         names, whats, remedies = (alternatives(one, assigned) for one in given)
         paired = len(whats) == len(remedies)  # each was assigned where the other was
-        for name, (what, remedy) in product(
+        for name, (said, cure) in product(
             names, zip(whats, remedies, strict=True) if paired else product(whats, remedies)
         ):
-            yield f"`{name}`", status, what, remedy
+            yield f"`{name}`", status, said, cure
 
 
 Assigned = Mapping[str, list[ast.expr]]
@@ -310,7 +310,7 @@ def words(node: ast.expr) -> str:
         case ast.FormattedValue(value):
             return f"{{{named(value)}}}"
         case ast.Call(ast.Name("did_you_mean"), [_, _, ast.Constant(otherwise)]):
-            return f"did you mean {{name}}?, or: {otherwise}"
+            return f"did you mean {{name}}?, or: {otherwise!s}"
         case ast.Call(ast.Name("did_you_mean")):
             return "did you mean {name}?, or the names to choose from"
         case _:

@@ -27,6 +27,16 @@ LONGEST = {"README.md": 18.0, "docs/index.md": 20.0, "docs/which-machine.md": 20
            "docs/glossary.md": 20.0, "docs/diagnosis.md": 20.0,
            "docs/lab.md": 20.0, "docs/cli.md": 20.0, "CONTRIBUTING.md": 20.0}  # fmt: skip
 """Words of a sentence in the mean of a page, at most; other pages join as they are rewritten."""
+RECORDS = {
+    "measured.md",
+    "measured-cases.md",
+    "blind-trials.md",
+    "diagnosis-trials.md",
+    "benchmarks.md",
+    "criteria.md",
+    "faults.md",
+}
+"""Pages that quote what earlier versions said, or that a measurement or a comment of the source writes."""
 PAGE = 20.0
 """The same of the sentences of a template."""
 
@@ -106,7 +116,8 @@ def shown() -> dict[str, str]:
     for folder in ("app", "ident"):
         for file in (ROOT / folder).rglob("*.py"):
             found[str(file.relative_to(ROOT))] = "\n\n".join(literals(file))
-    return found | {name: (ROOT / name).read_text(encoding="utf-8") for name in LONGEST}
+    pages = [*(file for file in (ROOT / "docs").glob("*.md") if file.name not in RECORDS), *map(ROOT.joinpath, LONGEST)]
+    return found | {str(file.relative_to(ROOT)): file.read_text(encoding="utf-8") for file in pages}
 
 
 def sentences(text: str) -> list[list[str]]:

@@ -44,7 +44,7 @@ def get_diagnosis(here: Here, diagnosis: str) -> DiagnosisView:
 
 @router.get("/{diagnosis}/proposal", dependencies=[READERS])
 def get_proposal(here: Here, diagnosis: str, seed: Seed = 0) -> ProposalView:
-    """The run that best tells apart what the diagnosis leaves in question, in words and numbers."""
+    """The run that best separates the remaining hypotheses of the diagnosis, in words and numbers."""
     return proposal.proposal(here, diagnosis, seed)
 
 

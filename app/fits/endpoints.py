@@ -53,7 +53,7 @@ def get_error_sizes(here: Here, fit: str) -> ErrorSizesView:
 
 @router.get("/{fit}/budget", dependencies=[READERS])
 def get_error_budget(here: Here, fit: str) -> Budget:
-    """What the error on the runs to fit is made of: noise, what a linear and what only a nonlinear model could take."""
+    """The error budget on estimation data: noise, error of the linear model, what only a nonlinear model removes."""
     return service.budget_of(here, fit)
 
 

@@ -60,7 +60,7 @@ def get_description(here: Here, matrix: str) -> dict[str, Any]:
 @router.post("/{matrix}/revisions", dependencies=[LAB], status_code=201, response_model=MatrixView,
              responses={200: {"model": MatrixView, "description": "This revision is known already"}})  # fmt: skip
 def revise_matrix(here: Here, matrix: str, revision: Revision, key: Key = None) -> Response:
-    """Mend labels, units or signs: a new matrix with the same raw bytes."""
+    """Correct labels, units or signs: a new data set with the same raw files."""
 
     def act(_: str) -> tuple[int, dict[str, object], str]:
         stored, new = service.revise(here, matrix, revision)

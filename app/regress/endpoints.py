@@ -20,7 +20,7 @@ RECHECKERS = may(Role.CI, Role.LAB)
 
 @router.post("", dependencies=[RECHECKERS], status_code=202, response_model=RegressionView)
 def start_regression(here: Here, me: Me, request: RegressionRequest, key: Key = None) -> Response:
-    """Compute the stored error of every set in force again, and fit its runs from scratch: a job an actuator."""
+    """Recompute the stored error of every approved set, and fit its runs from scratch: one job per actuator."""
 
     def started(regression: str) -> Answer:
         view = service.start(here, request, me.name, regression)

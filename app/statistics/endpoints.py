@@ -27,8 +27,8 @@ _IMAGES: dict[str, dict[str, str]] = {kind: {} for kind in _MEDIA}
 def get_statistics(
     here: Here, parameter: Parameter, batch: str | None = None, serial: str | None = None, model: str | None = None
 ) -> StatisticsView:
-    """Of the sets in force in a batch, or of all that ever were of one serial number: their spread, whether the process
-    is in control and capable, outliers, drift.
+    """Of the approved sets of a batch, or of all sets of a serial number that were ever approved: their spread, whether
+    the process is in control and capable, outliers, drift.
     """
     return service.statistics(here, parameter, batch, serial, model)
 

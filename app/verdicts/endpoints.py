@@ -19,7 +19,7 @@ router = APIRouter(tags=["limits"], responses=COMMON)
 
 @router.get("/actuators/{serial:path}/verdict", dependencies=[READERS])
 def get_verdict(here: Here, serial: str, over: Over = "temperature", at: At = None) -> LineVerdictView:
-    """Pass, fail or unknown, with the reasons: the set in force against the limits of its model and batch.
+    """Pass, fail or unknown, with the reasons: the approved set against the limits of its model and batch.
 
     With `at`, such as 60 degC, each parameter is judged there by its law over the condition: that of the actuator's own
     sets where there are enough, else its own value moved by the law of its batch.

@@ -85,8 +85,11 @@ class ErrorOf:
 
 
 def first_line(name: str, errors: Mapping[str, ErrorOf], number: Callable[[float | None], str] = percent) -> str:
-    """The first line of a result: what it is of, and the error on each use of runs of which there are some."""
-    return f"{name}: error {errors_line(errors, number)}"
+    """The first line of a result: what it is of, and the error on each use of runs of which there are some.
+
+    Without a name there was no time to fit a model.
+    """
+    return f"{name}: error {errors_line(errors, number)}" if name else "No model was fitted."
 
 
 def errors_line(errors: Mapping[str, ErrorOf], number: Callable[[float | None], str] = percent) -> str:

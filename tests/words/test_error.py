@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from ident.unstable import UNSTABLE, bounded
-from ident.words.error import MEAN_COUNTS, ErrorOf, error_in_print, error_said, errors_line
+from ident.words.error import MEAN_COUNTS, ErrorOf, error_in_print, error_said, errors_line, first_line
 from ident.words.percent import change, percent, percent_in_print
 
 LARGE = re.compile(r"(?<![\d.])\d{4,}(\.\d*)?\s*%|e\+?\d+\s*%")
@@ -75,3 +75,8 @@ def test_a_line_names_the_uses_of_which_there_are_runs():
 @given(st.one_of(st.floats(min_value=0), st.just(float("nan"))))
 def test_what_is_kept_of_an_error_is_a_number_that_json_can_hold(error):
     assert 0 <= bounded(error) <= UNSTABLE
+
+
+def test_a_result_without_a_model_says_so_first():
+    assert first_line("", {}) == "No model was fitted."
+    assert first_line("motor", {}) == "motor: error unknown"
