@@ -33,6 +33,7 @@ from schemas.limits import LimitsView, LineVerdictView
 from schemas.matrix import MatrixView
 from schemas.parameters import ActuatorDetail, ApprovalView, ParameterSetPage, ParameterSetView
 from schemas.problem import Problem
+from schemas.search import SearchView
 from schemas.statistics import StatisticsView
 
 Watch = Callable[[JobView], None]
@@ -132,6 +133,10 @@ class Client:
     def withdraw(self, fit: str, why: str = "") -> FitView:
         """Take a fit out of force: its serial number has no current set until one is approved."""
         return FitView.model_validate_json(self.request("POST", f"/fits/{fit}/withdraw", json={"why": why}).content)
+
+    def search(self, text: str) -> SearchView:
+        """Actuators, data sets and fits that hold a text."""
+        return SearchView.model_validate_json(self.request("GET", "/search", params={"q": text}).content)
 
     def actuator(self, serial: str) -> ActuatorDetail:
         """An actuator with its set in force, and every approval and withdrawal, the newest first."""

@@ -25,6 +25,7 @@ from app.access.tries import Tries
 from app.blobs import open_storage
 from app.context import Context
 from app.database import connect, migrate, sessions
+from app.display import Display
 from app.jobs.engine import Jobs
 from app.jobs.service import resume
 from app.jobs.steps import Runs
@@ -53,6 +54,7 @@ FEATURES = (
     "limits",
     "verdicts",
     "actuators",
+    "search",
     "refits",
     "fits",
     "approvals",
@@ -130,6 +132,7 @@ async def _lifespan(app: FastAPI) -> AsyncIterator[None]:
 def _surround(app: FastAPI, settings: Settings) -> None:
     """What each request passes on its way in; the last one added is the first that it meets."""
     context = app.state.context
+    app.add_middleware(Display)
     app.add_middleware(Audited, context=context)
     app.add_middleware(Gate, context=context, tries=app.state.tries, sign_in=sign_in)
     app.add_middleware(Guard, settings=settings)

@@ -126,11 +126,12 @@ ROOMS = (
 
 ROOMS_OF_THE_SERVICE = (
     "environment", "settings", "request_id", "nearest_field", "lru", "processes", "storage", "database", "tables",
-    "client", "blobs", "context", "errors", "form", "paging", "security", "reserve", "idempotency", "access", "openapi",
+    "client", "blobs", "context", "errors", "display", "form", "paging", "security", "reserve", "idempotency",
+    "access", "openapi",
     "catalogue", "parameters", "webhooks", "matrices", "drafts", "live", "stream", "backup",
     "jobs", "retention", "workers", "operation", "own_effects", "limits", "statistics",
     "fits", "approvals", "annotations", "diagnoses", "profiles", "refits", "hybrid", "plans", "regress", "deletions",
-    "actuators", "verdicts", "report", "figures",
+    "actuators", "search", "verdicts", "report", "figures",
     "kinds", "pages", "main", "cli", "__main__",
 )  # fmt: skip
 """The files and folders of `app`; each may use those before it."""

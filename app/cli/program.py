@@ -41,6 +41,7 @@ from app.cli.regress import regress
 from app.cli.report import report as write_report
 from app.cli.retention import retention
 from app.cli.revise import revise
+from app.cli.search import search
 from app.cli.serve import serve
 from app.cli.sheet import sheet
 from app.cli.signals import signals
@@ -55,6 +56,7 @@ from app.cli.webhook import program as webhook
 from app.cli.whatif import whatif
 from app.cli.worker import worker
 from app.cli.workers import workers
+from ident.words.display import show_in
 
 GROUPS = {
     "Data": (simulate, init, join, check, signals),
@@ -67,6 +69,7 @@ GROUPS = {
         demo,
         upload,
         query,
+        search,
         revise,
         annotate,
         delete,
@@ -113,9 +116,19 @@ def _version(asked: bool) -> None:
 
 @program.callback()
 def options(
+    units: Annotated[
+        str,
+        typer.Option(
+            "--units",
+            metavar="UNITS",
+            envvar="SERVOIDENT_UNITS",
+            help="Display units of figures and reports, separated by commas, such as bar,l/min,in.",
+        ),
+    ] = "",
     _: Annotated[bool, typer.Option("--version", help="Print the version.", callback=_version, is_eager=True)] = False,
 ) -> None:
     """What every command has in common."""
+    show_in(unit.strip() for unit in units.split(",") if unit.strip())
 
 
 for command in chain.from_iterable(GROUPS.values()):

@@ -12,6 +12,7 @@ from app.lru import LRU
 from ident.errors import Unusable
 from ident.figures import MEDIA, figure, render
 from ident.figures.selection import number
+from ident.words.display import display_units
 from ident.words.nearest import did_you_mean
 
 _MOST = 96  # figures in memory, about 100 kB each: what they are of never changes
@@ -28,7 +29,7 @@ def drawn(
     """
     if kind not in MEDIA:
         raise Failure(404, "no-such-format", f"no figures as {kind!r}", "figure", did_you_mean(kind, MEDIA))
-    key = json.dumps([str(context.storage.folder), of, name, kind, options], sort_keys=True)
+    key = json.dumps([str(context.storage.folder), of, name, kind, options, display_units()], sort_keys=True)
     return _figures.get(key, lambda: _drawn(name, kind, dict(options), subject)), MEDIA[kind]
 
 

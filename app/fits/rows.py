@@ -10,6 +10,7 @@ from markupsafe import Markup, escape
 from ident.equations.mathml import mathml
 from ident.errors import Unusable
 from ident.fit.result import Estimate, FitResult
+from ident.words.display import displayed
 from ident.words.engineering import power_of, quantity, scaled_unit
 from ident.words.error import ErrorOf
 from ident.words.number import fixed, trimmed
@@ -77,20 +78,22 @@ def parameter_rows(fit: FitResult) -> tuple[ParameterRow, ...]:
 
 
 def _parameter(name: str, entry: Estimate, undetermined: bool) -> ParameterRow:
-    power = power_of(entry.value)
-    value = entry.value / 10.0**power
-    error = None if entry.std_error is None else entry.std_error / 10.0**power
+    size, unit = displayed(entry.unit)
+    power = power_of(entry.value / size)
+    size *= 10.0**power
+    value = entry.value / size
+    error = None if entry.std_error is None else entry.std_error / size
     places, known = decimals(value, error), determined(entry.value, entry.std_error)
     return ParameterRow(
         name=name,
         symbol=symbol(name, entry.symbol),
         meaning=of_parameter(name, entry.meaning),
-        unit=scaled_unit(entry.unit, power),
+        unit=scaled_unit(unit, power),
         value=fixed(value, places) if known else UNDETERMINED,
         std_error=fixed(error, places),
         relative=percent_in_print(error / abs(value), 2) if error is not None and value and known else "–",
-        lower=trimmed(entry.lower / 10.0**power),
-        upper=trimmed(entry.upper / 10.0**power),
+        lower=trimmed(entry.lower / size),
+        upper=trimmed(entry.upper / size),
         remark="; ".join(_remarks(entry, undetermined)),
         plain=f"{entry.value:.8g} {'' if entry.unit == '1' else entry.unit}".strip(),
     )

@@ -24,6 +24,7 @@ from app.pages.job_view import JobPageView
 from app.pages.manual import file_of, manual_page
 from app.pages.problems import PageRoute, Unknown
 from app.pages.rendering import page
+from app.search import service as search_service
 
 router = APIRouter(include_in_schema=False, route_class=PageRoute)
 
@@ -42,6 +43,18 @@ def actuator(
 ) -> HTMLResponse:
     """One actuator: the set in force, its fits and its matrices, and the verdict at a condition."""
     return page(request, "actuator.html", **service.actuator(here, serial, cursor, over.strip(), at.strip()))
+
+
+@router.get("/search", dependencies=[READERS])
+def search(request: Request, here: Here, q: Annotated[str, Query(max_length=200)] = "") -> HTMLResponse:
+    """Actuators, data sets and fits that hold a text."""
+    return page(request, "search.html", found=search_service.found(here, q, 50))
+
+
+@router.get("/units", dependencies=[READERS])
+def units(request: Request) -> HTMLResponse:
+    """The form that chooses display units."""
+    return page(request, "units.html", **service.units())
 
 
 @router.get("/upload", dependencies=[LAB])

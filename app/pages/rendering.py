@@ -12,6 +12,7 @@ from jinja2 import Environment, FileSystemLoader, StrictUndefined
 
 from app.pages.condition_view import conditions
 from app.pages.manual import is_there
+from ident.words.engineering import printed_unit
 from ident.words.error import ErrorOf
 from ident.words.percent import percent_in_print
 from ident.words.sentence import sentence
@@ -52,6 +53,7 @@ def _environment() -> Environment:
     environment.filters["in_words"] = title
     environment.filters["sentence"] = sentence
     environment.filters["level"] = level
+    environment.filters["unit"] = printed_unit
     environment.filters["use"] = DATA.__getitem__
     environment.globals["static"] = static
     environment.globals["conditions"] = conditions

@@ -40,6 +40,7 @@ from ident.comparison.side_by_side import MOST
 from ident.errors import Unusable
 from ident.rig.conditions import TEMPERATURE
 from ident.synthesis.matrix import SIMULATED
+from ident.words.display import CHOICES, display_units
 from ident.words.engineering import quantity
 from ident.words.number import count
 from schemas.parameters import ActuatorPage, ActuatorView
@@ -180,6 +181,11 @@ def compared(context: Context, wanted: Sequence[str]) -> tuple[str, Shown]:
         }
     first, second = stored
     return "compare.html", {"both": compare_view(first, second, matrices.get(context, first.matrix)), "others": others}
+
+
+def units() -> Shown:
+    """The display units that can be chosen, by quantity, and those that are."""
+    return {"choices": CHOICES, "chosen": display_units()}
 
 
 def fit(context: Context, fit_id: str) -> FitPageView | JobPageView:

@@ -17,6 +17,7 @@ from ident.hybrid.root_locus import Pole
 from ident.hybrid.what_if import HIGHEST, USUAL_GAINS, Response, WhatIf
 from ident.presets import preset
 from ident.stability.judgement import UNSTABLE
+from ident.words.display import displayed
 from ident.words.engineering import power_of, quantity, scaled_unit
 from ident.words.number import fixed, places, plain, trimmed
 from ident.words.plus_minus import plus_minus
@@ -239,12 +240,13 @@ def _critical(found: WhatIf) -> str:
 
 def _carried(found: WhatIf, named: Mapping[str, ParameterRow]) -> Iterator[CarriedRow]:
     for name, entry in found.parameters.items():
-        power = power_of(entry.before)
-        before, after = entry.before / 10.0**power, entry.after / 10.0**power
+        size, unit = displayed(entry.unit)
+        power = power_of(entry.before / size)
+        before, after = (value / size / 10.0**power for value in (entry.before, entry.after))
         changed = entry.before != entry.after
         yield CarriedRow(
             symbol=named[name].symbol, meaning=named[name].meaning, before=plain(before, 5), after=plain(after, 5),
-            unit=scaled_unit(entry.unit, power), factor=plain(after / before, 4) if changed and before else "–",
+            unit=scaled_unit(unit, power), factor=plain(after / before, 4) if changed and before else "–",
             why=entry.why, changed=changed,
         )  # fmt: skip
 

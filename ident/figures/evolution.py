@@ -122,7 +122,7 @@ class _Axis:
         tried = [vector[place] for entry in pictured for vector in entry.population]
         low, high = min(*tried, estimate.lower), max(*tried, estimate.upper)
         wide = low > 0 and high > _DECADES * low
-        factor, unit = (1.0, words.tidy_unit(estimate.unit)) if wide else words.engineering((low, high), estimate.unit)
+        factor, unit = words.whole(estimate.unit) if wide else words.engineering((low, high), estimate.unit)
         return cls(name, place, factor, words.axis(name, unit), (factor * low, factor * high), wide)
 
     @property

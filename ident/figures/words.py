@@ -11,6 +11,7 @@ from ident.fit.result import FitResult
 from ident.matrix import Actuator
 from ident.run import USES, Run, Specimen
 from ident.words import conditions
+from ident.words.display import displayed
 from ident.words.engineering import power_of, printed_unit, scaled_unit
 from ident.words.error import ErrorOf
 from ident.words.percent import percent as in_percent
@@ -34,8 +35,15 @@ def tidy_unit(unit: str) -> str:
 
 def engineering(values: Iterable[float], unit: str) -> tuple[float, str]:
     """(factor, unit) that bring the largest of `values` into a readable range: 2.6e-6 m^4/s → (1e6, "1e-6 m^4/s")."""
-    power = power_of(max((abs(value) for value in values), default=0.0))
-    return 10.0**-power, scaled_unit(unit, power, _SIGNS) if power else tidy_unit(unit)
+    size, unit = displayed(unit)
+    power = power_of(max((abs(value) for value in values), default=0.0) / size)
+    return 10.0**-power / size, scaled_unit(unit, power, _SIGNS) if power else tidy_unit(unit)
+
+
+def whole(unit: str) -> tuple[float, str]:
+    """(factor, unit) of the display unit itself, without a power of ten: for an axis of decades."""
+    size, unit = displayed(unit)
+    return 1 / size, tidy_unit(unit)
 
 
 def axis(name: str, unit: str) -> str:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from ident.words.display import displayed
 from ident.words.engineering import printed_unit
 
 _OF_LAB = {"m": (1e3, "mm"), "m/s": (1e3, "mm/s")}
@@ -10,7 +11,8 @@ _OF_LAB = {"m": (1e3, "mm"), "m/s": (1e3, "mm/s")}
 
 def mass(kilograms: float) -> str:
     """A specimen's mass."""
-    return f"{kilograms:.4g} kg"
+    size, unit = displayed("kg")
+    return f"{kilograms / size:.4g} {unit}"
 
 
 def stiffness(newtons_a_metre: float) -> str:
@@ -20,7 +22,8 @@ def stiffness(newtons_a_metre: float) -> str:
 
 def amplitude(value: float, unit: str = "m") -> str:
     """An RMS amplitude; that of a command without a unit is a number."""
-    factor, shown = _OF_LAB.get(unit, (1.0, printed_unit(unit)))
+    size, shown = displayed(unit)
+    factor, shown = (1 / size, printed_unit(shown)) if shown != unit else _OF_LAB.get(unit, (1.0, printed_unit(unit)))
     return f"{factor * value:.4g} {shown}".removesuffix(" 1")
 
 

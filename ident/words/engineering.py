@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import re
 
+from ident.words.display import displayed
 from ident.words.number import plain, raised
 
 PRINT = "⁻²³⁴⁵⁶√"
@@ -13,7 +14,7 @@ NO_UNIT = "–"
 _PREFIXED = {
     ("m", -3): "mm", ("m", -6): "µm", ("m^2", -6): "mm²", ("s", -3): "ms", ("s", -6): "µs",
     ("m/s", -3): "mm/s", ("rad", -3): "mrad", ("V", -3): "mV", ("A", -3): "mA",
-    ("N", 3): "kN", ("Pa", 3): "kPa", ("Pa", 6): "MPa", ("N/m", 3): "kN/m",
+    ("N", 3): "kN", ("Pa", 3): "kPa", ("Pa", 6): "MPa", ("N/m", 3): "kN/m", ("bar", -3): "mbar",
 }  # fmt: skip
 
 
@@ -52,9 +53,14 @@ def with_unit(number: str, unit: str, power: int = 0) -> str:
 
 
 def quantity(value: float | None, unit: str) -> str:
-    """One number with its unit: 497e-6, "m^2" → "497.0 mm²"; 0.0913, "rad/s" → "0.09130 rad/s"."""
+    """One number with its unit: 497e-6, "m^2" → "497.0 mm²"; 0.0913, "rad/s" → "0.09130 rad/s".
+
+    In the display unit, where one is chosen: 2.07e7, "Pa" → "207.0 bar".
+    """
     if value is None:
         return "not stated"
+    size, unit = displayed(unit)
+    value /= size
     power = power_of(value)
     if power == -3 and (unit, power) not in _PREFIXED:  # 0.0913 rad/s is read more easily than 91.3·10⁻³
         power = 0

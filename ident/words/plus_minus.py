@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from ident.words.display import displayed
 from ident.words.engineering import power_of, quantity, scaled_unit, with_unit
 from ident.words.number import fixed, places
 
@@ -33,6 +34,8 @@ def plus_minus(value: float, std_error: float | None, unit: str) -> str:
         return quantity(value, unit)
     if not determined(value, std_error):
         return f"{UNDETERMINED} (± {quantity(std_error, unit)})"
+    size, unit = displayed(unit)
+    value, std_error = value / size, std_error / size
     power = power_of(value)
     scaled, error = value / 10.0**power, std_error / 10.0**power
     digits = decimals(scaled, error)

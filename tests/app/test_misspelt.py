@@ -117,6 +117,7 @@ MISSPELT: dict[tuple[str, str], list[tuple[tuple[str, ...], str]]] = {
     ("revise", "changes"): [(("STORED", "CHANGES", *SERVICE), "RUN")],
     ("effects drop", "name"): [(("overlp",), "overlap"), (("overlp", *SERVICE), "overlap")],
     ("token new", "--role"): [(("--name", "bench", "--role", "admn", "--data", "OUT"), "admin")],
+    ("", "--units"): [(("--units", "baar,l/min", "check", "MATRIX"), "bar")],
     ("webhook new", "--event"): [(("http://127.0.0.1:9", "--event", "job.endd", *SERVICE), "job.ended")],
 }
 """For each argument or option that takes a name: what is given, and what it says was meant."""
@@ -146,7 +147,7 @@ FREE = ADDRESSES | MADE_UP | QUANTITIES | DRAWN | {"files", "source"}
 FREE_OF = {
     ("init", "--serial"), ("simulate", "--serial"), ("limits", "--batch"),  # a new name may be given
     ("regress", "--serial"), ("regress", "--batch"), ("statistics", "--serial"),  # of a whole line
-    ("verdict", "serial"),
+    ("verdict", "serial"), ("search", "text"),
 }  # fmt: skip
 
 

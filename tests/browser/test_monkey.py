@@ -125,14 +125,14 @@ def filled(zoo: Service) -> dict[str, str]:
         "statistics": "/statistics?parameter=tau", "limits": "/limits", "regressions": "/regressions",
         "regression": f"/regressions/{regression}", "tokens": "/tokens", "audit": "/audit", "webhooks": "/webhooks",
         "retention": "/retention", "not-found": "/fits/none", "sign-in": "/sign-in",
-        "live": "/live", "plan": f"/plan?fit={first}",
+         "live": "/live", "plan": f"/plan?fit={first}", "search": "/search?q=SW", "units": "/units",
     }  # fmt: skip
 
 
 PAGES = (
     "actuators", "actuator", "upload", "draft", "draft-apart", "matrix", "jobs", "job", "workers", "fit", "second-fit",
     "use", "effects", "compare", "statistics", "limits", "regressions", "regression", "tokens", "audit", "webhooks",
-    "retention", "not-found", "sign-in", "live", "plan",
+    "retention", "not-found", "sign-in", "live", "plan", "search", "units",
 )  # fmt: skip
 
 

@@ -138,6 +138,13 @@ def test_a_fit_is_annotated_and_what_no_option_names_stays(service, servoident, 
     assert servoident("annotate", "nothing", "--name", "x", *service.options).returncode == 2
 
 
+def test_a_search_lists_what_holds_a_text(service, servoident, fitted):
+    shown = servoident("search", fitted[:12], *service.options).stdout
+    assert fitted in shown
+    assert "SIM-0001" in servoident("search", "sim-0001", *service.options).stdout
+    assert servoident("search", "nobody", *service.options).stdout == "nothing holds 'nobody'\n"
+
+
 def test_a_fit_is_deleted_once_that_is_confirmed(service, servoident, stored):
     short = {"population": 20, "generations": 3, "elite": 2}
     fit = service.ended(service.fit(stored["id"], set={"m0": "4.25 kg"}, options=short))["fit"]

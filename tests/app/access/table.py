@@ -109,6 +109,7 @@ OF_API = (
     read("/fits/{fit}/annotation"),
     Call("PUT", "/fits/{fit}/annotation", LAB, {"name": "cold oil"}, changes=True),
     read("/fits/{fit}/deletion"),
+    read("/search"),
     Call("DELETE", "/fits/{fit}", LAB, changes=True),
     Call("POST", "/fits/{fit}/withdraw", LAB, changes=True),
     Call("POST", "/fits/{fit}/effects", LAB, {"effect": "dead_zone"}, changes=True),
@@ -161,6 +162,8 @@ OF_API = (
 PAGES = (
     read("/"),
     read("/actuators/{serial}"),
+    read("/search"),
+    read("/units"),
     Call("GET", "/upload", LAB),
     read("/plan"),
     Call("GET", "/drafts/{draft}", LAB),

@@ -1,0 +1,1 @@
+"""One search over actuators, data sets and fits."""
