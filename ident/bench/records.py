@@ -21,6 +21,7 @@ Array = NDArray[np.float64]
 _END = 0.02  # s at the same extreme reading: the actuator or its transducer is at its end
 _BRIEF, _ROUGH = 4e-3, 5e-5  # s, rated currents: beyond it means over so short a time hide what the play sees
 _OFF_GRID = 0.1  # of a step: farther from a whole number of them is no reading of the same converter
+_FIRST, _LONGER = 30.0, 10.0  # steps over which their number is told by the smallest; how much further each time
 _FAR = 0.02 + 1e-9  # of rated current: farther from the middle, not by rounding alone, an actuator that is free moves
 
 
@@ -179,8 +180,27 @@ def step_of(records: Sequence[Record]) -> float:
     A link that moves by steps in every sample hides them: slower records of the same converter show them.
     """
     steps = [record.resolution for record in records if record.resolution > 0]
-    step = min(steps, default=0.0)
-    return step if step and all(_in_steps(record.position, step) for record in records) else 0.0
+    if not steps:
+        return 0.0
+    step = _refined(min(steps), records)
+    return step if all(_in_steps(record.position, step) for record in records) else 0.0
+
+
+def _refined(step: float, records: Sequence[Record]) -> float:
+    """The step from the whole way: the smallest change of readings that a text rounds is off by their rounding.
+
+    Least squares d = n s over the distances d from the lowest reading, at first the short ones, whose number of steps
+    n the rough step tells.
+    """
+    readings = np.unique(np.concatenate([record.position for record in records]))
+    away = readings[1:] - readings[0]
+    reach = _FIRST * step
+    while reach < _LONGER * away[-1]:
+        near = away[away <= reach]
+        n = np.round(near / step)
+        step = float(n @ near / (n @ n)) if n.any() else step
+        reach *= _LONGER
+    return step
 
 
 def _in_steps(position: Array, step: float) -> bool:

@@ -7,8 +7,10 @@ import pytest
 from scipy.interpolate import CubicSpline
 
 from ident.bench.readings import in_steps, readings
+from ident.bench.records import Record, step_of
 from ident.bench.speed_table import SPLINE
 from ident.equations.interpolation import interpolated
+from ident.resolution import resolution
 
 STEP = 2.5e-5  # m
 
@@ -45,3 +47,18 @@ def test_the_spline_is_scipy_s() -> None:
     fine = np.linspace(0, 1, 301)
     pairs = [number for pair in zip(x, y, strict=True) for number in pair]
     assert interpolated(SPLINE, fine, *pairs) == pytest.approx(CubicSpline(x, y)(fine), abs=1e-12)
+
+
+@pytest.mark.parametrize("bits", [10, 16, 20])
+@pytest.mark.parametrize("digits", [7, 9, 17])
+def test_the_step_of_a_converter_is_found_in_a_text_that_rounds_its_readings(bits: int, digits: int) -> None:
+    """Over the whole stroke of 100 mm: the smallest change of 16 bits in 9 digits is off by 7e-5 of a step."""
+    step, rng = 0.1 / 2**bits, np.random.default_rng(bits)
+    if step < 20 * 0.1 * 10.0**-digits:
+        pytest.skip("the text is no finer than the converter")
+    way = np.repeat(np.cumsum(rng.uniform(0, 4 * step, 500)), 3)
+    places = [0.01 + way, 0.08 + way]
+    seen = [np.array([float(f"{x:.{digits}g}") for x in step * np.round(of / step)]) for of in places]
+    records = [Record("a", "static", 1e3, "zoh", 0 * of, of, None, resolution(of)) for of in seen]
+    assert step_of(records) == pytest.approx(step, rel=1e-6)
+    assert step_of([Record("a", "static", 1e3, "zoh", 0 * way, 0.01 + way, None, step)]) == 0.0

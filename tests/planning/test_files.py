@@ -17,8 +17,8 @@ from ident.readers.mat import read_mat
 from ident.readers.tdms import read_tdms
 from ident.rig.limits import RigLimits
 from tests.hybrid.cases import fitted
+from tests.planning.control_unit import played
 from tests.planning.rigs import fit_of
-from tests.reference.kononykhin_reference import Truth, record
 from tests.reference.qian_reference import Cell, Plant, simulate
 
 PROGRAM = {
@@ -82,7 +82,7 @@ def test_the_laws_of_a_bench_lead_to_records_that_are_read(tmp_path, monkeypatch
     texts = {run["id"]: run["law"] for run in json.loads((tmp_path / "plan/plan.json").read_text())["runs"]}
     assert "compensation" in texts["sine-50-2"]["text"]
     for run in made.runs:
-        of = played(run.law)
+        of = played(run)
         speed = np.abs(np.diff(of.true_position)).max()  # mm in a ms
         assert speed <= 1e3 * rig.speed / 1e3
         rows = np.column_stack([of.current, of.position, of.pressure_a, of.pressure_b])
@@ -91,19 +91,6 @@ def test_the_laws_of_a_bench_lead_to_records_that_are_read(tmp_path, monkeypatch
     matrix = ident.read_matrix(tmp_path / "plan")
     assert [run.kind for run in matrix.runs] == ["static", "frequency", "speed-levels", "speed-continuous"]
     assert not [finding for finding in check(matrix) if finding.severity == "fault"]
-
-
-def played(law):
-    """A law as the reference's control unit plays it: per cent and mm in place of rated currents and m."""
-    offset, two, three, four = law.settings
-    settings = {
-        0: [100 * offset, 0.1 * two, 1e3 * three, 1e3 * four],
-        1: [100 * offset, 100 * two, three, 0.1 * four],
-        2: [100 * offset, 100 * two, three, four, 2000.0],
-        3: [100 * offset, 100 * two, 100 * three, 1e3 * four, 2000.0],
-    }[law.number]
-    rng = np.random.default_rng(1)
-    return record(Truth(I0=100 * offset), "", "", law.number, settings, law.seconds, 1e3 * law.start, rng)
 
 
 def test_a_folder_that_is_in_use_and_a_format_that_nobody_knows_are_refused(tmp_path):
