@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import json
 import re
+import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
+from itertools import islice
 from pathlib import Path
 from socket import socketpair as socket_pair
 from threading import Thread
@@ -78,13 +80,57 @@ def test_alarms_are_told_in_the_form_of_the_message(service: TestClient) -> None
         assert "stroke" in refused(socket)[0]["remedy"]
 
 
+def documented(holds: str) -> dict[str, Any]:
+    """The names of the client in the documentation that holds this line."""
+    text = (Path(__file__).parents[2] / "docs" / "hybrid.md").read_text(encoding="utf-8")
+    code = next(block for block in re.findall(r"```python\n(.*?)```", text, re.DOTALL) if holds in block)
+    assert len(code.splitlines()) <= 60
+    names: dict[str, Any] = {"__name__": "client"}
+    exec(compile(code, "client", "exec"), names)
+    return names
+
+
+def test_the_client_of_an_acquisition_card_follows_a_simulated_card(
+    service: TestClient, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A card of two channels in volts: its clock, its blocks, metres in the recording, the estimates of the loop."""
+    drawn = reference.trial(4, 1.0)
+    volts, asked = iter(np.split(100.0 * np.array([drawn.r, drawn.y]), 32, axis=1)), {}
+
+    class Task:
+        def __enter__(self) -> Task:
+            return self
+
+        def __exit__(self, *_: object) -> None:
+            asked["closed"] = True
+
+        ai_channels = SimpleNamespace(add_ai_voltage_chan=lambda names, **_: asked.update(channels=names))
+        timing = SimpleNamespace(cfg_samp_clk_timing=lambda rate, **given: asked.update(rate=rate, **given))
+
+        def read(self, number_of_samples_per_channel: int) -> list[list[float]]:
+            block = next(volts)
+            assert block.shape == (2, number_of_samples_per_channel)
+            return [list(map(float, row)) for row in block]
+
+    card = SimpleNamespace(Task=Task, constants=SimpleNamespace(AcquisitionType=SimpleNamespace(CONTINUOUS="always")))
+    monkeypatch.setitem(sys.modules, "nidaqmx", card)
+    monkeypatch.setitem(sys.modules, "nidaqmx.constants", card.constants)
+    monkeypatch.setitem(sys.modules, "client", SimpleNamespace(**documented("def follow(")))
+    client = documented("def acquire(")
+    with connected(service, {**START, "alarms": True}) as socket:
+        stream = SimpleNamespace(send=socket.send_text, recv=socket.receive_text)
+        rows = client["follow"](stream, client["acquire"]("Dev1/ai0:1"), tmp_path / "recorded.csv")
+        told = list(islice(rows, 32))
+        rows.close()  # whoever runs it ends it
+    assert asked == {"channels": "Dev1/ai0:1", "rate": 4096, "sample_mode": "always", "closed": True}
+    assert told[-1][1:3] == pytest.approx(drawn.loop[:2], rel=0.05)
+    recorded = np.loadtxt(tmp_path / "recorded.csv", delimiter=",", skiprows=1)
+    assert recorded == pytest.approx(np.column_stack([drawn.r, drawn.y]), rel=1e-12)
+
+
 def test_the_client_of_the_documentation_follows_a_simulated_source(service: TestClient, tmp_path: Path) -> None:
     """A file that is replayed, and a socket: estimates, alarms, and a recording that is the source to the last bit."""
-    text = (Path(__file__).parents[2] / "docs" / "hybrid.md").read_text(encoding="utf-8")
-    code = next(block for block in re.findall(r"```python\n(.*?)```", text, re.DOTALL) if "def follow(" in block)
-    assert len(code.splitlines()) <= 60
-    client: dict[str, Any] = {"__name__": "client"}
-    exec(compile(code, "client", "exec"), client)
+    client = documented("def follow(")
     drawn = reference.trial(4, 1.0)
     rows = [f"{r!r},{y!r}" for r, y in zip(drawn.r.tolist(), drawn.y.tolist(), strict=True)]
     source = tmp_path / "run.csv"
