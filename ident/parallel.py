@@ -48,21 +48,23 @@ class _Held:
     """Whether linear algebra is held to one thread: a matter of the process, so those who ask for it are counted."""
 
     def __init__(self) -> None:
-        self._lock, self._inside, self._before = threading.Lock(), 0, [1]
+        self._lock, self._inside, self._before, self._is_more = threading.Lock(), 0, [1], False
 
     def enter(self) -> None:
-        """The first in sets one thread."""
+        """The first in sets one thread, where there are more."""
         with self._lock:
             if not self._inside:
                 self._before = [library.num_threads for library in _libraries()]
-                _give([1 for _ in self._before])
+                self._is_more = any(count != 1 for count in self._before)
+                if self._is_more:
+                    _give([1 for _ in self._before])
             self._inside += 1
 
     def leave(self) -> None:
         """The last out gives back what there was."""
         with self._lock:
             self._inside -= 1
-            if not self._inside:
+            if not self._inside and self._is_more:
                 _give(self._before)
 
 

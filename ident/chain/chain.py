@@ -8,6 +8,7 @@ states only.
 from __future__ import annotations
 
 import ast
+import math
 from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from collections.abc import Set as AbstractSet
@@ -44,6 +45,9 @@ SUPPLY, VERTICAL = "dPs", "dNv"
 MEASURED = (FORCE, DISTURBANCE, SUPPLY, VERTICAL, *BESIDE_MEAN)
 """The inputs beside the command."""
 _SMALL, _SHARE = 1e-9, 1e-7  # of a unit, and of what stands there: the step of slopes
+Evaluator = Callable[..., tuple[tuple[Any, ...], Any]]
+"""The function (u, states, values) → (rates, output) of a chain."""
+_TOGETHER = 2048  # numbers of a signal that are worked out at once: more are slower, by what they take of the cache
 
 
 @dataclass(frozen=True)
@@ -245,10 +249,10 @@ class Chain:
         return self.outputs[output]
 
     @cached_property
-    def _evaluators(self) -> dict[str, Callable[..., tuple[tuple[Any, ...], Any]]]:
+    def _evaluators(self) -> dict[str, Evaluator]:
         return {}
 
-    def evaluator(self, output: str) -> Callable[..., tuple[tuple[Any, ...], Any]]:
+    def evaluator(self, output: str) -> Evaluator:
         """The function (u, states, values) → (rates, output), compiled once from the checked equations.
 
         `values` maps the names in :attr:`symbols` to numbers or arrays that broadcast against the states.
@@ -281,13 +285,15 @@ class Chain:
         `values` holds every symbol, as numbers or arrays of one broadcast shape, which with that of `about` is that of
         the batch whether the equations read them all or not; `output` is a channel's name.
         """
-        evaluate, n, about = self.evaluator(output), len(self.states), about or self.operating_point(values)
+        about = about or self.operating_point(values)
         shape = np.broadcast_shapes(*(np.shape(value) for value in (*values.values(), *about)))
-        system = np.zeros((n + 1, n + 1, *shape))
-        for j, rates, shown in self._columns(lambda x: evaluate(x[n], x[:n], values), about):
-            for i, rate in enumerate(rates):
-                system[i, j] = rate
-            system[n, j] = shown
+        system, together = np.zeros((len(about), len(about), *shape)), max(1, _TOGETHER // max(math.prod(shape), 1))
+        units = np.eye(len(about)).reshape(len(about), len(about), *[1] * len(shape))
+        columns = self._columns(self.evaluator(output), values, about)
+        for begin in range(0, len(about), together):
+            some = slice(begin, begin + together)
+            for row, column in zip(system, columns(units[:, some]), strict=True):
+                row[some] = column
         return LinearModel(system)
 
     def operating_point(self, values: Mapping[str, Any], moved: Mapping[str, float] | None = None) -> list[Any]:
@@ -296,18 +302,24 @@ class Chain:
         return [at.get(name, 0.0) for name in (*self.states, INPUT)]
 
     def _columns(
-        self, evaluate: Callable[[list[Any]], tuple[tuple[Any, ...], Any]], about: Sequence[Any]
-    ) -> Iterator[tuple[int, Iterable[Any], Any]]:
-        """Rates and output by each state and the command: (number, rates, output)."""
+        self, evaluate: Evaluator, values: Mapping[str, Any], about: Sequence[Any]
+    ) -> Callable[[Any], Iterable[Any]]:
+        """Each rate and the output by the states and the command, along m directions (n + 1, m, ...) at once."""
+
+        def signals(at: Any) -> tuple[Any, ...]:
+            rates, shown = evaluate(at[-1], at[:-1], values)
+            return (*rates, shown)
+
+        def slopes(directions: Array) -> Iterator[Any]:
+            moved = [step * unit for step, unit in zip(steps, directions, strict=True)]
+            there = signals([value + step for value, step in zip(about, moved, strict=True)])
+            wide = sum(moved)  # of the steps along a direction one alone is not zero
+            return ((a - b) / wide for a, b in zip(there, rest, strict=True))
+
         if self.is_linear:
-            for j in range(len(about)):
-                yield j, *evaluate([float(i == j) for i in range(len(about))])
-            return
-        rest_rates, rest = evaluate(list(about))
-        for j, there in enumerate(about):
-            step = np.maximum(_SMALL, _SHARE * np.abs(there))
-            rates, shown = evaluate([value + step * (i == j) for i, value in enumerate(about)])
-            yield j, [(a - b) / step for a, b in zip(rates, rest_rates, strict=True)], (shown - rest) / step
+            return signals
+        rest, steps = signals(about), [np.maximum(_SMALL, _SHARE * np.abs(there)) for there in about]
+        return slopes
 
     def pattern(self, output: str) -> tuple[tuple[bool, ...], ...]:
         """Which entries of the system matrix can be other than zero, found at generic values of every symbol."""

@@ -80,7 +80,7 @@ class Simulation:
         inputs = {name: self._input(lanes, name, built, lane_values) for name in built.inputs}
         command = inputs[INPUT]
         measured = [inputs[name].record for name in built.measured] or [command.record]
-        forces = np.column_stack(measured).ravel()
+        forces = np.column_stack(measured).ravel() if measured[1:] else measured[0]
         force_at = inputs[built.measured[0]].begin if built.measured else command.begin
         lane_values |= {HELD: self._held(lanes), SHARE: command.share}
         buffers, groups = self._packed(built, lane_values, lanes, inputs), -(-count * vectors // WIDE)
@@ -177,15 +177,17 @@ class Simulation:
 
     def _settle(self, rows: Array, built: Kernel, values: Mapping[str, Array], command: Array) -> None:
         """What remembers, as if the machine had stood where it starts."""
+        begun = [one for one in built.filters if one.first not in built.states.values()]  # others begin in their state
+        if not (begun or built.memories):
+            return
         known = dict(values) | {name: rows[row] for name, row in built.states.items()}
         known |= {INPUT: command, "du": np.zeros_like(command), TIME: 0.0}
         known |= {name: np.zeros_like(command) for name in MEASURED}
         found = _at_rest(self.chain, known)
         for name, row in built.memories.items():
             rows[row] = found[name]
-        for known_filter in built.filters:
-            if known_filter.first not in built.states.values():  # else it begins in its state
-                rows[known_filter.first] = constant(known_filter.input, found)
+        for one in begun:
+            rows[one.first] = constant(one.input, found)
 
 
 def _batches(groups: NDArray[np.intp], begin: int, end: int, steps: int) -> Iterator[tuple[tuple[int, int], int, int]]:

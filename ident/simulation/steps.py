@@ -93,8 +93,14 @@ def fastest_mode(
 
 def _side_by_side(points: Sequence[Sequence[Any]], values: Mapping[str, Any]) -> list[Array]:
     """Operating points (p,) of n + 1 numbers each, as n + 1 arrays that broadcast against the values, (p, ...)."""
-    shape = np.broadcast_shapes(*(np.shape(value) for value in values.values()))
-    return [np.stack([np.broadcast_to(point[i], shape) for point in points]) for i in range(len(points[0]))]
+    dimensions = max(np.ndim(value) for value in values.values())
+
+    def stacked(there: Sequence[Any]) -> Array:
+        shape = np.broadcast_shapes(*(np.shape(one) for one in there))
+        of_each = np.array([np.broadcast_to(one, shape) for one in there] if shape else there)
+        return of_each.reshape(len(there), *[1] * (dimensions - len(shape)), *shape)
+
+    return [stacked(there) for there in zip(*points, strict=True)]
 
 
 def _fastest(jacobian: Array) -> Modes:

@@ -69,6 +69,7 @@ def _machine_code(lines: Sequence[str], fed: Sequence[Fed], shown: int, lanes: i
     return _engine(lambda: _program(lines, fed, shown, lanes), (_writer(), repr((fed, shown, lanes)), *lines))
 
 
+@lru_cache(maxsize=256)
 def address(lines: Sequence[str], fed: Sequence[Fed], shown: int, lanes: int) -> tuple[int, object]:
     """Where the machine code of :func:`advance` stands, for a compiled loop to call, and what keeps it there."""
     engine = _machine_code(lines, fed, shown, lanes)
