@@ -86,9 +86,18 @@ OWN_SERVICE = "tests/browser/test_workbench.py"
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Long files go first, so that no core is left alone with one at the end."""
-    place = {f"{name}.py": number for number, name in enumerate(LONGEST)}
-    items.sort(key=lambda item: place.get(item.path.relative_to(ROOT / "tests").as_posix(), len(place)))
+    """Long files go first, so that no core is left alone with one at the end; then those of tests/app, on end.
+
+    They share a service, which takes a fortieth of a core for as long as it is there, whatever runs meanwhile.
+    """
+    places = {f"{name}.py": number for number, name in enumerate(LONGEST)}
+
+    def turn(item: pytest.Item) -> tuple[int, int, str]:
+        name = item.path.relative_to(ROOT / "tests").as_posix()
+        place = places.get(name, len(places))
+        return (1 if name.startswith("app/") else 0 if name in places else 2), place, name
+
+    items.sort(key=turn)
 
 
 @pytest.hookimpl(optionalhook=True)

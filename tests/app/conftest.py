@@ -111,9 +111,9 @@ def _empty_databases(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]
         yield
 
 
-@pytest.fixture(scope="session")
+@pytest.fixture(scope="package")
 def service(tmp_path_factory: pytest.TempPathFactory) -> Iterator[TestClient]:
-    """A client of a service with a folder of its own."""
+    """A client of a service with a folder of its own, for as long as tests of this folder follow one another."""
     settings = Settings(
         data=Path(tmp_path_factory.mktemp("service")), token=TOKEN, webhook_hosts=("127.0.0.1:9",), keep_raw=1
     )
@@ -123,7 +123,7 @@ def service(tmp_path_factory: pytest.TempPathFactory) -> Iterator[TestClient]:
         yield client
 
 
-@pytest.fixture(scope="session")
+@pytest.fixture(scope="package")
 def matrix(service: TestClient) -> str:
     """The id of the uploaded matrix."""
     answer = service.post("/api/v1/matrices", files={"files": ("matrix.zip", zipped())})
@@ -131,7 +131,7 @@ def matrix(service: TestClient) -> str:
     return str(answer.json()["id"])
 
 
-@pytest.fixture(scope="session")
+@pytest.fixture(scope="package")
 def fitted(service: TestClient, matrix: str) -> str:
     """The id of a finished fit."""
     job = service.post("/api/v1/fits", json={"matrix": matrix}).json()

@@ -37,14 +37,14 @@ def browser_type_launch_args() -> dict[str, object]:
     return {"executable_path": CHROMIUM, "args": [*quiet, *shared]}
 
 
-@pytest.fixture(scope="session")
+@pytest.fixture(scope="package")
 def site(tmp_path_factory: pytest.TempPathFactory, full: bool) -> Iterator[Service]:
-    """A service for all tests; in the short form its diagnoses rank eight effects."""
+    """A service for all tests of this folder, no longer; in the short form its diagnoses rank eight effects."""
     with process(tmp_path_factory.mktemp("site"), "" if full else FEW_EFFECTS) as service:
         yield service
 
 
-@pytest.fixture(scope="session")
+@pytest.fixture(scope="package")
 def matrix(site: Service) -> str:
     """An uploaded matrix of nine runs."""
     answer = site.client.post("/matrices", files={"files": ("matrix.zip", zipped("SW/1 <b>"))})
@@ -52,7 +52,7 @@ def matrix(site: Service) -> str:
     return str(answer.json()["id"])
 
 
-@pytest.fixture(scope="session")
+@pytest.fixture(scope="package")
 def fitted(site: Service, matrix: str) -> str:
     """A finished fit of it."""
     job = site.fit(matrix)
@@ -69,7 +69,7 @@ def running(site: Service, matrix: str) -> Iterator[str]:
     assert site.ended(job)["state"] == "cancelled"
 
 
-@pytest.fixture(scope="session")
+@pytest.fixture(scope="package")
 def window(
     launch_browser: Callable[..., Browser], browser_type_launch_args: dict[str, object], site: Service
 ) -> Iterator[Window]:
