@@ -74,6 +74,7 @@ OF_RECORDS = _of_files(
     "arm_gravity",
     "damping_asymmetry",
     "friction_behind_play",
+    "degrading_hysteresis",
     "sensor_curve",
     "rectified_sensor",
 )

@@ -51,7 +51,7 @@ class SimulatedRuns:
     the moments are those of windows of that length, each begun where it was measured: see :mod:`ident.fit.windows`;
     with a `memory` (s) at the speed, too, that was found before. Of the outputs named in `absolute` the mean counts
     too, which eq. (17) does not see. A search follows the kinks of a core `roughly`. `sizes` are those of the core's
-    states, (n,), once a run has begun that moves.
+    states, (n,), and `sizes_of_effects` those of what effects begin with, (m,), once a run has begun that moves.
     """
 
     preset: Preset
@@ -64,6 +64,7 @@ class SimulatedRuns:
     absolute: tuple[str, ...] = field(default=(), kw_only=True)
     roughly: bool = field(default=False, kw_only=True)
     sizes: Array = field(default_factory=lambda: np.zeros(1), kw_only=True)
+    sizes_of_effects: Array = field(default_factory=lambda: np.zeros(1), kw_only=True)
 
     @property
     def chain(self) -> Chain:
@@ -269,6 +270,7 @@ class SimulatedRuns:
         """
         model = linear_model(self.preset.core, values, run, self.matrix.actuator)
         self.sizes = np.maximum(self.sizes, model.sizes(self.band)[0] * run.drive)
+        self.sizes_of_effects = np.maximum(self.sizes_of_effects, self._sizes_of_effects(run, values))
         guesses = [first_state(run, model), *(() if self.preset.is_linear else model.standing_at(run.measured[0]))]
         start = np.zeros((1, len(guesses), len(self.chain.begun)))
         start[..., [self.chain.states.index(name) for name in self.preset.core.states]] = guesses
@@ -285,6 +287,22 @@ class SimulatedRuns:
             outputs = [rows[:, 0] for rows, _, _ in self.simulation((run,), vectors, steps, start).outputs()]
             power = np.mean((run.measured[:, None] - np.concatenate(outputs)) ** 2, axis=0)
         return list(start[0, np.argsort(np.where(np.isfinite(power), power, np.inf), kind="stable")])
+
+    @cached_property
+    def _of_effects(self) -> list[str]:
+        """What effects begin with in addition to the states of the core."""
+        return [name for name in self.chain.begun if name not in self.preset.core.states]
+
+    def _sizes_of_effects(self, run: Run, values: Mapping[str, float]) -> Array:
+        """The largest value that each of them takes in a run that begins with none, (m,): in a unit of its own."""
+        vector, found = {name: np.array([value]) for name, value in values.items()}, np.zeros(len(self._of_effects))
+        steps, nothing = int(self.steps(vector).max()), np.zeros((1, 1, len(self.chain.begun)))
+        with np.errstate(over="ignore", invalid="ignore"):
+            for i, name in enumerate(self._of_effects):
+                shown = replace(self.chain, outputs={**self.chain.outputs, run.output: name})
+                simulation = replace(self.simulation((run,), vector, steps, nothing), chain=shown)
+                found[i] = max(float(np.abs(rows).max()) for rows, _, _ in simulation.outputs())
+        return np.where(np.isfinite(found), found, 0.0)
 
     def _goes_on(self, run: Run, settling: Settling, found: NormalMatrices) -> bool:
         """Whether a run goes on to better first states, which it then begins in."""
@@ -303,10 +321,11 @@ class SimulatedRuns:
 
     @cached_property
     def _reach(self) -> Array:
-        """A small step of each state: of the size that it has in the core, or of the output's for others."""
+        """A small step of each state: of the size that it has, or where it has none of the output's."""
         reach = np.full(len(self.chain.begun), np.mean([np.std(run.measured) for run in self.runs]))
-        known = [self.chain.states.index(name) for name in self.preset.core.states]
-        reach[known] = np.where(self.sizes > 0, self.sizes, reach[known])
+        for names, sizes in ((self.preset.core.states, self.sizes), (self._of_effects, self.sizes_of_effects)):
+            known = [self.chain.begun.index(name) for name in names]
+            reach[known] = np.where(sizes > 0, sizes, reach[known])
         return np.asarray(_REACH * reach)
 
     # Shares ------------------------------------------------------------------------------------------------------

@@ -101,6 +101,19 @@ def played(friction: float, half_width: float = 0.2, fine: int = 64) -> np.ndarr
     return np.asarray((STIFFNESS * way + DAMPING * speed + friction * rubs)[::fine])
 
 
+def degraded(force: float, way: float = 0.3, loss: float = 0.2, pinched: float = 0.6) -> np.ndarray:
+    """The force of a spring and a damper with Bouc and Wen's hysteresis that degrades and pinches, after Baber."""
+
+    def rates(t: float, s: np.ndarray) -> list[float]:
+        _x, z, energy = s
+        v, weaker = at(SPEED, t), 1.0 + loss * energy
+        slip = 1.0 - pinched * (1.0 - np.exp(-energy)) * np.exp(-((z / 0.4) ** 2))
+        return [v, slip * (v - weaker * 0.5 * (abs(v) * z + v * abs(z))) / weaker / way, z * v / way]
+
+    x, z, _ = solved(rates, 3)
+    return STIFFNESS * x + DAMPING * SPEED + force * z
+
+
 def dry(v: float) -> float:
     """The direction of sliding; so steep that what creeps is far below what is compared."""
     return float(np.tanh(v / 1e-4))
@@ -150,6 +163,11 @@ CASES = {
     "pressure_force": Case(
         "specimen", {"pressure_force.area": 5e-3},
         lambda k: moved() - 5.0 * k * SQUEEZE, {"velocity": SPEED, "load_pressure": 1e3 * SQUEEZE}, output="force"),
+    "degrading_hysteresis": Case(
+        "specimen",
+        {"degrading_hysteresis.force": 25.0, "degrading_hysteresis.yield_displacement": 0.3,
+         "degrading_hysteresis.degradation": 0.2, "degrading_hysteresis.pinching": 0.6},
+        lambda k: degraded(25.0 * k), {"velocity": SPEED}, output="force"),
     "arm_gravity": Case(
         "drive", {"arm_gravity.torque": 30.0, "arm_gravity.hanging": 0.5},
         lambda k: mass(lambda _t, x, _v: 30.0 * k * np.sin(x - 0.5)), {}),
