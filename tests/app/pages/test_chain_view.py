@@ -12,16 +12,16 @@ from ident.fit.settings import Settings
 from ident.presets import PRESETS, preset
 
 TAKEN = {
-    "qian2014": 49,
+    "qian2014": 50,
     "first_order": 18,
     "two_tanks": 19,
-    "drive": 24,
-    "open_valve": 46,
-    "motor": 33,
-    "specimen": 16,
-    "force_loop": 49,
+    "drive": 25,
+    "open_valve": 47,
+    "motor": 34,
+    "specimen": 17,
+    "force_loop": 50,
     "kononykhin": 8,
-    "strano": 46,
+    "strano": 47,
 }
 LOOPS = {
     "qian2014": {"v", "y"}, "first_order": set(), "drive": set(), "open_valve": {"v"}, "motor": set(),
