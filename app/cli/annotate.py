@@ -21,7 +21,7 @@ def annotate(
 ) -> None:
     """Name, tag or note a stored fit.
 
-    What no option names stays. Without an option the command prints what is written on the fit.
+    An option that is not given changes nothing. Without any option the command prints name, tags and note.
     """
     path = f"/fits/{segment(fit)}/annotation"
     given = {"name": name, "tags": tag, "note": note}

@@ -17,7 +17,7 @@ At = Annotated[
     str | None,
     typer.Option(
         metavar="QUANTITY",
-        help="Condition at which the machine is wanted, such as 60 degC: parameters move by their laws.",
+        help="Condition of the machine, such as 60 degC. Each parameter follows its law over it.",
     ),
 ]
 Over = Annotated[

@@ -32,7 +32,7 @@ def export(
     """Export a model as C header, MAT file or FMU.
 
     The C header and the FMU contain the nonlinear model with its effects, from the equations of the simulator. The MAT
-    file contains its linear part, with A, B, C, D for `ss` and for Simulink; of an actuator of a bench its blocks.
+    file contains its linear part, with A, B, C, D for `ss` and for Simulink, or the blocks of an actuator of a bench.
     """
     from ident.export import as_file, exported, linear_part
     from ident.units.quantity import quantity

@@ -47,13 +47,14 @@ def hybrid(
         str | None,
         typer.Option(
             metavar="KEY=VALUE,…",
-            help="Isolator on the specimen that no controller knows: mass, stiffness, damping.",
+            help="Isolator on the specimen, unknown to the controller: mass, stiffness, damping.",
         ),
     ] = None,
     shares: Annotated[
         bool,
         typer.Option(
-            "--map", help="Also map stability: over the physical/numerical split, of several actuators over delays."
+            "--map",
+            help="Also map stability over the physical share of the structure, or over delays of several actuators.",
         ),
     ] = False,
     at: At = None,

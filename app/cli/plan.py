@@ -16,28 +16,31 @@ from app.cli.spread_option import stated_spread
 
 def plan(
     program: Annotated[
-        str, typer.Option(metavar="NAME|FILE", help="qian, kononykhin, or a YAML file with lists of one's own.")
+        str, typer.Option(metavar="NAME|FILE", help="qian, kononykhin, or a YAML file with your own lists.")
     ],
     out: Annotated[Path, typer.Option(metavar="DIR", help="Folder for commands/, matrix.yaml and plan.json.")],
     fit: Annotated[
-        Path | None, typer.Option(metavar="FIT.json", help="What `servoident fit --json` wrote: predicts the peaks.")
+        Path | None,
+        typer.Option(
+            metavar="FIT.json", help="File from `servoident fit --json`; the fitted model predicts the peaks."
+        ),
     ] = None,
     rig: RigFile = None,
     format_: Annotated[
-        list[str] | None, typer.Option("--format", metavar="csv|mat|tdms", help="Of command files; may be repeated.")
+        list[str] | None,
+        typer.Option("--format", metavar="csv|mat|tdms", help="Format of the command files; may be repeated."),
     ] = None,
-    seconds: Annotated[float | None, typer.Option(help="Length of each run in s; 30 where nothing is stated.")] = None,
+    seconds: Annotated[float | None, typer.Option(help="Length of each run in s; default: 30.")] = None,
     ramp: Annotated[
-        float | None, typer.Option(help="Seconds in which a command grows, and in which it fades; 2 % of the run.")
+        float | None,
+        typer.Option(help="Time in s of fade-in and of fade-out of each command. Default: 2 % of the run."),
     ] = None,
     spread: Annotated[
         list[str] | None,
-        typer.Option(
-            metavar="SHARE|NAME=SHARE", help="What parameters may be off: 20 % unless stated; may be repeated."
-        ),
+        typer.Option(metavar="SHARE|NAME=SHARE", help="Uncertainty of the parameters. Default: 20 %. May be repeated."),
     ] = None,
     least: Annotated[
-        float, typer.Option(help="Smallest share of its amplitude to which a run is scaled; 1: as asked or refused.")
+        float, typer.Option(help="Smallest share of its amplitude to which a run is scaled; with 1 no run is scaled.")
     ] = 0.1,
     seed: Annotated[int, typer.Option(min=0, max=2**31 - 1, help="Seed of the commands.")] = 0,
     json: Annotated[Path | None, typer.Option(metavar="FILE", help="Write the plan as JSON; - is stdout.")] = None,

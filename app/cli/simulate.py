@@ -39,14 +39,14 @@ def simulate(
         list[str] | None,
         typer.Option(
             metavar="KEY=VALUE",
-            help="Of a test that no paper has: amplitude, gain (both may be repeated), band, rate, area, supply.",
+            help="Setting of an unpublished test: amplitude, gain (both may be repeated), band, rate, area, supply.",
         ),
     ] = None,
 ) -> None:
     """Write a simulated data set.
 
-    Of qian2014 it holds 63 estimation runs, and 21 validation runs at Kp = 6. Of strano, first_order and a machine in a
-    file it holds noise at each amplitude and gain, and a validation run between them.
+    The data set of qian2014 has 63 estimation runs, and 21 validation runs at Kp = 6. That of strano, first_order and a
+    machine in a file has runs of noise at each amplitude and gain, and a validation run between them.
     """
     from ident.presets.rig_test import TESTS
     from ident.synthesis.matrix import simulate_matrix

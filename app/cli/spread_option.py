@@ -20,7 +20,7 @@ SpreadGiven = Annotated[
     typer.Option(
         "--spread",
         metavar="SHARE|NAME=SHARE|FILE",
-        help="What parameters may be off, such as 20 %; or sets from `servoident query --json FILE`. May be repeated.",
+        help="Uncertainty of the parameters, such as 20 %, or sets of `servoident query --json FILE`. May be repeated.",
     ),
 ]
 _LARGEST = 50_000_000  # bytes
