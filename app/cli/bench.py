@@ -14,6 +14,12 @@ def bench(
     matrix: Annotated[Path, typer.Argument(metavar="MATRIX", help="Data set: a folder, its matrix.yaml, or a .zip.")],
     json: Annotated[Path | None, typer.Option(metavar="FILE", help="Write all results as JSON; - is stdout.")] = None,
     out: Annotated[Path | None, typer.Option(metavar="FILE", help="Write the acceptance sheet as PDF.")] = None,
+    identification: Annotated[
+        Path | None,
+        typer.Option(
+            metavar="FILE", help="Write the identification as C header, for a control unit with this program."
+        ),
+    ] = None,
 ) -> None:
     """Analyse static, frequency and speed bench records.
 
@@ -29,6 +35,7 @@ def bench(
 
     check_target(json)
     check_target(out)
+    check_target(identification)
     read = read_matrix(matrix)
     limits = read_limits(read.limits_text, read.limits or "limits")
     records = bench_set(read)
@@ -44,5 +51,11 @@ def bench(
     if json != STANDARD_OUTPUT:
         show(with_sheet(analysis, lines))
     analysis.complete()
+    if identification is not None:
+        from ident.export import as_identification
+
+        write_bytes(as_identification(analysis).encode(), identification)
+        if json != STANDARD_OUTPUT:
+            print(f"wrote {identification}: the identification of a set of {len(records.records)} records")
     if not passed(lines):
         raise typer.Exit(1)

@@ -57,6 +57,14 @@ def get_error_budget(here: Here, fit: str) -> Budget:
     return service.budget_of(here, fit)
 
 
+@router.get("/{fit}/identification.h", dependencies=[READERS], response_class=Response,
+            responses={200: {"content": {"text/x-c": {}}}})  # fmt: skip
+def export_identification(here: Here, fit: str) -> Response:
+    """The identification of a bench's set as C header: a control unit finds the sheet from its own records."""
+    name = 'attachment; filename="identification.h"'
+    return Response(export.identification(here, fit), media_type="text/x-c", headers={"Content-Disposition": name})
+
+
 @router.get(
     "/{fit}/export.{kind}", dependencies=[READERS], response_class=Response, responses={200: {"content": _EXPORTS}}
 )

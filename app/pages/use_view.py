@@ -48,6 +48,7 @@ class UseView:
     what_if: WhatIfView
     tracking: TrackingView
     position_loop: PositionLoopView
+    on_bench: bool
     cases: tuple[tuple[str, str], ...] = CASES
     example: str = OWN_CASE
     exports: tuple[Format, ...] = tuple(FORMATS.values())
@@ -73,4 +74,5 @@ def use_view(
         what_if=what_if,
         tracking=tracking,
         position_loop=position_loop,
+        on_bench=model.kind == "bench",
     )

@@ -21,8 +21,9 @@ ROUGH = Way(converged=1e-5, longest=0.7, rough=1e-4)
 
 BUT_ONE = Way(converged=1e-6, longest=0.7, rough=1e-6)
 """Of the fit before the last one, which only says how the records are weighed in that."""
-LAST = Way(converged=1e-8, longest=0.7, rough=1e-7)
-"""Of the last fit, whose standard errors count: of 10⁵ readings a standard error is 1e-5 of the sum of squares."""
+LAST = Way(converged=1e-10, longest=0.7, rough=1e-7)
+"""Of the last fit, whose standard errors count: of 10⁵ readings a standard error is 1e-5 of the sum of squares. A
+thousandth of one, 1e-6 of that again, is what any other search for this optimum may differ by."""
 
 
 @dataclass(frozen=True, eq=False)

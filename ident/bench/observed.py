@@ -53,6 +53,8 @@ class Observed:
     readings: Readings | None = None
     noise: float | None = None
     """Deviation of the gauges' white noise, Pa, which is a part of `pressure_scale`."""
+    moving: Model | None = None
+    """The model whose movements say how far each of the readings may be off."""
 
     @classmethod
     def of(
@@ -206,7 +208,8 @@ class Observed:
         """
         whole = Observed.of(record, self.positions > 0, self.pressure_scale is not None, np.inf, self.drifting)
         moved = np.diff(model.answer(record.current, record.rate, record.hold).position, prepend=0.0)
-        return replace(whole, readings=readings(record.position, step, moved, step / np.sqrt(12.0) or 1e-6))
+        told = readings(record.position, step, moved, step / np.sqrt(12.0) or 1e-6)
+        return replace(whole, readings=told, moving=model)
 
     def reweighed(self, model: Model) -> Observed:
         """Itself with the deviations that the residual of a fitted model shows beyond those of converter and gauges."""

@@ -9,6 +9,7 @@ from ident.errors import Unusable
 from ident.export.blocks import as_blocks
 from ident.export.fmu import as_fmu
 from ident.export.header import as_header
+from ident.export.identification import as_identification
 from ident.export.machine import USUAL_RATE, ExportedMachine, exported
 from ident.export.state_space import LinearPart, as_control, as_mat, linear_part
 from ident.words.nearest import did_you_mean
@@ -43,5 +44,5 @@ def as_file(machine: ExportedMachine, name: str) -> bytes:
 
 __all__ = [
     "FORMATS", "USUAL_RATE", "ExportedMachine", "LinearPart", "as_blocks", "as_control", "as_file", "as_fmu",
-    "as_header", "as_mat", "exported", "linear_part",
+    "as_header", "as_identification", "as_mat", "exported", "linear_part",
 ]  # fmt: skip

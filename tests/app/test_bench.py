@@ -108,6 +108,19 @@ def test_the_sheet_is_json_judged_by_the_limits_of_the_line(service, fit):
     service.put(f"{API}/limits/kononykhin", json={"limits": {}})
 
 
+def test_the_identification_is_sent_as_c_for_a_control_unit(service, fit, fitted):
+    """A header for the records of the set, from the page of the fit's use; of another model it is refused."""
+    sent = service.get(f"{API}/fits/{fit}/identification.h")
+    assert sent.status_code == 200, sent.text
+    assert "attachment" in sent.headers["Content-Disposition"]
+    assert "static inline int servoident_identify(" in sent.text
+    runs = service.get(f"{API}/fits/{fit}").json()["result"]["runs"]
+    assert f"#define SERVOIDENT_RECORDS {len(runs)}\n" in sent.text
+    assert f"/api/v1/fits/{fit}/identification.h" in service.get(f"/fits/{fit}/use").text
+    refused = service.get(f"{API}/fits/{fitted}/identification.h")
+    assert (refused.status_code, refused.json()["code"]) == (422, "no-export")
+
+
 def test_a_diagnosis_of_a_sound_set_names_nothing(service, fit):
     """And no run is proposed after it: the reason is in the answer."""
     job = ended(service, service.post(f"{API}/diagnoses", json={"fit": fit}))

@@ -42,7 +42,8 @@ def copy(folder, tmp_path):
 
 def test_the_simulated_set_is_found_again_and_passes(servoident, folder, tmp_path):
     """Exit status 0, the middle actuator's values in the JSON, a sheet as PDF."""
-    done = servoident("bench", folder, "--json", tmp_path / "b.json", "--out", tmp_path / "sheet.pdf")
+    wanted = ("--out", tmp_path / "sheet.pdf", "--identification", tmp_path / "identification.h")
+    done = servoident("bench", folder, "--json", tmp_path / "b.json", *wanted)
     assert done.returncode == 0, done.stderr
     found = json.loads((tmp_path / "b.json").read_text())
     values = found["model"]["values"]
@@ -51,6 +52,7 @@ def test_the_simulated_set_is_found_again_and_passes(servoident, folder, tmp_pat
     assert found["passed"] is True
     assert found["delay"]["correlation"]["T"]["delay"] < 0
     assert (tmp_path / "sheet.pdf").read_bytes().startswith(b"%PDF")
+    assert "servoident_identify(" in (tmp_path / "identification.h").read_text()
     assert "hysteresis" in done.stdout
     assert "pass" in done.stdout
 

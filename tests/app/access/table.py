@@ -118,6 +118,7 @@ OF_API = (
     Call("POST", "/fits/{fit}/position-loop", EVERY, {"kp": 100}),
     read("/fits/{fit}/position-loop/" + FIGURE),
     read("/fits/{fit}/sheet"),
+    read("/fits/{fit}/identification.h"),
     Call("POST", "/diagnoses", LAB, {"fit": "{fit}", "max_effects": 1}, changes=True),
     read("/diagnoses"),
     read("/diagnoses/{diagnosis}"),
