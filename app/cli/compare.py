@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated
 
 import typer
 
-from app.cli.figure_files import draw_study, given_options
+from app.cli.figure_files import draw_study, given_options, study_figures
 from app.cli.given import read_fit
 from app.cli.output import STANDARD_OUTPUT, check_target, write_json
 
@@ -46,11 +46,12 @@ def compare(
     if len(fit) > 1:
         from app.cli.compare_several import compare_several
 
-        asked = figure or (), given_options(option or ())
-        compare_several(read_matrix(matrix), [read_fit(one) for one in fit], json, out, *asked)
+        of_all = figure or (), given_options(option or ())
+        compare_several(read_matrix(matrix), [read_fit(one) for one in fit], json, out, *of_all)
         return
     result, other = read_fit(fit[0]), None if candidate is None else read_fit(candidate)
-    read = read_matrix(matrix)
+    read, chosen = read_matrix(matrix), given_options(option or ()) | ({} if other is None else {"candidate": other})
+    asked = None if out is None else study_figures(read, result, figure or (), chosen)
     comparison = compared(read, result)
     found = survey(comparison)
     if json is not None:
@@ -59,6 +60,5 @@ def compare(
         write_json({**means, "runs": comparison.records(), **found.to_json()}, json)
     if json != STANDARD_OUTPUT:
         show((*comparison.listings(), *found.listings()))
-    if out is not None:
-        chosen: dict[str, Any] = {**given_options(option or ()), **({} if other is None else {"candidate": other})}
-        draw_study(read, result, out, figure or (), chosen)
+    if out is not None and asked is not None:
+        draw_study(*asked, out)

@@ -7,7 +7,7 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
-from app.cli.figure_files import draw_study, write_figures
+from app.cli.figure_files import draw_study, study_figures, write_figures
 from app.cli.output import STANDARD_OUTPUT, write_json
 
 if TYPE_CHECKING:
@@ -26,6 +26,7 @@ def compare_several(
     from ident.comparison.side_by_side import of_comparisons
     from ident.workflows import compare
 
+    asked = None if out is None else study_figures(matrix, fits[0], figures, options, fits[1:])
     found = of_comparisons([compare(matrix, fit) for fit in fits])
     if json is not None:
         columns = [
@@ -37,8 +38,8 @@ def compare_several(
         write_json({"fits": columns, "runs": found.records()}, json)
     if json != STANDARD_OUTPUT:
         show(found.listings())
-    if out is not None:
+    if out is not None and asked is not None:
         from ident.figures.subjects import Compared
 
         write_figures(Compared(found, matrix.actuator), out)
-        draw_study(matrix, fits[0], out, figures, options, fits[1:])
+        draw_study(*asked, out)

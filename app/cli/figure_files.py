@@ -12,6 +12,7 @@ from ident.errors import Unusable
 from ident.words.nearest import did_you_mean
 
 if TYPE_CHECKING:
+    from ident.figures import Study
     from ident.fit.result import FitResult
     from ident.matrix import Matrix
 
@@ -79,26 +80,32 @@ def write_figures(subject: object, out: Path) -> None:
     print(f"wrote {', '.join(names)} to {out}")
 
 
-def draw_study(
-    matrix: Matrix, fit: FitResult, out: Path, names: Sequence[str] = (),
-    options: Mapping[str, Any] = MappingProxyType({}), others: Sequence[FitResult] = (),
-) -> None:  # fmt: skip
-    """Write figures of a fit to the folder `out`, all or those of these names, each with the options that it takes.
+def study_figures(
+    matrix: Matrix, fit: FitResult, names: Sequence[str] = (), options: Mapping[str, Any] = MappingProxyType({}),
+    others: Sequence[FitResult] = (),
+) -> tuple[Study, dict[str, dict[str, Any]]]:  # fmt: skip
+    """A fit beside its data, and its figures, all or those of these names, each with the options that it takes.
 
-    With `others` they are those in which several fits are drawn. Raises Unusable for a figure that the fit does not
-    have, and for an option that none of the figures takes.
+    With `others` they are those in which several fits are drawn. Nothing is worked out yet. Raises Unusable for a
+    figure that the fit does not have, and for an option that none of the figures takes.
     """
     from ident.figures import drawings
     from ident.workflows import study
 
-    studied, drawn = study(matrix, fit), []
+    studied = study(matrix, fit)
     if others:
         options = {**options, "other": list(others)}
         several = [
             name for name, one in drawings(studied).items() if "other" in {option.name for option in one.options}
         ]
         names = names or several
-    for name, taken in with_options(studied, names, options).items():
+    return studied, with_options(studied, names, options)
+
+
+def draw_study(studied: Study, figures: Mapping[str, Mapping[str, Any]], out: Path) -> None:
+    """Write figures of a fit, each with its options, to the folder `out`, and say which."""
+    drawn = []
+    for name, taken in figures.items():
         try:
             write_figure(studied, name, out, **taken)
         except Unusable as error:

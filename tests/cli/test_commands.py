@@ -166,6 +166,7 @@ def test_one_figure_with_options_as_a_page_draws_it(servoident, few, fit_file, t
         refused = servoident(*asked, "--option", wrong)
         assert refused.returncode == 2
         assert said in refused.stderr
+        assert refused.stdout == ""  # before anything was worked out
     assert "bode" in servoident(*asked[:-1], "bod").stderr
 
 
