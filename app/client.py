@@ -42,6 +42,11 @@ _ENDED = ("succeeded", "failed", "cancelled")
 _LOST = 5  # times that a stream of events may break off without having told anything new
 
 
+def without_number(error: Exception) -> str:
+    """What a system says of a failure: "[Errno 111] Connection refused" without its number."""
+    return str(error).rpartition("] ")[2]
+
+
 @dataclass
 class Refused(Exception):
     """What the service refuses, or why a job failed: what is wrong, where, and the remedy."""
@@ -230,8 +235,8 @@ class Client:
         try:
             answer = self.http.request(method, f"{self.server}/api/v1{path}", headers=headers, **content)
         except (httpx.HTTPError, httpx.InvalidURL) as error:
-            remedy = "start it with `servoident serve`, or give its address"
-            raise Refused("no-service", f"no answer from the service ({error})", self.server, remedy) from None
+            reason, remedy = without_number(error), "start it with `servoident serve`, or give its address"
+            raise Refused("no-service", f"no answer from the service ({reason})", self.server, remedy) from None
         if answer.is_error:
             raise _refusal(answer)
         return answer

@@ -41,6 +41,8 @@ def request(server: str, token: str, method: str, path: str, **content: Any) -> 
     """The answer of the service to one request. Raises Unusable where it refuses, or where there is none."""
     import httpx
 
+    from app.client import without_number
+
     server, token = reached(server, token)
     headers = {"Idempotency-Key": str(uuid4())} if method == "POST" else {}
     if token:
@@ -54,7 +56,7 @@ def request(server: str, token: str, method: str, path: str, **content: Any) -> 
         ) from None
     except (httpx.HTTPError, httpx.InvalidURL) as error:
         remedy = "start it there with `servoident serve`, or give another address with --server"
-        raise Unusable("no-service", f"no answer from the service ({error})", server, remedy) from None
+        raise Unusable("no-service", f"no answer from the service ({without_number(error)})", server, remedy) from None
     if answer.is_error:
         raise refusal(answer)
     return answer
@@ -76,7 +78,7 @@ def receive(server: str, token: str, path: str, file: Path) -> int:
     """The file that a POST is answered by, whole or not at all; its size in bytes. Raises Unusable."""
     import httpx
 
-    from app.client import received
+    from app.client import received, without_number
 
     server, token = reached(server, token)
     headers = {"Authorization": f"Bearer {token}"} if token else {}
@@ -89,7 +91,10 @@ def receive(server: str, token: str, path: str, file: Path) -> int:
             return received(answer, file)
     except (httpx.HTTPError, httpx.InvalidURL) as error:
         raise Unusable(
-            "no-service", f"no answer from the service ({error})", server, "start it there, or give another address"
+            "no-service",
+            f"no answer from the service ({without_number(error)})",
+            server,
+            "start it there, or give another address",
         ) from None
 
 

@@ -105,8 +105,8 @@ def check_lengths(raw: dict[str, Array], described: RunDescription) -> None:
     if described.rows is not None:
         first, end = described.rows
         if end > count:
-            what = f"rows [{first}, {end}) of a file of {count}"
-            raise Unusable("rows-outside", what, where, "correct rows")
+            what = f"rows [{first}, {end}) end after the last sample of the file, which has {count}"
+            raise Unusable("rows-outside", what, where, f"give rows within [0, {count})")
         count = end - first
     if count == 0:
         raise Unusable("empty-file", "the file has no samples", where, "give a record")

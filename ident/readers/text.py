@@ -203,5 +203,5 @@ def as_float(field: bytes, comma: bool, line: int, where: str) -> float:
     if not text.strip("\"' "):
         what = f"line {line} has an empty cell where a number belongs"
         raise Unusable("not-numeric", what, where, f"fill it, or cut the record before line {line} with rows")
-    remedy = "give the column of numbers, or skip_rows for more lines above"
+    remedy = "correct the number, or name a column of numbers; if the line is part of the heading, give skip_rows"
     raise Unusable("not-numeric", f"line {line} holds {shown(text)!r} where a number belongs", where, remedy)
