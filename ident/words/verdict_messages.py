@@ -252,7 +252,7 @@ SEARCH: Mapping[str, str] = {
     "refused.error_verify": "With it the error is {error:error} ({verify:error} on validation data).",
     "term.hypothesis": "{meaning} (a hypothesis: too few runs to confirm it)",
     "recommended":
-        "`servoident fit {matrix} --start {file}` makes the recommended fit, with {effects:titles}. It begins where "
+        "`servoident fit {matrix} --start {file}` makes the fit with {effects:titles}. It begins where "
         "the diagnosis ended, at an error of {error:percent}.",
     "recommended.run": "`servoident next {matrix} --diagnosis {file} --out next-run` writes the proposed run.",
     "recommended.run_sharpens":

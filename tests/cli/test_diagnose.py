@@ -155,7 +155,7 @@ def test_the_recommended_fit_begins_where_the_diagnosis_ended(servoident, matrix
     printed, found = told
     diagnosis, fitted = tmp_path / "D.json", tmp_path / "fit.json"
     diagnosis.write_text(json.dumps(found))
-    assert "makes the recommended fit, with dead zone. It begins where the diagnosis ended" in " ".join(printed.split())
+    assert "makes the fit with dead zone. It begins where the diagnosis ended" in " ".join(printed.split())
     for start in (diagnosis, fitted):
         done = servoident("fit", matrix, "--start", start, "--json", fitted)
         assert done.returncode == 0, done.stderr

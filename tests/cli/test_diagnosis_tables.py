@@ -52,7 +52,7 @@ def test_what_is_printed_ends_with_the_command_that_makes_the_recommended_fit(ca
     values = {"Z0": ParameterEstimate(3e-6, "m^4/s", None, "Z0")}
     first = Rung(error={"fit": 0.2}, parameters=values)
     ladder = (first, Rung(added="dead_zone", error={"fit": 0.0463}, parameters=values))
-    command = "`servoident fit 'my data' --start out/found.json` makes the recommended fit, with "
+    command = "`servoident fit 'my data' --start out/found.json` makes the fit with "
     assert f"{command}dead zone. It begins where the diagnosis ended, at an error of 4.63 %." in printed(ladder=ladder)
     assert "--start" not in printed(Verdict(standing="contradicted", contradicted_by=("dead_zone",)), ladder=ladder)
     told = printed(ladder=ladder, proposals=(term(LEAK, "coulomb_friction"),))

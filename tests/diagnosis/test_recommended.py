@@ -153,7 +153,7 @@ def test_what_a_diagnosis_did_not_refit_is_refused_with_what_it_did(chosen, said
 def test_the_command_that_comes_next_names_the_model_its_error_and_the_file():
     found = stored(STORED[-1])[1]
     told = next_command(found, "found.json")
-    assert told.startswith("`servoident fit MATRIX --start found.json` makes the recommended fit, with ")
+    assert told.startswith("`servoident fit MATRIX --start found.json` makes the fit with ")
     assert "--terms N" in told
     assert next_run_command(replace(found, next_experiment=None)) == ""
     proposed = NextRun(amplitude=1e-3, signal="blwn", frequency=10.0, seconds=5.0, sample_rate=1000.0)
