@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import io
 import zipfile
+from xml.etree import ElementTree
 
 import pytest
 from python_calamine import load_workbook
@@ -35,6 +36,14 @@ def test_every_table_is_read_back_from_the_workbook(known):
     assert [row[value] for row in rows] == [entry.value for entry in base.fit.parameters.values()]
     runs = book.get_sheet_by_name("runs").to_python()
     assert [row[runs[0].index("id")] for row in runs[1:]] == [run.id for run in base.matrix.runs]
+
+
+def test_the_workbook_has_the_default_style_that_readers_ask_for(known):
+    """Without it openpyxl, and pandas with it, warns and takes one of its own."""
+    found, _ = known
+    styles = ElementTree.fromstring(zipfile.ZipFile(io.BytesIO(as_xlsx(found))).read("xl/styles.xml"))
+    (style,) = (part for part in styles.iter() if part.tag.endswith("}cellStyle"))
+    assert (style.get("name"), style.get("builtinId")) == ("Normal", "0")
 
 
 def test_every_table_is_read_back_from_its_csv_file(known):
