@@ -183,7 +183,8 @@ def _zoomed(client: httpx.Client, matrix: str) -> Zoomed:
         frames, sharp = page.evaluate(ZOOM, 10)
         drawing = page.evaluate(DRAWN, [LONG, RATE])
         browser.close()
-    return Zoomed(*(float(np.quantile(each, 0.95)) for each in (idle, frames)), float(np.median(drawing)), float(sharp))
+    at_rest, turning = (float(np.quantile(each, 0.95)) for each in (idle, frames))
+    return Zoomed(at_rest, turning, float(np.median(drawing)), float(sharp))
 
 
 def _read_once(archive: bytes) -> float:
