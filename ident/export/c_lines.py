@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import re
 from collections.abc import Collection, Iterator, Sequence
 
 from ident.equations.grammar import statement_of
@@ -26,6 +27,11 @@ def c_lines(lines: Sequence[str], rows: Collection[int]) -> list[str]:
 def number(value: float) -> str:
     """A number of C to its last bit."""
     return repr(float(value))
+
+
+def comment(text: str) -> str:
+    """A text that cannot leave the comment of C that it stands in."""
+    return re.sub(r"[^ -~]", "-", text).replace("*/", "* /").replace("/*", "/ *").replace("\\", "/")
 
 
 def _needed(lines: Sequence[str], rows: Collection[int]) -> list[ast.Assign]:

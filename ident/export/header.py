@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 
 from ident.chain.chain import INPUT
-from ident.export.c_lines import c_lines, number
+from ident.export.c_lines import c_lines, comment, number
 from ident.export.machine import ExportedMachine
 
 
@@ -23,8 +23,8 @@ def as_header(machine: ExportedMachine) -> str:
     for place, row in enumerate(shown.values()):
         show = [re.sub(rf"^b\[{row}\] =", f"y[{place}] =", line) for line in show]
     return _HEADER.format(
-        title=_comment(f"{machine.preset.title}: {machine.driven_by} in, {', '.join(shown)} out"),
-        conditions="\n".join(f" *   {_comment(f'{name} = {value:.9g}')}" for name, value in machine.values.items()),
+        title=comment(f"{machine.preset.title}: {machine.driven_by} in, {', '.join(shown)} out"),
+        conditions="\n".join(f" *   {comment(f'{name} = {value:.9g}')}" for name, value in machine.values.items()),
         channels="\n".join(f" *   y[{i}] {name} in {machine.unit(name)}" for i, name in enumerate(shown)),
         names="\n".join(f"#define SERVOIDENT_{name.upper()} {place}" for place, name in enumerate(shown)),
         outputs=len(shown), rows=len(packed.rows), rate=number(machine.sample_rate), steps=machine.steps,
@@ -32,11 +32,6 @@ def as_header(machine: ExportedMachine) -> str:
         start=",\n    ".join(number(value) for value in packed.rows[:, 0]),
         advance="\n    ".join(advance), show="\n    ".join(show),
     )  # fmt: skip
-
-
-def _comment(text: str) -> str:
-    """A text that cannot leave the comment that it stands in."""
-    return re.sub(r"[^ -~]", "-", text).replace("*/", "* /").replace("\\", "/")
 
 
 _HEADER = """/* {title}

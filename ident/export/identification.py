@@ -17,7 +17,7 @@ from ident.bench.model import Model
 from ident.bench.observed import Observed
 from ident.bench.speed_table import SPLINE, SpeedTable
 from ident.errors import Unusable
-from ident.export.c_lines import number
+from ident.export.c_lines import comment, number
 from ident.export.identification_code import CODE
 
 QUANTITIES = (
@@ -49,7 +49,7 @@ def as_identification(analysis: Analysis) -> str:
         node_places=_listed(model.table.nodes.tolist()), basis=_basis(model.table),
         part_ends=",\n    ".join(f"{{{first}, {end}}}" for first, end in parts) or "{0, 0}",
         table=",\n    ".join(_record(one, sum(len(each.parts) for each in seen[:i])) for i, one in enumerate(seen)),
-        order="\n".join(f" *   {i} {one.record.id!r}".replace("*/", "") for i, one in enumerate(seen)),
+        order="\n".join(f" *   {i} {comment(one.record.id)}" for i, one in enumerate(seen)),
         names="\n".join(f"#define SERVOIDENT_{name.upper()} {i}" for i, name in enumerate(QUANTITIES)),
         quantities=len(QUANTITIES),
     )  # fmt: skip

@@ -14,6 +14,7 @@ from ident.bench.analysis import Analysis, Missing, analyse
 from ident.bench.model import DELAY
 from ident.bench.records import BenchSet
 from ident.errors import Unusable
+from ident.export.c_lines import comment
 from ident.export.identification import QUANTITIES, as_identification, values_of
 from tests.bench.sets import as_set
 from tests.export.machines import compiler
@@ -135,3 +136,8 @@ def with_delay(analysis: Analysis) -> Analysis:
     whole = analysis.whole
     model = replace(whole.model, strengths={DELAY: 1e-3})
     return replace(analysis, whole=replace(whole, residual=replace(whole.residual, model=model)))
+
+
+def test_no_name_of_a_record_leaves_the_comment_of_a_header():
+    """Nor does it begin another, or reach the next line."""
+    assert comment('a */ b /* c \\\né "d"') == 'a * / b / * c /-- "d"'
