@@ -82,6 +82,8 @@ def plan_page(context: Context, fit: str, plan: str) -> PlanPageView:
     """The page for a fit, or for none, with a plan or its job. Raises Failure 404."""
     found = plans.made_as(context, plan) if plan else None
     job = _job(context, plan) if plan and found is None else None
+    if job is not None and job.state == "succeeded":  # between the two looks
+        found, job = plans.get(context, plan), None
     fit = fit or (found.fit if found else job.parent if job else None) or ""
     row = fits.find(context, fit) if fit else None
     actuator = FitResult.from_json(row.result).actuator if row is not None else None

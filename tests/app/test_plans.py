@@ -10,6 +10,7 @@ from threading import Event
 import pytest
 import yaml
 
+from app.plans import service as plans
 from app.plans.asked import AskedPlan
 from ident.progress import Progress
 
@@ -62,6 +63,12 @@ def test_a_plan_without_a_fit_is_about_no_actuator(service):
     assert f"/plan?plan={plan['id']}#made" in service.get("/jobs").text
     assert plan["fit"] is None
     assert service.get(f"/fits/{plan['id']}", follow_redirects=False).headers["Location"].startswith("/plan?")
+
+
+def test_a_plan_that_is_made_between_two_looks_of_its_page_is_shown(service, monkeypatch):
+    plan = made(service, {"program": PROGRAM})
+    monkeypatch.setattr(plans, "made_as", lambda *_: None)
+    assert "2 runs of own" in service.get("/plan", params={"plan": plan["id"]}).text
 
 
 def test_a_plan_of_which_no_run_is_left_fails_and_its_page_says_why(service, fitted):
