@@ -155,10 +155,20 @@ System = Case | CoupledCase
 """What a hybrid simulation is of: one actuator or several."""
 
 
+SEVERAL = {
+    "at": "the law of a condition moves one machine: give each part the fit at its condition",
+    "isolator": "an isolator belongs to one part: state it in the specimen of the case",
+    "before": "the cause is found for one actuator: the remedies are listed without it",
+    "spread": "machines are drawn for one actuator: run each part as a case of its own",
+}
+"""Why an option is there for one actuator only, with the remedy, by its first word."""
+
+
 def refuse_for_several(options: Mapping[str, object]) -> None:
     """Raise Unusable where an option is given, by the name that the user knows, that is there for one actuator only."""
     if where := next((name for name, value in options.items() if value is not None), ""):
-        raise Unusable("bad-option", "a case of several parts has none", where, "leave it out")
+        why, _, remedy = SEVERAL[where.strip("-").partition("-")[0]].partition(": ")
+        raise Unusable("bad-option", f"a case of several parts has none: {why}", where, f"leave it out; {remedy}")
 
 
 def case_of_part(of: System, name: str | None) -> Case:

@@ -14,6 +14,7 @@ from ident.errors import Unusable
 from ident.fit.result import FitResult
 from ident.hybrid.controller import Controller, SampledController, name_of, no_controller
 from ident.hybrid.coupled_case import CoupledCase
+from ident.hybrid.coupled_loop import CoupledLoop
 from ident.hybrid.coupled_stability import DelayMap, coupled_critical_delay, coupled_poles, delay_map, with_poles
 from ident.hybrid.machine import Machine, machine
 from ident.hybrid.rig import HELD, RUNAWAY, HybridResult, notes_of
@@ -23,8 +24,7 @@ from ident.hybrid.scores import Scores, scores
 from ident.hybrid.specimen_effects import of_specimen
 from ident.hybrid.substructure import reference
 from ident.progress import Report, silent
-from ident.stability.judgement import UNSTABLE, Judgement
-from ident.stability.mode import Mode
+from ident.stability.judgement import judge
 from ident.words.engineering import quantity
 from ident.words.message import message
 from ident.words.percent import percent
@@ -197,12 +197,8 @@ def _whole(
     kept, radius, judged = ended >= samples, None, None
     sampled = [one for one in controllers if isinstance(one, SampledController)]
     if len(sampled) == len(controllers) and not any(one.nonlinear for one in machines):
-        poles = coupled_poles(machines, case, sampled)
-        radius = float(np.abs(poles).max())
-        if radius >= 1.0:
-            leading = poles[np.argmax(np.abs(poles))]
-            mode = Mode.of(complex(np.log(leading) * case.sample_rate))
-            judged = Judgement(UNSTABLE, mode, None, text=(f"Unstable: {mode}.",))
+        radius = float(np.abs(coupled_poles(machines, case, sampled)).max())
+        judged = judge(CoupledLoop(machines, case, sampled)) if radius >= 1.0 else None
     return {
         "stable": kept and (radius is None or radius < 1.0), "radius": radius, "stability": judged,
         "critical_delay": coupled_critical_delay(case), "ended": None if kept else ended / case.sample_rate,

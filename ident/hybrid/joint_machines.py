@@ -19,13 +19,16 @@ _ONE = np.ones(1)
 def joint_machines(
     machines: Sequence[Machine], system: System, gain: Array = _ONE
 ) -> tuple[Array, Array, Array, Array]:
-    """A, B, C, D of machines side by side, (b, n, n), (b, n, P), (b, 2P, n), (b, 2P, P), with `gain` (b,) times Kp.
+    """A, B, C, D of machines side by side, (b, n, n), (b, n, P), (b, 2P, n), (b, 2P, P).
+
+    Kp is times `gain`, (b,) for all of them or (P, b) for each.
 
     They give the displacements that are measured, then the forces. A specimen that joins them adds what each feels of
     the others, E = K x + C x' + M x'' of the matrices beside the diagonals: a feedback, closed here.
     """
     felt = isinstance(system, CoupledCase) and system.joined
-    blocks = [_alone(of, case, gain, felt) for of, case in zip(machines, system.cases, strict=True)]
+    of_each = np.broadcast_to(gain, (len(machines), gain.shape[-1]))
+    blocks = [_alone(of, case, one, felt) for of, case, one in zip(machines, system.cases, of_each, strict=True)]
     parts = len(blocks)
     A = _diagonal([block["A"] for block in blocks])
     rows = {name: _rows(blocks, name) for name in (DISPLACEMENT, FORCE, *(JOINED if felt else ()))}

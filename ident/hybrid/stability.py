@@ -105,7 +105,10 @@ def coupled_loop(
     machines: Sequence[Machine], system: System, controllers: Sequence[SampledController], force: Array = _ONE,
     gain: Array = _ONE,
 ) -> Array:  # fmt: skip
-    """As :func:`closed_loop`, of as many machines, each under its controller, as the system has parts."""
+    """As :func:`closed_loop`, of as many machines, each under its controller, as the system has parts.
+
+    `force` and `gain` are (b,) for all parts, or (P, b) for each.
+    """
     parts = range(len(machines))
     phi, drive, read, through = _held(machines, system, gain)
     part, delays = numerical(system), [case.delay for case in system.cases]
@@ -115,12 +118,13 @@ def coupled_loop(
     own = [slice(x.start + sum(orders[:p]), x.start + sum(orders[: p + 1])) for p in parts]
     line = [slice(held.start + sum(delays[:p]), held.start + sum(delays[: p + 1])) for p in parts]
     first = [one.start for one in line]
-    count = np.broadcast_shapes(force.shape, gain.shape)
+    count = np.broadcast_shapes(force.shape[-1:], gain.shape[-1:])
+    read_by = np.broadcast_to(force, (len(parts), force.shape[-1]))
     y, f, d = np.zeros((3, len(parts), *count, before.stop))  # of what is known at a sample
     for p in parts:
         y[p][:, s], y[p][:, first] = read[p], through[p]
         f[p][:, s], f[p][:, first] = read[len(parts) + p], through[len(parts) + p]
-        f[p] *= force[:, None]
+        f[p] *= read_by[p][:, None]
         d[p][:, z.start + part.places[p]] = 1.0
     system_matrix = np.zeros((*count, before.stop, before.stop))
     system_matrix[:, s, s], system_matrix[:, s, first] = phi, drive
@@ -151,7 +155,7 @@ def _held(machines: Sequence[Machine], system: System, gain: Array) -> tuple[Arr
     """
     A, B, C, D = joint_machines(machines, system, gain)
     n, parts = B.shape[-2:]
-    block = np.zeros((len(gain), n + parts, n + parts))
+    block = np.zeros((gain.shape[-1], n + parts, n + parts))
     block[:, :n, :n], block[:, :n, n:] = A, B
     found = scipy.linalg.expm(block / system.sample_rate)
     return found[:, :n, :n], found[:, :n, n:], np.moveaxis(C, 1, 0), np.moveaxis(D, 1, 0)

@@ -9,7 +9,7 @@ from typing import Any
 from ident.parallel import one_thread
 from ident.plain import written
 from ident.stability.cause import Cause, causes
-from ident.stability.gain_margin import LARGEST, WANTED, gain_margin
+from ident.stability.gain_margin import WANTED, gain_margin
 from ident.stability.loop import Loop
 from ident.stability.mode import Mode, growth, leading_mode
 from ident.stability.remedy import Remedy, remedies
@@ -92,7 +92,7 @@ def _sentences(
     if offered:
         listed = " or ".join(str(one) for one in offered[:_NAMED])
         yield f"{_REMEDY} {trimmed(WANTED)} dB, the smallest change first: {listed}."
-    elif margin is not None and margin > -LARGEST:
+    elif margin is not None:
         yield f"No single change gives a gain margin of {trimmed(WANTED)} dB."
 
 

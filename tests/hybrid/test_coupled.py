@@ -9,6 +9,7 @@ from ident.errors import Unusable
 from ident.hybrid.case import case_of
 from ident.hybrid.compensation import Compensation
 from ident.hybrid.controller import no_controller
+from ident.hybrid.coupled_case import SEVERAL, refuse_for_several
 from ident.hybrid.coupled_reading import coupled_of
 from ident.hybrid.coupled_rig import machines_of, simulate_coupled
 from ident.hybrid.coupled_stability import coupled_critical_delay, delay_map
@@ -142,3 +143,31 @@ def test_the_inertia_of_a_specimen_needs_machines_with_forces():
     case, _ = table(0.1)
     with pytest.raises(Unusable, match="no force"):
         simulate_coupled((fitted("first_order"),) * 3, case, (NONE,) * 3)
+
+
+def test_a_loop_that_one_gain_makes_unstable_is_told_that_gain():
+    """Alone it brings a gain margin of 3 dB, by the poles of the reference.
+
+    At 3 dB more than the remedy the flat loop is stable, at 5 dB more it is not.
+    """
+    case, loop = beam(0.1, gains=(60.0, 16.0), delays=(1, 1))
+    judged = simulate_coupled(TWO, case, (NONE, NONE)).first.stability
+    first = judged.remedies[0]
+    assert (judged.state, first.name) == ("unstable", "left.Kp")
+    assert "left.Kp" in judged.text[-1]
+    assert judged.mode.frequency == pytest.approx(50.8, rel=0.01)
+    radii = [reference.radius(loop._replace(Kp=(60.0 * first.factor * 10 ** (level / 20), 16.0)), 4096.0)
+             for level in (0.0, 3.0, 5.0)]  # fmt: skip
+    assert radii[0] < 1.0
+    assert radii[1] < 1.0
+    assert radii[2] > 1.0
+
+
+def test_what_is_for_one_actuator_only_is_refused_with_the_reason():
+    """By command and over HTTP the option is named as it was given."""
+    for given in ("--at", "at", "--isolator", "--spread", "--before-gain"):
+        with pytest.raises(Unusable, match="several parts") as refused:
+            refuse_for_several({"--map": None, given: "something"})
+        why = SEVERAL[given.strip("-").partition("-")[0]]
+        assert why.partition(": ")[2] in str(refused.value)
+    refuse_for_several({"--at": None})
