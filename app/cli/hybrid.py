@@ -159,9 +159,10 @@ def _draw(runs: dict[str, HybridResult], of: Case, found: ShareMap | None, worth
 
 def write_command(found: HybridResult, out: Path) -> None:
     """The command of a shaking table as a file for its rig: time and command, a row a sample."""
-    rows = (f"{k / found.sample_rate:.9g},{u:.9g}" for k, u in enumerate(found.command))
+    from ident.hybrid.shaking_table import command_text
+
     out.mkdir(parents=True, exist_ok=True)
-    write_bytes("\n".join(["time (s),command (m)", *rows, ""]).encode(), out / "command.csv")
+    write_bytes(command_text(found.command, found.sample_rate).encode(), out / "command.csv")
 
 
 def _map(asked: bool, acting: Any, *rest: Any) -> ShareMap | None:

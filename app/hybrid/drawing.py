@@ -11,7 +11,7 @@ from app.context import Context
 from app.errors import Failure
 from app.hybrid import controllers, position_loop, service, tracking
 from app.hybrid import what_if as asked_machines
-from app.hybrid.records import of_part, unpacked
+from app.hybrid.records import command_of, of_part, unpacked
 from app.hybrid.work import WITHOUT
 from app.lru import LRU
 from ident.figures import MEDIA, drawings, figure, render
@@ -20,6 +20,7 @@ from ident.figures.subjects import Coupled, Designed, Simulated, Tracked
 from ident.hybrid.coupled_case import CoupledCase, case_of_part
 from ident.hybrid.coupled_stability import DelayMap
 from ident.hybrid.followed import Followed
+from ident.hybrid.shaking_table import command_text
 from ident.hybrid.share_map import ShareMap
 from schemas.hybrid import PositionLoopRequest, WhatIfRequest
 
@@ -55,6 +56,17 @@ def of_simulation(
         )  # fmt: skip
 
     return _drawn(context, ("hybrid", simulation, part or ""), subject, name, kind, style)
+
+
+def command_of_table(context: Context, simulation: str) -> str:
+    """The command of a shaking table as a table. Raises Failure 404 where the simulation has none."""
+    row = service.with_records(context, simulation)
+    case = service.system_of_row(row)
+    command = None if isinstance(case, CoupledCase) else command_of(row.records)
+    if command is None:
+        raise Failure(404, "no-command", "the simulation is of no shaking table", "simulation",
+                      "simulate a case with a payload")  # fmt: skip
+    return command_text(command, case.sample_rate)
 
 
 def _of_parts(case: CoupledCase, held: Any, records: bytes, name: str, part: str | None) -> Simulated | Coupled:

@@ -113,6 +113,18 @@ def get_hybrid_simulation(here: Here, simulation: str) -> HybridView:
 
 
 @router.get(
+    "/hybrid-simulations/{simulation}/command.csv",
+    dependencies=[READERS],
+    response_class=Response,
+    responses={200: {"content": {"text/csv": {}}}},
+)
+def get_command_of_table(here: Here, simulation: str) -> Response:
+    """The command of a simulated shaking table for its rig: time (s) and command (m), a row a sample."""
+    name = {"Content-Disposition": 'attachment; filename="command.csv"'}
+    return Response(drawing.command_of_table(here, simulation), media_type="text/csv", headers=name)
+
+
+@router.get(
     "/hybrid-simulations/{simulation}/figures/{name}.{kind}",
     dependencies=[READERS],
     response_class=Response,

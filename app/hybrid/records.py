@@ -1,6 +1,7 @@
 """The displacements of a hybrid simulation as they are kept: every n-th sample in single precision, compressed.
 
-What the figures show ends at 30 Hz; 512 samples a second are plenty, also near a peak.
+The command of a shaking table is kept whole. What the figures show ends at 30 Hz; 512 samples a second are plenty, also
+near a peak.
 """
 
 from __future__ import annotations
@@ -21,6 +22,7 @@ from ident.plain import read
 RATE, ROWS = 512.0, 131_072
 """Samples a second that are kept where there are more, and rows that are kept at most."""
 _KEPT = ("numerical", "measured", "reference")
+_COMMAND = "command"
 _NONE = np.zeros(0)
 
 
@@ -31,6 +33,8 @@ def packed(runs: Mapping[str, HybridResult]) -> bytes:
     arrays: dict[str, Any] = {"every": np.array(every), "reference": _thinned(first.reference, every)}
     for number, run in enumerate(runs.values()):
         arrays |= {f"{name}{number}": _thinned(getattr(run, name), every) for name in _KEPT[:2]}
+    if first.case.table is not None:
+        arrays[_COMMAND] = first.command  # whole: a rig plays it
     held = io.BytesIO()
     np.savez_compressed(held, **arrays)
     return held.getvalue()
@@ -56,6 +60,12 @@ def of_part(content: bytes, number: int) -> bytes:
 def _thinned(signal: Any, every: int) -> Any:
     with np.errstate(over="ignore", invalid="ignore"):  # of what ran away
         return signal[::every].astype(np.float32)
+
+
+def command_of(content: bytes) -> Any:
+    """The command of a shaking table (n,), in m, at every sample; None where none was kept."""
+    with np.load(io.BytesIO(content), allow_pickle=False) as held:
+        return held[_COMMAND] if _COMMAND in held.files else None
 
 
 def unpacked(content: bytes, case: Case, results: Mapping[str, Mapping[str, Any]]) -> dict[str, HybridResult]:

@@ -85,6 +85,7 @@ class Simulated:
     notes: tuple[str, ...]
     figures: tuple[Figure, ...]
     without: bool
+    table: bool = False
     parts: tuple[str, ...] = ()
     by_part: tuple[tuple[str, str, tuple[str, ...]], ...] = ()
 
@@ -181,6 +182,7 @@ def _simulated(one: HybridView) -> Simulated:
         notes=tuple(one.notes),
         figures=tuple(_figures(one, at)),
         without=one.without is not None and not one.parts,
+        table=one.acceleration is not None,
         parts=tuple(part.name for part in one.parts),
         by_part=tuple(_by_part(one)),
     )

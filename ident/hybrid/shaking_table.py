@@ -127,3 +127,9 @@ def _inverse(fit: FitResult, case: Case, samples: int) -> NDArray[np.complex128]
 def _by(inverse: NDArray[np.complex128], signal: Array) -> Array:
     """A signal through a response at the frequencies of its transform, (n,)."""
     return np.asarray(np.fft.irfft(inverse * np.fft.rfft(signal), len(signal)))
+
+
+def command_text(command: Array, sample_rate: float) -> str:
+    """The command (n,) in m as a table for a rig: time and command, a row a sample."""
+    rows = (f"{k / sample_rate:.9g},{u:.9g}" for k, u in enumerate(command))
+    return "\n".join(["time (s),command (m)", *rows, ""])

@@ -440,4 +440,10 @@ def test_a_shaking_table_over_http_has_its_acceleration(service, fitted):
     assert len(figure["datasets"]["levels"]) == 2 * len(found["acceleration"]["level"])
     page = service.get(f"/fits/{fitted}/use", params={"simulation": job["id"]}).text
     assert "Acceleration spectrum" in page
+    address = f"{API}/hybrid-simulations/{job['id']}/command.csv"
+    assert f'href="{address}"' in page
+    rows = np.loadtxt(io.StringIO(service.get(address).text), delimiter=",", skiprows=1)
+    assert len(rows) == found["samples"]
+    assert np.allclose(rows[:, 0] * 4096, np.arange(len(rows)), atol=1e-4)
+    assert np.std(rows[:, 1]) == pytest.approx(found["command_rms"], rel=0.02)
     refused_by_service(service.post(f"{API}/hybrid-simulations", json=body | {"map": True}), "bad-option")

@@ -145,6 +145,7 @@ OF_API = (
     Call("POST", "/hybrid-simulations", LAB, CASE | {"controller": "none"}, changes=True),
     read("/hybrid-simulations"),
     read("/hybrid-simulations/{simulation}"),
+    read("/hybrid-simulations/{simulation}/command.csv"),
     read("/hybrid-simulations/{simulation}/" + FIGURE),
     Call("POST", "/plans", LAB, {"program": {"amplitudes": ["1 mm"], "seconds": "1 s"}}, changes=True),
     read("/plans"),
