@@ -247,7 +247,8 @@ def _time(seconds: float | None) -> str:
 
 def _facts(found: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
     critical = found["critical_delay"]
-    yield "Critical delay of a perfect machine", "none" if critical is None else _time(critical)
+    if found.get("acceleration") is None:  # a table has no loop through a structure
+        yield "Critical delay of a perfect machine", "none" if critical is None else _time(critical)
     if found.get("largest_pole") is not None:
         yield "Largest pole of the sampled loop", f"{found['largest_pole']:.5f}"
     seconds = (found["samples"] - 1) / found["sample_rate"]
