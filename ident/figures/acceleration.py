@@ -26,7 +26,10 @@ def acceleration_chart(shown: Mapping[str, HybridResult], look: Look) -> Chart:
         {"f": round(f, 4), "l": round(level, 4), "s": name}
         for name, one in kept.items() for f, level in zip(one.frequency, one.level, strict=True)
     ]  # fmt: skip
-    told = [f"{name}: at most {one.worst:+.2f} dB, at {one.worst_at:.3g} Hz" for name, one in kept.items()]
+    told = [
+        f"{name}: at most {f'{one.worst:+.2f}'.replace('-', '−')} dB, at {one.worst_at:.3g} Hz"
+        for name, one in kept.items()
+    ]
     with unchecked():
         colours = alt.Scale(domain=list(kept), range=list(look.series[: len(kept)]))
         x = alt.X("f:Q", axis=alt.Axis(title="Frequency (Hz)"), scale=alt.Scale(type="log", nice=False))
