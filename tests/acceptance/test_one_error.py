@@ -17,7 +17,7 @@ from ident.presets import PRESETS
 from ident.run import Run, Specimen
 from ident.words.percent import percent
 from ident.workflows import diagnose, identify
-from tests.conftest import FEW
+from tests.conftest import FEW, short_searches
 from tests.fit import rig
 from tests.fit.test_windows import cylinder
 from tests.presets.test_composed import force_loop
@@ -126,7 +126,8 @@ def test_one_fit_has_one_error(machine, full, request):
         pytest.skip("its like is among the others: run with --full")
     if set(MACHINES[machine][2]) <= FEW:
         request.getfixturevalue("few_effects")
-    matrix, fit = fitted(machine)
+    with short_searches(full):
+        matrix, fit = fitted(machine)
     said = {use: percent(error) for use, error in fit.error.items() if use != "held_out"}
     compared = compare(matrix, fit)
     assert {use: percent(error) for use, error in compared.error.items() if use in said} == said
