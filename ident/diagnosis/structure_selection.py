@@ -17,6 +17,7 @@ from ident.diagnosis.evidence.comparison import common_disturbance, gain
 from ident.diagnosis.evidence.probability import structure_probabilities
 from ident.diagnosis.fitted_model import FittedModel
 from ident.diagnosis.model_comparison import better
+from ident.diagnosis.operating_point import at_operating_point
 from ident.diagnosis.ranking import rank
 from ident.errors import Unusable
 from ident.fit.identification import Identification, StepwiseFit, completed
@@ -317,6 +318,7 @@ class _JudgedStructure:
     def helped(self, report: Report) -> _JudgedStructure:
         """The same with the effect of the catalogue that helps it most, as it is where none does.
 
+        One that integrates is helped about its operating point: see :mod:`ident.diagnosis.operating_point`.
         One that no simulation confirms helps nothing: it would make a sound model look worse than any other.
         """
         if not self.refit.finite:
@@ -325,9 +327,11 @@ class _JudgedStructure:
         def told(progress: Progress) -> None:
             report(replace(progress, stage="models with an effect", expected=()))
 
-        ranking = rank(self.models, self.refit, list(self.models.effects), told, thorough=False)
+        base = at_operating_point(self.models, self.refit)
+        others = [name for name in self.models.effects if name not in base.effects]
+        ranking = rank(self.models, base, others, told, thorough=False)
         refits = [one.refit for one in ranking if one.refit is not None and one.improves and one.refit.finite]
-        return replace(self, with_effect=min(refits, key=_held_out, default=None))
+        return replace(self, with_effect=min(refits, key=_held_out, default=base if base.effects else None))
 
     def structure(self, over: float | None, more: Message | None, probability: float | None) -> Structure:
         """What is told of it: its error over so many seconds, None for whole runs, and `more`, why it was taken."""
@@ -339,7 +343,7 @@ class _JudgedStructure:
             message("structure.parameters", count=self.parameters),
         ]
         if self.with_effect is not None:
-            facts.append(message("structure.effect", error=self.error, effect=self.with_effect.effects[-1]))
+            facts.append(message("structure.effect", error=self.error, effects=self.with_effect.effects))
         if probability is not None:
             facts.append(message("structure.probability", probability=probability))
         why = message("structure.facts", facts=facts) if more is None else message("structure", facts=facts, why=more)

@@ -210,7 +210,7 @@ STRUCTURES: Mapping[str, str] = {
     "structure.error": "held-out error {error:error}",
     "structure.error_over": "held-out error {error:error} over {seconds:.3g} s",
     "structure.parameters": "{count} parameters",
-    "structure.effect": "{error:error} with {effect:title}",
+    "structure.effect": "{error:error} with {effects:titles}",
     "structure.probability": "probability {probability:probability}",
     "structure.more_probable": "with one effect it is far more probable than the usual model",
     "structure.within": "the error is smaller with one effect, and no parameter is at its bound",

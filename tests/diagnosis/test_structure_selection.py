@@ -239,9 +239,11 @@ def test_a_cylinder_is_found_at_any_rate_of_samples(model):
 
 def test_an_effect_that_no_simulation_confirms_helps_no_model(monkeypatch):
     """Its error is infinite: taken with it, a sound model would be the worst of all."""
-    fitted, unsound = (SimpleNamespace(finite=finite, held_out=SimpleNamespace(error=0.3)) for finite in (True, False))
+    fitted, unsound = (
+        SimpleNamespace(finite=finite, effects=(), held_out=SimpleNamespace(error=0.3)) for finite in (True, False)
+    )
     offered = [SimpleNamespace(refit=unsound, improves=True)]
     monkeypatch.setattr(structure_selection, "rank", lambda *_args, **_kwargs: offered)
-    models = SimpleNamespace(effects={"dead_zone": None})
+    models = SimpleNamespace(effects={"dead_zone": None}, horizon=None)
     judged = structure_selection._JudgedStructure(models, 2, {}, fitted)
     assert judged.helped(silent).with_effect is None

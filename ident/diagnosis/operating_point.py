@@ -1,0 +1,25 @@
+"""The operating point of a machine that integrates: a constant of its drive, which drifts without end.
+
+Where a constant force or bias is missing, every window of a record is left with a drift, whatever else the model has.
+Structures are compared, and their effects ranked, about that point: beside a drift that none of them has, what each of
+them explains hardly shows.
+"""
+
+from __future__ import annotations
+
+from ident.diagnosis.candidate_models import CandidateModels
+from ident.diagnosis.fitted_model import FittedModel
+from ident.diagnosis.model_comparison import improves
+
+CONSTANTS = ("static_load", "null_bias")
+"""Effects that are a constant of what drives a machine: at its load, and at its valve or amplifier."""
+
+
+def at_operating_point(models: CandidateModels, base: FittedModel) -> FittedModel:
+    """The model with the constant that explains more, of a machine that is fitted over windows; else as it is."""
+    if models.horizon is None or not base.finite:
+        return base
+    known = [name for name in CONSTANTS if name in models.effects and name not in base.effects]
+    refits = [models.converged(models.refit((*base.effects, name), base.values)) for name in known]
+    good = [refit for refit in refits if refit.finite and improves(models, base, refit)]
+    return min(good, key=lambda refit: refit.held_out.error, default=base)
