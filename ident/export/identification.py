@@ -17,6 +17,7 @@ from ident.bench.model import Model
 from ident.bench.observed import Observed
 from ident.bench.speed_table import SPLINE, SpeedTable
 from ident.errors import Unusable
+from ident.export.bench_code import SIMULATION
 from ident.export.c_lines import comment, number
 from ident.export.identification_code import CODE
 
@@ -51,7 +52,7 @@ def as_identification(analysis: Analysis) -> str:
         table=",\n    ".join(_record(one, sum(len(each.parts) for each in seen[:i])) for i, one in enumerate(seen)),
         order="\n".join(f" *   {i} {comment(one.record.id)}" for i, one in enumerate(seen)),
         names="\n".join(f"#define SERVOIDENT_{name.upper()} {i}" for i, name in enumerate(QUANTITIES)),
-        quantities=len(QUANTITIES),
+        quantities=len(QUANTITIES), simulation=SIMULATION,
     )  # fmt: skip
 
 
