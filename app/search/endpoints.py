@@ -17,6 +17,6 @@ Text = Annotated[str, Query(max_length=200, description="Part of a serial number
 
 
 @router.get("", dependencies=[READERS])
-def search(here: Here, q: Text = "", limit: Annotated[int, Query(ge=1, le=200)] = 50) -> SearchView:
+def search_everything(here: Here, q: Text = "", limit: Annotated[int, Query(ge=1, le=200)] = 50) -> SearchView:
     """Actuators by serial number, name or batch; fits by name, tag, note or id; data sets by id."""
     return service.found(here, q, limit)
