@@ -4,8 +4,9 @@ python -m tests.blind.calibration --fit FILE …      rows of trials to fit to
 python -m tests.blind.calibration FILE …            rows of trials to judge by the numbers as they are
 
 A trial tells for each effect that was refitted, for "nothing" and for "unlisted", how probable it was said to be, and
-whether it is true. Each trial with something hidden is one more with the truth taken off the list: then something
-unlisted acts. What is said is judged by its mean against the share that is right, and by Spiegelhalter's z.
+whether it is true. Each trial with something hidden is one more with the truth taken off the list: then something unlisted acts.
+One with several hidden effects is one more with each of them off the list, and the others on it. What is said is judged
+by its mean against the share that is right, and by Spiegelhalter's z.
 """
 
 from __future__ import annotations
@@ -24,11 +25,11 @@ from scipy.optimize import minimize
 from ident.diagnosis.evidence.criteria import EVIDENCE_CRITERIA, EvidenceCriteria
 from ident.diagnosis.evidence.probability import NOTHING, SetGains, probabilities
 
-NUMBERS = ("learning_rate", "effect_prior", "unlisted_prior")
-"""Those that are fitted; the share of something unlisted follows from sets of several effects."""
-_OFF = "off the list"
+NUMBERS = ("learning_rate", "effect_prior", "unlisted_share", "unlisted_prior", "unlisted_beside_listed")
+"""Those that are fitted."""
+_OFF, _PART = "off the list", "one of several off the list"
 OFF_THE_LIST = 0.25
-"""Weight of a trial with its truth off the list: so something unlisted acts in one case of five."""
+"""Weight of a trial with its truth, or one of its effects, off the list: so something unlisted acts in one of five."""
 _LEAST = 1e-4  # a probability in a score: a program that said 0 of what is true would score without end
 BINS = (0.0, 0.01, 0.05, 0.2, 0.5, 0.8, 0.95, 0.99, 1.0)
 
@@ -55,6 +56,13 @@ class Case:
         if not self.hidden or len(left) < 2:
             return None
         return replace(self, sets=SetGains(left, self.sets.most), hidden=frozenset(), unlisted=True)
+
+    def without_one_effect(self) -> Iterator[Case]:
+        """The same with one of several hidden effects off the list, each in turn."""
+        for gone in sorted(self.hidden) if len(self.hidden) > 1 else ():
+            left = {of: gain for of, gain in self.sets.gains.items() if gone not in of}
+            if len(left) > 1:
+                yield replace(self, sets=SetGains(left, self.sets.most), hidden=self.hidden - {gone}, unlisted=True)
 
 
 def case(row: dict[str, Any]) -> Case | None:
@@ -87,13 +95,14 @@ def cases(files: Iterable[Path]) -> Iterator[Case]:
             yield found
             if (other := found.without_truth()) is not None:
                 yield replace(other, kind=_OFF)
+            yield from (replace(other, kind=_PART) for other in found.without_one_effect())
 
 
 def score(given: Sequence[Case], criteria: EvidenceCriteria) -> float:
     """Weighted mean over cases of −ln p of what is true, all statements together: less is better."""
     total, weights = 0.0, 0.0
     for one in given:
-        weight = OFF_THE_LIST if one.kind == _OFF else 1.0
+        weight = OFF_THE_LIST if one.kind in (_OFF, _PART) else 1.0
         weights += weight
         for _, p, true in one.stated(criteria):
             said = float(np.clip(p, _LEAST, 1 - _LEAST))

@@ -414,8 +414,8 @@ def test_probabilities_are_those_of_the_models_and_sum_to_one() -> None:
 
 def test_of_two_structures_that_explain_as_much_the_one_with_fewer_parameters_is_more_probable() -> None:
     """Each parameter is charged as an effect is; what gains more than that is more probable."""
-    assert structure_probabilities([10.0, 10.0], [3, 5])[0] > 0.93
-    assert structure_probabilities([0.0, 10.0], [3, 5])[1] > 0.75
+    assert structure_probabilities([10.0, 10.0], [3, 5])[0] > 0.8
+    assert structure_probabilities([0.0, 10.0], [3, 5])[1] > 0.65
     assert sum(structure_probabilities([0.0, 4.0, 5.0], [1, 2, 3])) == pytest.approx(1.0)
 
 
@@ -423,6 +423,7 @@ def test_several_effects_that_leave_only_noise_do_not_lose_to_something_unlisted
     """Three that gain all of 300 nats, each a hundred, are more probable than one thing that nobody lists."""
     found = probabilities(gaining(300.0, a=100.0, ab=200.0, abc=299.0))
     assert found.of(["a", "b", "c"]) > 0.9
+    assert found.unlisted < 0.1
 
 
 def test_probabilities_are_frozen() -> None:
@@ -431,7 +432,7 @@ def test_probabilities_are_frozen() -> None:
     assert (found.effects["a"], found.effects["b"], found.unlisted, found.nothing) == pytest.approx(FROZEN, abs=5e-4)
 
 
-FROZEN = (0.4938, 0.1542, 0.2879, 0.0673)
+FROZEN = (0.3728, 0.1859, 0.0798, 0.3834)
 
 
 def test_what_reaches_the_noise_passes_where_one_harmonic_is_all_there_is() -> None:

@@ -116,7 +116,7 @@ def found(share: float, losing: bool = False) -> Evidence:
     [
         (found(0.4), True, "It shows as", "chance"),
         (found(0.4), False, "no more than the best of all effects gains by chance", "It shows"),
-        (found(0.03), False, "explains 3 ± 4.2 % of the error above the noise floor", "chance"),
+        (found(0.03), False, "explains 3 ± 3.5 % of the error above the noise floor", "chance"),
         (found(0.4, losing=True), False, "The error rises on the second half of the records", "chance"),
     ],
 )

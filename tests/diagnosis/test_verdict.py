@@ -81,12 +81,16 @@ def test_a_group_is_told_once_and_never_with_what_is_dispensable():
 
 
 def test_two_lags_that_are_named_are_as_probable_as_both_together():
-    """By hand: ln w = η G − κ k, and with something unlisted η λ (60 − G) − κ_u more."""
+    """By hand: ln w = η G − κ k, and with something unlisted η λ (60 − G) − κ_u more, + δ with effects."""
     c = EVIDENCE_CRITERIA
     gains = SetGains({NOTHING: 0.0, frozenset({"lag"}): 40.0, frozenset({"lag", "delay"}): 58.0}, most=60.0)
     found = Findings(added=("lag", "delay"), lag_pairs=(("lag", "delay", "lead"),), residual=NOISE, set_gains=gains)
     alone = [math.exp(c.learning_rate * gain - c.effect_prior * count) for count, gain in enumerate((0.0, 40.0, 58.0))]
-    left = [math.exp(c.learning_rate * c.unlisted_share * most - c.unlisted_prior) for most in (60.0, 20.0, 2.0)]
+    charged = (c.unlisted_prior, *[c.unlisted_prior - c.unlisted_beside_listed] * 2)
+    left = [
+        math.exp(c.learning_rate * c.unlisted_share * most - charge)
+        for most, charge in zip((60.0, 20.0, 2.0), charged, strict=True)
+    ]
     unlisted = [w * more for w, more in zip(alone, left, strict=True)]
     both = (alone[2] + unlisted[2]) / (sum(alone) + sum(unlisted))
     verdict = conclude(found)

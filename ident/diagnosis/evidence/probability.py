@@ -4,10 +4,11 @@
     ln w = η (G + λ G_left) − κ k − κ_u       of the same with something unlisted, G_left what can still be gained
 
 Something unlisted explains everything else, and is charged for it by a share of its gain and by its prior: a listed
-effect has to come as far. So a model that only stands for what is missing loses to something unlisted. All gains are
-under one disturbance spectrum, with the model without any effect as its reference: then G + G_left is the same for all.
-η, κ, λ and κ_u were fitted on training seeds (docs/decisions/evidence.md) and are frozen: of what is said at p a share
-p is right.
+effect has to come as far. So a model that only imitates what is missing loses to something unlisted. A machine that
+lacks a listed effect more often lacks something unlisted, too: κ_u is smaller by δ where k > 0. All gains are under one
+disturbance spectrum, with the model without any effect as its reference: then G + G_left is the same for all. The five
+numbers were fitted on training seeds (docs/decisions/evidence.md) and are frozen: of what is said at p a share p is
+right.
 """
 
 from __future__ import annotations
@@ -81,7 +82,8 @@ def probabilities(sets: SetGains, criteria: EvidenceCriteria = EVIDENCE_CRITERIA
     remaining = np.maximum(sets.most - np.maximum(gains, 0.0), 0.0)
     counts = np.array([len(effects) for effects in sets.gains])
     alone = criteria.learning_rate * gains - criteria.effect_prior * counts
-    with_unlisted = alone + criteria.learning_rate * criteria.unlisted_share * remaining - criteria.unlisted_prior
+    charge = criteria.unlisted_prior - criteria.unlisted_beside_listed * (counts > 0)
+    with_unlisted = alone + criteria.learning_rate * criteria.unlisted_share * remaining - charge
     logs = np.array([alone, with_unlisted])
     weights = np.exp(logs - logs.max())
     weights /= weights.sum()
