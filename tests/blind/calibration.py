@@ -4,9 +4,9 @@ python -m tests.blind.calibration --fit FILE …      rows of trials to fit to
 python -m tests.blind.calibration FILE …            rows of trials to judge by the numbers as they are
 
 A trial tells for each effect that was refitted, for "nothing" and for "unlisted", how probable it was said to be, and
-whether it is true. Each trial with something hidden is one more with the truth taken off the list: then something unlisted acts.
-One with several hidden effects is one more with each of them off the list, and the others on it. What is said is judged
-by its mean against the share that is right, and by Spiegelhalter's z.
+whether it is true. Each trial with something hidden is one more with the truth taken off the list: then something
+unlisted acts. One with several hidden effects is one more with each of them off the list, and the others on it. What is said
+is judged by its mean against the share that is right, and by Spiegelhalter's z.
 """
 
 from __future__ import annotations
