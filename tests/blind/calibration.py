@@ -5,8 +5,8 @@ python -m tests.blind.calibration FILE …            rows of trials to judge by
 
 A trial tells for each effect that was refitted, for "nothing" and for "unlisted", how probable it was said to be, and
 whether it is true. Each trial with something hidden is one more with the truth taken off the list: then something
-unlisted acts. One with several hidden effects is one more with each of them off the list, and the others on it. What is said
-is judged by its mean against the share that is right, and by Spiegelhalter's z.
+unlisted acts. One with several hidden effects is one more with each of them off the list, and the others on it. What
+is said is judged by its mean against the share that is right, and by Spiegelhalter's z.
 """
 
 from __future__ import annotations
