@@ -8,7 +8,7 @@ import io
 import logging
 import os
 import sys
-from collections.abc import Callable, Generator, Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -83,17 +83,6 @@ The files of the browser stay together and go with their first; mypy takes a min
 
 OWN_SERVICE = "tests/browser/test_workbench.py"
 """Has a service of its own, and takes so long that it has a worker to itself."""
-
-
-@pytest.hookimpl(wrapper=True)
-def pytest_make_collect_report(collector: pytest.Collector) -> Generator[None, Any, Any]:
-    """Each worker begins at another folder or file: what one has compiled, with its assertions, the others read."""
-    report = yield
-    if isinstance(collector, pytest.Directory):
-        worker, workers = (os.environ.get(f"PYTEST_XDIST_WORKER{name}", "") for name in ("", "_COUNT"))
-        first = len(report.result) * int(worker.removeprefix("gw") or 0) // int(workers or 1)
-        report.result = [*report.result[first:], *report.result[:first]]
-    return report
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
