@@ -29,12 +29,19 @@ def page(answers: Sequence[Answer]) -> str:
 
 
 def renewed(text: str, answers: Iterable[Answer]) -> str:
-    """The page with the lines of these rows; those of the others stay."""
+    """The page with the lines of these rows; those of the others stay. An argument goes where no row needs it."""
+    answers = list(answers)
     lines = {one.row.name: line(cells(one)) for one in answers}
+    text = "\n\n".join(part for part in text.split("\n\n") if not _needless(part, answers))
     before = _count(list(states(text).values()))
     kept = [lines.get(entry.split(" | ")[0].removeprefix("| "), entry) for entry in text.split("\n")]
     made = "\n".join(kept)
     return made.replace(before, _count(list(states(made).values())))
+
+
+def _needless(part: str, answers: Iterable[Answer]) -> bool:
+    """Whether a part of a page is the argument of a row that has none any more."""
+    return any(part.startswith(f"**{one.row.name}.**") and not one.row.argument for one in answers)
 
 
 def _count(found: Sequence[str]) -> str:
