@@ -19,7 +19,7 @@ def at_operating_point(models: CandidateModels, base: FittedModel) -> FittedMode
     """The model with the constant that explains more, of a machine that is fitted over windows; else as it is."""
     if models.horizon is None or not base.finite:
         return base
-    known = [name for name in CONSTANTS if name in models.effects and name not in base.effects]
-    refits = [models.converged(models.refit((*base.effects, name), base.values)) for name in known]
+    constants = [name for name in CONSTANTS if name in models.effects and name not in base.effects]
+    refits = [models.converged(models.refit((*base.effects, name), base.values)) for name in constants]
     good = [refit for refit in refits if refit.finite and improves(models, base, refit)]
     return min(good, key=lambda refit: refit.held_out.error, default=base)

@@ -137,8 +137,8 @@ def _preferred(
     """
     if probable.get(first.machine, 1.0) < CRITERIA.structure.improbable:
         most = max(probable.values())
-        as_probable = (one for one in others if probable.get(one.machine, 0.0) > 0.5 * most)
-        return min(as_probable, key=lambda one: one.parameters), message("structure.more_probable")
+        as_probable = (model for model in others if probable.get(model.machine, 0.0) > 0.5 * most)
+        return min(as_probable, key=lambda model: model.parameters), message("structure.more_probable")
     within = [one for one in others if one.error < first.error and not one.at_bound]
     if first.at_bound and within:
         return _simplest(within), message("structure.within")

@@ -116,7 +116,7 @@ def test_a_fit_that_ran_out_of_its_budget_says_so_and_has_no_button_to_approve(s
     short = lab.fit(matrix, budget=1e-3).id
     page = service.get(f"/fits/{short}").text
     assert "The search ended at generation" in page
-    assert "its time budget ended the search" in page
+    assert "its time limit ended the search" in page
     assert "data-approve" not in page
     assert "data-approve" in service.get(f"/fits/{three[0]}").text
     assert service.post(f"/api/v1/fits/{short}/approve").status_code == 409

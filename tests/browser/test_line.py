@@ -22,7 +22,7 @@ def test_a_set_is_approved_judged_rechecked_and_withdrawn(page: Page, site: Serv
     expect(row.locator("td").last).to_contain_text("start token")
     serial = site.client.get(f"/fits/{fitted}").json()["serial"]
     page.goto(f"{site.address}/statistics?parameter=tau")
-    expect(page.locator("dl.facts")).to_contain_text("of model qian2014")
+    expect(page.locator("main dl.facts")).to_contain_text("of model qian2014")
     page.goto(f"{site.address}/regressions")
     page.fill("#serial", serial)
     page.click("form[data-regression] button")

@@ -163,7 +163,7 @@ def test_two_actuators_of_an_own_case_have_a_column_and_figures_each(page, site,
     section.get_by_label("Case", exact=True).select_option("own")
     section.get_by_label("Custom case").fill(BEAM)
     section.get_by_label("Controller", exact=True).select_option("none")
-    section.get_by_label("also map stability").check()
+    section.get_by_label("also compute a stability map").check()
     section.get_by_role("button", name="Run the simulation").click()
     answer = section.locator("#simulation")
     expect(answer.get_by_role("columnheader", name="right")).to_be_visible(timeout=story.LONG)

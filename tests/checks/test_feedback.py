@@ -104,7 +104,9 @@ def test_what_the_lab_says_counts_before_what_the_record_shows():
 
 
 def test_plain_output_error_is_refused_in_one_line():
-    with pytest.raises(Unusable, match=r"run one: a controller made this command .* give the controller's reference"):
+    with pytest.raises(
+        Unusable, match=r"run one: a controller computed this command .* give the controller's reference"
+    ):
         identify(alone(motor(1)), Settings(model="motor"))
     said = alone(replace(motor(1), closed_loop=False))
     assert identify(said, Settings(model="first_order", options=QUICK)).error["fit"] < 1.0

@@ -242,7 +242,7 @@ def test_retention_is_shown_and_confirmed(service, servoident):
     assert shown.stdout == "nothing is to go that is older than 30 days\n"
     found = json.loads(servoident("retention", *service.options, "--json", "-").stdout)
     wrong = servoident("retention", "--confirm", "0" * 64, *service.options)
-    assert (wrong.returncode, "other raw runs would go" in wrong.stderr) == (2, True)
+    assert (wrong.returncode, "the list of runs to delete has changed" in wrong.stderr) == (2, True)
     assert servoident("retention", "--confirm", found["digest"], *service.options).returncode == 0
     assert servoident("retention", "--show", "--confirm", found["digest"], *service.options).returncode == 2
 

@@ -224,7 +224,7 @@ def test_a_machine_that_was_only_stepped_gets_a_command_as_large_as_its_steps():
 
 def test_where_no_run_could_be_made_that_is_said(monkeypatch):
     monkeypatch.setattr("ident.design.proposal.candidate_runs", lambda *_: iter(()))
-    with pytest.raises(Unusable, match="stable in no run"):
+    with pytest.raises(Unusable, match="unstable in every run that could be proposed"):
         propose(question(confused()[1]), confused()[0])
 
 

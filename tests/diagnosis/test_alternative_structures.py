@@ -56,7 +56,7 @@ def test_without_mass_dry_friction_and_a_dead_zone_are_one_equation_in_every_mod
     assert light.model == "motor"
     assert {"dead_zone", "coulomb_friction"} <= {*light.verdict.effects, *light.verdict.indistinguishable[0]}
     assert ("first_order", ("dead_zone",), False) in told(light)
-    assert "cannot distinguish it from other models" in light.verdict.text
+    assert "cannot distinguish this model from others" in light.verdict.text
     assert type(light).from_json(light.to_json()).verdict == light.verdict
 
 

@@ -28,7 +28,7 @@ def test_another_gain_each_way_is_judged_over_whole_runs():
     assert diagnosis.verdict.effects == ("gain_asymmetry",)
     first, last = (rung.error["fit"] for rung in diagnosis.ladder)
     assert last < 1.5 * 2e-4 / np.std(matrix.runs[0].measured) < 0.1 * first
-    assert "errors over whole runs, where the fit was made over windows" in diagnosis.verdict.text
+    assert "These errors are over whole runs. The fit used windows of" in diagnosis.verdict.text
 
 
 @pytest.mark.usefixtures("few_effects")

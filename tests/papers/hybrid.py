@@ -169,7 +169,7 @@ def unknown_force() -> tuple[Measured, ...]:
     flat = inverse.left(given, r, 100.0, spring) / inverse.left(r, r, 100.0, spring)
     return (
         Measured(
-            "error with an isolator that nobody knows over that without",
+            "error with an isolator that the model does not know over that without",
             unknown.both_rms / known.both_rms,
             "",
             None,

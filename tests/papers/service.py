@@ -116,7 +116,7 @@ def approval() -> tuple[Measured, ...]:
     lines = [line for line in service().get(f"{API}/audit").json()["items"] if fit in json.dumps(line)]
     service().post(f"{API}/fits/{fit}/approve", json={"why": "again"})
     return (
-        counted("in force, then not", int(given is True) + int(taken is False), 2),
+        counted("approved, then not", int(given is True) + int(taken is False), 2),
         Measured("lines in the audit", len(lines), "", None, 2),
     )
 
@@ -148,7 +148,7 @@ def verdicts() -> tuple[Measured, ...]:
         told.append(service().get(f"{API}/actuators/SW-1/verdict").json()["verdict"] == wanted)
     service().put(f"{API}/limits/qian2014", json={"limits": {}})
     told.append(service().get(f"{API}/actuators/nobody/verdict").status_code == 404)
-    return (counted("verdicts: pass, fail, nobody", sum(told), 3),)
+    return (counted("verdicts: pass, fail, unknown serial", sum(told), 3),)
 
 
 @cache
@@ -343,7 +343,7 @@ ROWS = (
     Row("S9", "story", "one hidden: flow falls with the pressure", "–", "flat nonlinear chain, seed 750",
         one_hidden, long=True),
     Row("S10", "story", "the same in the browser", "–", "the story of the suite", in_the_browser, long=True),
-    Row("S11", "unknown terms", "a drift of the gain, which no list holds", "–", "flat chain with a drift, seed 2",
+    Row("S11", "unknown terms", "a drift of the gain, which is unknown to the library", "–", "flat chain with a drift, seed 2",
         outside_the_catalogue, long=True),
     Row("S12", "export", "C, MAT, FMU", "–", "eq. (10) as a polynomial", exports, long=True),
     Row("S13", "report", "page and PDF", "–", "first bytes", reports, long=True),
