@@ -29,8 +29,8 @@ anything struck, in each field but times and names. Disk-full tests need root; c
 need a C compiler.
 """
 TAIL = """
-*Lost* are jobs that were acknowledged and are missing, never end, or were cancelled without a request; *uploads lost* those
-that cannot be read any more; *orphaned* the raw uploads that no record names after `servoident tidy`. A job of a
+*Lost* are jobs that were acknowledged and are missing, never end, or were cancelled without a request; *uploads lost*
+those that cannot be read any more; *orphaned* the raw uploads that no record names after `servoident tidy`. A job of a
 lost worker has to run elsewhere within 15 s.
 
 `tests/faults/test_mixed_load.py` is the short form; `python -m tests --full tests/faults` has kills of a single fit
