@@ -119,8 +119,9 @@ def diagnose(
             named, choice = modelled(records, model if given is None else given.model, report, off)
     except TimeIsUp:
         _tell(
-            unfitted(records, replace(Settings(), model="", seed=seed, preprocessing=off), budget.taken), matrix, json
-        )
+            unfitted(records, replace(Settings(), model="", seed=seed, preprocessing=off), budget.taken), matrix, json,
+            time,
+        )  # fmt: skip
         return
     chosen = settings(named, effect, method, bounds, set_, load, seed, option, preprocessing=off, candidates=True)
     given = choice.made(chosen) if given is None else with_candidates_given(given, chosen.bounds, chosen.fixed)
@@ -136,10 +137,10 @@ def diagnose(
             choice.matrix, given, replace(chosen, custom=defined), most=most, custom=effects, report=report,
             seconds=time, budget=budget, found=follow, propose=propose,
         )  # fmt: skip
-    _tell(found, matrix, json)
+    _tell(found, matrix, json, time)
 
 
-def _tell(found: Diagnosis, matrix: Path, target: Path | None) -> None:
+def _tell(found: Diagnosis, matrix: Path, target: Path | None, seconds: float | None) -> None:
     """Keep the diagnosis, write it, and show it with the commands that come next."""
     kept = keep(found)
     if target is not None:
@@ -147,7 +148,7 @@ def _tell(found: Diagnosis, matrix: Path, target: Path | None) -> None:
     if target != STANDARD_OUTPUT:
         from app.cli.diagnosis_tables import show_diagnosis
 
-        show_diagnosis(found, matrix, target or (Path(LAST) if kept else None))
+        show_diagnosis(found, matrix, target or (Path(LAST) if kept else None), seconds)
 
 
 @contextmanager

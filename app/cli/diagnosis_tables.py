@@ -12,12 +12,12 @@ if TYPE_CHECKING:
     from ident.diagnosis.result import Diagnosis
 
 
-def show_diagnosis(found: Diagnosis, matrix: Path, file: Path | None) -> None:
+def show_diagnosis(found: Diagnosis, matrix: Path, file: Path | None, seconds: float | None = None) -> None:
     """Print a diagnosis: errors, ranking, ladder, suspects, verdict, and the commands that come next, as they are run.
 
-    `file` is where its JSON was written, None where it can be read nowhere again.
+    `file` is where its JSON was written, None where it can be read nowhere again; `seconds` is the time limit.
     """
-    from ident.diagnosis.recommended import next_command, next_run_command
+    from ident.diagnosis.next_commands import next_commands
 
     show(found.listings())
     console = output()
@@ -26,8 +26,6 @@ def show_diagnosis(found: Diagnosis, matrix: Path, file: Path | None) -> None:
 
         console.print(proposed_text(found.proposals), markup=False)
     if file is not None:
-        given = quote(str(file)), quote(str(matrix))
-        for command in (next_command(found, *given), next_run_command(found, *given)):
-            if command:
-                console.print(command, markup=False)
+        for command in next_commands(found, quote(str(file)), quote(str(matrix)), seconds):
+            console.print(command, markup=False)
     console.print(f"seed {found.seed}: {found.seconds:.2f} s")

@@ -10,7 +10,7 @@ from app.report.rows import budget_rows, candidate_rows, curve_rows, group_table
 from app.report.sheet import NOTHING_STATED, Sheet, facts
 from ident.checks.check import check
 from ident.custom.definition import preset_with
-from ident.diagnosis.recommended import next_command
+from ident.diagnosis.next_commands import next_command
 from ident.diagnosis.result import Diagnosis
 from ident.diagnosis.sentences import cannot_distinguish
 from ident.errors import Unusable

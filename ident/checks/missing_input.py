@@ -125,7 +125,8 @@ def _evidence(run: Run, way: Samples, motion: int, begins: Sequence[int], at_res
     least = 0.5 * min(float(way[begin : begin + motion].max()) for begin in begins)
     by_time = unit.removesuffix("/s") + "/s²" if unit.endswith("/s") else f"{unit}/{run.time_unit}"
     speed = least * run.sample_rate / motion, by_time
+    output = run.output if unit == "1" else f"{run.output} ({unit})"
     return message(
-        "missing_input", run=run.id, output=run.output, count=len(begins), start=begins[0] / run.sample_rate,
+        "missing_input", run=run.id, output=output, count=len(begins), start=begins[0] / run.sample_rate,
         unit=run.time_unit, share=float(np.mean(moved >= least)), speed=speed,
     )  # fmt: skip

@@ -15,7 +15,6 @@ from ident.fit.continued import settings_from
 from ident.fit.result import FitResult
 from ident.fit.settings import Settings
 from ident.fit.start import Start
-from ident.words.message import message, said
 from ident.words.number import count
 
 
@@ -73,29 +72,9 @@ def recommended(found: Diagnosis, terms: int | None = None) -> End:
     return ladder[-1]
 
 
-def next_command(found: Diagnosis, file: str = "D.json", matrix: str = "MATRIX") -> str:
-    """The command that makes the recommended fit, in sentences; "" where a diagnosis has nothing to add.
-
-    `file` is that of the diagnosis and `matrix` that of its data, both as a shell takes them.
-
-    Nor is there one where validation data contradict its effects, where a label is to be corrected first, or where an
-    earlier version did not tell what its refits ended with.
-    """
-    proposals = found.proposals or ()
-    contradicted = found.verdict.standing == "contradicted" and not proposals
-    if contradicted or found.verdict.suspects or (not proposals and not any(end.added for end in _rungs(found))):
-        return ""
-    end = recommended(found)
-    command = message("recommended", matrix=matrix, file=file, effects=end.added, error=end.error.get("fit"))
-    return said([command, *([message("recommended.terms")] if proposals else [])])
-
-
-def next_run_command(found: Diagnosis, file: str = "D.json", matrix: str = "MATRIX") -> str:
-    """The command that writes the proposed run, in a sentence; "" where none is proposed."""
-    if found.next_experiment is None:
-        return ""
-    in_question = found.verdict.effects or found.verdict.unexplained
-    return str(message("recommended.run" if in_question else "recommended.run_sharpens", matrix=matrix, file=file))
+def end_of_ladder(found: Diagnosis) -> tuple[str, ...]:
+    """What the last refit of the ladder has beyond the fitted model; nothing where no refit was told."""
+    return max((end.added for end in _rungs(found)), key=len, default=())
 
 
 def end_with(found: Diagnosis, effects: Sequence[str]) -> End | None:

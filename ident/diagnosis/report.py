@@ -96,11 +96,11 @@ def _text(selection: Selection, steps: Rungs, found: Findings, floor: float | No
     """The verdict in sentences."""
     models, verdict = selection.models, conclude(found)
     against = tuple(filter(None, map(contradiction, found.verify)))
-    repeats = in_time(lambda: models.floors.measured)
+    in_band = in_time(lambda: models.floors.in_band)
     fewer = None if against else better_with_fewer(steps)
     return verdict_text(
         found.added, verdict.indistinguishable, found.suspects, verdict.unexplained, steps[-1][1].errors,
-        selection.base.error, repeats is not False, floor, against, selection.complete, models.described,
+        selection.base.error, in_band is not False, floor, against, selection.complete, models.described,
         found.at_bound, fewer, steps[-1][1].unstable.get("verify", ()), verdict.probabilities,
         verdict.group_probabilities, selection.limit,
     )  # fmt: skip

@@ -256,6 +256,11 @@ class Diagnosis(Shown):
         return bool(self.missing_inputs) and self.complete and not self.candidates
 
     @property
+    def oscillates(self) -> bool:
+        """Whether a part of the error remains, and the machine oscillates by itself: no effect can stand for that."""
+        return bool(self.oscillation) and self.verdict.unexplained
+
+    @property
     def headline(self) -> str:
         """Its first line: the model that was fitted, and its error on each use of runs."""
         of = {use: self.baseline.error_of(use) for use in USES}

@@ -78,7 +78,7 @@ def evidence_figures(found: Evidence | None, effect: Effect, improves: bool) -> 
 
 def verdict_text(
     added: Sequence[str], groups: Sequence[tuple[str, ...]], suspects: Sequence[Suspect], unexplained: bool,
-    errors: Mapping[str, float | None], before: float, repeats: bool = True, floor: float | None = None,
+    errors: Mapping[str, float | None], before: float, in_band: bool = True, floor: float | None = None,
     against: Sequence[Contradiction] = (), complete: bool = True, described: Callable[[str], str] = title,
     bounded: Sequence[str] = (), fewer: tuple[float, Sequence[str]] | None = None, unstable: Sequence[str] = (),
     probabilities: Mapping[str, float] = MappingProxyType({}), group_probabilities: Sequence[float] = (),
@@ -86,7 +86,7 @@ def verdict_text(
 ) -> str:  # fmt: skip
     """The verdict in a few sentences, what speaks against it first.
 
-    Without `repeats` nobody knows how much noise lies in the command's band. Not `complete`, the search was stopped.
+    Not `in_band`, nobody knows how much noise lies in the band of the command. Not `complete`, the search was stopped.
     `described` tells what an effect is the first time that it is named; `bounded` are those whose strength ended at the
     bound of its search. `fewer` is the error on verify runs without the last of what was added, where it is
     smaller there; `unstable` are the verify runs on which the model is unstable with it. `probabilities` are those
@@ -99,13 +99,14 @@ def verdict_text(
         found.append(message("verdict.stopped"))
     if added:
         of_groups = dict(zip(map(tuple, groups), group_probabilities, strict=False))
-        if against:  # a probability knows nothing of validation data
+        if against:  # a probability knows nothing of validation data, and the error there is told already
             effects = [message("effect", names=[named(name)]) for name in added]
+            change = message("change", before=before, after=errors["fit"])
         else:
             effects = [_lacking(name, added, of_groups, probabilities, named) for name in added]
+            change = _change(before, errors, fewer, unstable)
         improbable = any(is_improbable(effect.values.get("probability"), probabilities) for effect in effects)
-        key = "verdict.partly" if against or unexplained else "verdict.may_lack" if improbable else "verdict.lacks"
-        found.append(message(key, effects=effects, change=_change(before, errors, fewer, unstable)))
+        found.append(_falls(added, effects, change, bool(against) or unexplained, improbable))
     elif not complete:
         found.append(message("verdict.unconfirmed", before=before))
     elif unexplained:
@@ -118,13 +119,33 @@ def verdict_text(
     found += [_group(group, added, named, unexplained) for group in groups]
     found += [message("verdict.label", run=one.run, what=one.what, evidence=one.evidence) for one in suspects]
     if unexplained:
-        examined = complete and limit is None
-        found.append(_probable("verdict.unlisted" if examined else "verdict.remains", "unlisted", probabilities))
-        if limit is not None:
-            found.append(message("verdict.limited", limit=limit))
-        if not repeats:
-            found.append(message("verdict.not_repeated"))
+        found += _remaining(complete, limit, probabilities, in_band, floor)
     return said(found)
+
+
+def _falls(
+    added: Sequence[str], effects: Sequence[Message], change: Message, partly: bool, improbable: bool
+) -> Message:  # fmt: skip
+    """That the error falls with what was added, and what that says of the model."""
+    if partly:
+        return message("verdict.partly", effects=effects, change=change)
+    if improbable:
+        return message("verdict.may_lack", effects=effects, change=change)
+    if any(effect.key == "effect.one_of" for effect in effects):
+        return message("verdict.lacks_one_of", effects=effects, change=change, added=added)
+    return message("verdict.lacks", effects=effects, change=change)
+
+
+def _remaining(
+    complete: bool, limit: int | None, probabilities: Mapping[str, float], in_band: bool, floor: float | None
+) -> Iterator[Message]:  # fmt: skip
+    """That something is left, and why it may be noise or a further effect."""
+    examined = complete and limit is None
+    yield _probable("verdict.unlisted" if examined else "verdict.remains", "unlisted", probabilities)
+    if limit is not None:
+        yield message("verdict.limited", limit=limit)
+    if not in_band:
+        yield message("verdict.not_repeated_floor_unknown" if floor is None else "verdict.not_repeated")
 
 
 _PROBABLE: Mapping[str, str] = {
@@ -146,30 +167,30 @@ def _lacking(
     named: Callable[[str], str],
 ) -> Message:  # fmt: skip
     """An effect and its probability; of a group all that may be meant, and that of the group."""
-    group = next((group for group in of_groups if name in group and not _has_two(group, added)), ())
+    group = next((group for group in of_groups if name in group and not has_two(group, added)), ())
     if not group:
         return _probable("effect", name, probabilities, names=[named(name)])
     names = [name, *(other for other in group if other != name)]
-    return message("effect.probable", names=list(map(named, names)), probability=of_groups[group])
+    return message("effect.one_of", names=list(map(named, names)), probability=of_groups[group])
 
 
 def _group(group: Sequence[str], added: Sequence[str], named: Callable[[str], str], unexplained: bool) -> Message:
     """That a group cannot be seen apart, and by how much its refits differ."""
-    if _has_two(group, added):
+    if has_two(group, added):
         key = "verdict.two_unexplained" if unexplained else "verdict.two"
     else:
         key = "verdict.group_unexplained" if unexplained else "verdict.group"
     return message(key, group=list(map(named, group)))
 
 
-def _has_two(group: Sequence[str], added: Sequence[str]) -> bool:
+def has_two(group: Sequence[str], added: Sequence[str]) -> bool:
     """Whether two of a group were added, which stand for two others as well."""
     return len({*group} & {*added}) == 2
 
 
 def cannot_distinguish(group: Sequence[str], added: Sequence[str]) -> str:
     """What data cannot do of a group of effects of which one was added, or two that stand for two others as well."""
-    return str(message("group.two" if _has_two(group, added) else "group", group=list(map(title, group))))
+    return str(message("group.two" if has_two(group, added) else "group", group=list(map(title, group))))
 
 
 def _change(

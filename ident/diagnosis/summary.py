@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import Any
 
 from ident.diagnosis.evidence.probability import is_improbable
 from ident.diagnosis.result import Diagnosis, Suspect
+from ident.diagnosis.sentences import has_two
 from ident.words.message import Message, message
 from ident.words.run_name import run_name
 from ident.words.shown import in_brief
@@ -23,14 +25,14 @@ def summary(found: Diagnosis) -> tuple[str, ...]:
 
 def summary_messages(found: Diagnosis) -> tuple[Message, Message, Message]:
     """The same as messages."""
-    return _missing(found), _error(found), _next(found)
+    return _missing(found), _error(found), next_step(found)
 
 
 def _missing(found: Diagnosis) -> Message:
     verdict = found.verdict
     if found.lacks_input:
         return message("summary.missing_input", run=found.missing_inputs[0]["run"])
-    if _oscillates(found):
+    if found.oscillates:
         return message("summary.oscillation", evidence=found.oscillation[0]["evidence"])
     if verdict.effects:
         named = [_named(found, name) for name in verdict.effects]
@@ -40,15 +42,10 @@ def _missing(found: Diagnosis) -> Message:
     if verdict.suspects:
         return message("summary.label", run=verdict.suspects[0].run)
     if not found.complete:
-        return message("summary.stopped")
+        return message("summary.stopped" if found.candidates else "summary.unexamined")
     if verdict.unexplained:
         return _probable(found, "unlisted", "summary.unlisted", "summary.unlisted_probable")
     return _probable(found, "nothing", "summary.nothing", "summary.nothing_probable")
-
-
-def _oscillates(found: Diagnosis) -> bool:
-    """Whether a part of the error remains, and the machine oscillates by itself: no effect can stand for that."""
-    return bool(found.oscillation) and found.verdict.unexplained
 
 
 def _missing_and_helping(found: Diagnosis, named: Sequence[Message]) -> Message:
@@ -96,6 +93,8 @@ def _named(found: Diagnosis, name: str) -> Message:
     if probability is None:
         return _strong(found, name)
     names = _names(found, name)
+    if len(names) > 1 and not has_two(_group(found, name), found.verdict.effects):
+        return message("effect.one_of", names=names, probability=probability)
     strength = _strength(found, name) if len(names) == 1 else None
     if strength is None:
         return message("effect.probable", names=names, probability=probability)
@@ -145,14 +144,15 @@ def _error(found: Diagnosis) -> Message:
     return message("summary.change", use=use, before=before, after=after, floor=floor)
 
 
-def _next(found: Diagnosis) -> Message:
+def next_step(found: Diagnosis) -> Message:
+    """What to do next."""
     verdict = found.verdict
     if found.lacks_input:
         return message("next.input")
-    if _oscillates(found):
+    if found.oscillates:
         return message("next.oscillation", runs=[run_name(str(swing["run"])) for swing in found.oscillation])
     if verdict.suspects:
-        return _correct(verdict.suspects[0])
+        return _correct(verdict.suspects[0], verdict.effects)
     if not found.complete:
         return message("next.time")
     if verdict.standing == "contradicted":
@@ -162,7 +162,7 @@ def _next(found: Diagnosis) -> Message:
     if verdict.indistinguishable and found.next_experiment is not None:
         return message("next.distinguish", group=verdict.indistinguishable[0])
     if verdict.unexplained and found.max_effects and len(verdict.effects) >= found.max_effects:
-        return message("next.more", effects=verdict.effects, most=2 * found.max_effects)
+        return message("next.more", most=2 * found.max_effects)
     if verdict.unexplained and verdict.effects:
         return message("next.add_and", effects=verdict.effects, then=_then(found))
     if verdict.unexplained:
@@ -170,12 +170,17 @@ def _next(found: Diagnosis) -> Message:
     return message("next.add", effects=verdict.effects) if verdict.effects else message("next.use")
 
 
-def _correct(suspect: Suspect) -> Message:
-    """The label to correct, with its value and that of the data where both are known."""
+def _correct(suspect: Suspect, effects: Sequence[str]) -> Message:
+    """The label to correct, with its value and that of the data where both are known, and what is missing beside it."""
     if suspect.stated is None or suspect.found is None:
+        if effects:
+            return message("next.label_and", run=suspect.run, effects=effects)
         return message("next.label", run=suspect.run)
     stated, found = (suspect.stated, suspect.unit), (suspect.found, suspect.unit)
-    return message("next.label_value", run=suspect.run, what=suspect.what, stated=stated, found=found)
+    values: dict[str, Any] = {"run": suspect.run, "what": suspect.what, "stated": stated, "found": found}
+    if effects:
+        return message("next.label_value_and", effects=effects, **values)
+    return message("next.label_value", **values)
 
 
 def _then(found: Diagnosis) -> list[Message]:

@@ -9,7 +9,7 @@ from importlib.metadata import version
 from ident.checks.missing_input import MissingInput
 from ident.checks.self_oscillation import SelfOscillation
 from ident.diagnosis.result import NO_ERRORS, Baseline, Diagnosis, Rung, Verdict
-from ident.diagnosis.stages import EFFECTS, LATER, not_looked_at
+from ident.diagnosis.stages import EFFECTS, LATER
 from ident.fit.result import FitResult
 from ident.fit.settings import Settings
 from ident.matrix import Matrix
@@ -87,7 +87,7 @@ def _told(
         baseline=baseline,
         noise_floor=floor,
         candidates=(),
-        verdict=Verdict(unexplained=True, text=" ".join((str(why), *not_looked_at(_STAGES)))),
+        verdict=Verdict(unexplained=True, text=str(why)),
         proposals=(),
         complete=False,
         not_looked_at=_STAGES,

@@ -47,10 +47,8 @@ def noise_floor(run: Run, band: float) -> float | None:
     return float(np.sqrt(density * nyquist) / np.std(run.measured))
 
 
-def _told_by(run: Run) -> float:
-    """How many independent samples tell the noise of a run without a repeat."""
-    periodic = "command" in run.channels and fundamental(run.command, run.sample_rate) is not None
-    return run.length * (EFFICIENCY if periodic else _UPPER_HALF)
+def _is_periodic(run: Run) -> bool:
+    return "command" in run.channels and fundamental(run.command, run.sample_rate) is not None
 
 
 def by_spectrum(runs: Sequence[Run], band: float) -> list[float | None]:
@@ -64,13 +62,15 @@ class Floors:
 
     `degrees_of_freedom` is the number of independent samples that tell it, `independent_share` the share of a run's
     samples that are independent where there is nothing but noise; `measured` is true where repeats tell it, not the
-    spectra.
+    spectra. `in_band` is true where it is told of the frequencies of the command, too: by repeats, or by the periods
+    of periodic commands.
     """
 
     by_run: Mapping[str, float | None]
     degrees_of_freedom: float
     independent_share: float = 1.0
     measured: bool = False
+    in_band: bool = False
 
     def times(self, factors: Mapping[str, float]) -> Floors:
         """The floors of signals in which the noise of each run is so many times as large."""
@@ -110,14 +110,17 @@ def noise_floors(runs: Sequence[Run], band: float, left_out: Collection[str] = (
         min(part.degrees_of_freedom for part in parts),
         min(part.independent_share for part in parts),
         measured=all(part.measured for part in parts),
+        in_band=all(part.in_band for part in parts),
     )
 
 
 def _of_one_output(runs: Sequence[Run], pairs: Sequence[Repeat], band: float) -> Floors:
     if not pairs:
-        degrees_of_freedom = sum(_told_by(run) for run in runs if run.use == "fit")
+        fitted = [(run.length, _is_periodic(run)) for run in runs if run.use == "fit"]
+        degrees_of_freedom = sum(length * (EFFICIENCY if periodic else _UPPER_HALF) for length, periodic in fitted)
+        in_band = bool(fitted) and all(periodic for _, periodic in fitted)
         seen = zip(runs, by_spectrum(runs, band), strict=True)
-        return Floors({run.id: floor for run, floor in seen}, max(degrees_of_freedom, 1.0))
+        return Floors({run.id: floor for run, floor in seen}, max(degrees_of_freedom, 1.0), in_band=in_band)
     differences = [pair.difference() for pair in pairs]
     degrees_of_freedom = sum(independent_samples(difference) for difference in differences)
     powers = np.array([0.5 * np.var(difference) for difference in differences])
@@ -128,7 +131,8 @@ def _of_one_output(runs: Sequence[Run], pairs: Sequence[Repeat], band: float) ->
         steady = like_transducer(sizes, by_spectrum(runs, band))
     floors = np.full(len(runs), np.sqrt(np.median(shares))) if steady is False else np.sqrt(np.median(powers)) / sizes
     by_run = {run.id: float(floor) for run, floor in zip(runs, floors, strict=True)}
-    return Floors(by_run, degrees_of_freedom, degrees_of_freedom / sum(map(len, differences)), measured=True)
+    share = degrees_of_freedom / sum(map(len, differences))
+    return Floors(by_run, degrees_of_freedom, share, measured=True, in_band=True)
 
 
 def like_transducer(sizes: Array, floors: Sequence[float | None]) -> bool | None:

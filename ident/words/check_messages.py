@@ -79,8 +79,9 @@ CHECKS: Mapping[str, str] = {
         "the sample rate of {run:run} is too low: {share:share} of the step response happens within {samples} samples. "
         "Use at least {least:.3g} Hz",
     "missing_input":
-        "in {run:run} the {output} began to move {count} times while it and every input rested, first at {start:.4g} "
-        "{unit}; with the inputs at rest it moves faster than {speed:quantity} in {share:percent} of the samples",
+        "in {run:run} the {output} started to move {count} times although no recorded input moved, first at "
+        "{start:.4g} {unit}; in {share:percent} of the samples in which all inputs rested it moved faster than "
+        "{speed:quantity}, half the speed of the slowest of these starts",
     "check.missing_input":
         "{evidence}. An input is not recorded: add its channel, or keep only the rows in which it rests",
     "oscillation.at_rest":

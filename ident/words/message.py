@@ -13,7 +13,7 @@ from typing import Any
 
 from ident.words.engineering import quantity
 from ident.words.error import error_said, unstable_on
-from ident.words.listed import all_of, first_of
+from ident.words.listed import all_of, first_of, one_of
 from ident.words.messages import MESSAGES
 from ident.words.number import count
 from ident.words.percent import percent
@@ -81,8 +81,9 @@ KINDS: Mapping[str, Callable[[Any], str]] = {
     "degrees": lambda angle: "none" if angle is None else f"{angle:.3g}°",
     "titles": lambda names: all_of(list(map(title, names))),
     "all": lambda values: all_of(_strings(values)),
-    "or": lambda values: " or ".join(_strings(values)),
+    "or": lambda values: one_of(_strings(values)),
     "listed": lambda values: ", ".join(_strings(values)),
+    "words": lambda values: " ".join(_strings(values)),
     "terms": lambda values: "; ".join(_strings(values)),
     "them": lambda values: "it" if len(values) == 1 else "them",
 }

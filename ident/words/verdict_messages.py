@@ -17,6 +17,7 @@ SUMMARY: Mapping[str, str] = {
         "{effects:them}.",
     "summary.label": "The label of {run:run} looks wrong: correct it before you conclude what is missing.",
     "summary.stopped": "Nothing was found yet: the search was stopped early.",
+    "summary.unexamined": "Nothing was examined: there was no time for it.",
     "summary.unlisted": "Missing: something that no effect in the library explains.",
     "summary.unlisted_probable":
         "Missing: something that no effect in the library explains (probability {probability:probability}).",
@@ -31,20 +32,27 @@ SUMMARY: Mapping[str, str] = {
         "The error on {use:data} goes from {before:error} to {after:error}; the noise floor is {floor:percent}.",
     "summary.change_floor_unknown":
         "The error on {use:data} goes from {before:error} to {after:error}; the noise floor is not known.",
-    "next.label": "Next: correct the label of {run:run}, and fit again.",
+    "next.label": "Next: correct the label of {run:run} in matrix.yaml, then diagnose again.",
+    "next.label_and":
+        "Next: correct the label of {run:run} in matrix.yaml, then diagnose again: {effects:titles} may still be "
+        "missing.",
     "next.input":
-        "Next: add the channel of the missing input, or leave out the rows in which the output moves by itself, and "
-        "fit again.",
+        "Next: record the missing input and add its channel to matrix.yaml, or leave out the rows in which the output "
+        "moves by itself (rows in matrix.yaml). Then diagnose again.",
     "next.oscillation": "Next: lower the gain of the loop, or leave {runs:all} out of the fit, and fit again.",
     "next.label_value":
-        "Next: correct the label of {run:run}, and fit again. Its {what} is stated as {stated:quantity}; the data say "
-        "{found:quantity}.",
-    "next.time": "Next: search again with more time.",
+        "Next: correct the {what} of {run:run} in matrix.yaml, then diagnose again. It is stated as "
+        "{stated:quantity}; the data say {found:quantity}.",
+    "next.label_value_and":
+        "Next: correct the {what} of {run:run} in matrix.yaml, then diagnose again: {effects:titles} may still be "
+        "missing. The {what} is stated as {stated:quantity}; the data say {found:quantity}.",
+    "next.time": "Next: search again with more time (--time, in s).",
     "next.compare":
-        "Next: do not add {effect:title} yet. Compare the validation runs with and without it: the machine may differ "
-        "between the runs.",
-    "next.more": "Next: add {effects:them}, and search again with more effects (--max-effects {most}).",
-    "next.distinguish": "Next: record the proposed run, which distinguishes {group:titles}.",
+        "Next: do not add {effect:title} yet. Compare the fit with it and the fit without it on each validation run: "
+        "the error rises only on some of them if these are of another machine.",
+    "next.more": "Next: search again with up to {most} effects in all (--max-effects {most}).",
+    "next.distinguish":
+        "Next: record the proposed run, which distinguishes {group:titles}. Then diagnose again.",
     "next.add_and": "Next: add {effects:them}. Then {then:or}.",
     "next.then": "Next: {then:or}.",
     "then.terms": "look at the proposed terms",
@@ -59,6 +67,7 @@ EFFECTS: Mapping[str, str] = {
     "effect": "{names:or}",
     "effect.strength": "{names:or} ({strength:estimate})",
     "effect.probable": "{names:or} (probability {probability:probability})",
+    "effect.one_of": "{names:or} (one of them: probability {probability:probability})",
     "effect.strength_probable": "{names:or} ({strength:estimate}, probability {probability:probability})",
     "effect.in_place": "{named} in place of {others:titles}",
     "machine": "{machine}",
@@ -83,10 +92,10 @@ VERDICT: Mapping[str, str] = {
     "verdict.stopped":
         "The search was stopped early: other missing effects, and alternatives to those found, were not examined.",
     "verdict.lacks": "The model lacks {effects:all}: with {effects:them} the error falls {change}.",
+    "verdict.lacks_one_of": "The model lacks {effects:all}: with {added:titles} the error falls {change}.",
     "verdict.may_lack":
         "The error falls {change} with {effects:all}. More probably this has another cause, or is chance.",
-    "verdict.partly":
-        "A part of the error on estimation data is explained by {effects:all}: the error falls {change}.",
+    "verdict.partly": "With {effects:all} the error on estimation data falls {change}.",
     "verdict.unconfirmed": "No effect was confirmed that lowers the error of {before:error}.",
     "verdict.white":
         "Nothing seems to be missing: the residual, {before:error}, is white. The noise floor is not known.",
@@ -115,28 +124,31 @@ VERDICT: Mapping[str, str] = {
     "verdict.two_unexplained":
         "These data cannot tell which two of these are present: {group:listed}. Their refits differ by less than "
         "chance, or than the unexplained residual.",
-    "verdict.label": "The label of {run:run} looks wrong ({what}): {evidence}.",
+    "verdict.label": "The label of {run:run} in matrix.yaml looks wrong ({what}): {evidence}.",
     "verdict.unlisted": "Something remains that no effect in the library explains.",
     "verdict.unlisted_probable":
         "Something remains that no effect in the library explains (probability {probability:probability}).",
     "verdict.remains": "Part of the error remains unexplained.",
     "verdict.remains_probable":
         "Part of the error remains unexplained (probability {probability:probability}).",
-    "verdict.limited": "The search was limited to {limit:effects} (--max-effects). More effects may explain this part.",
+    "verdict.limited":
+        "The search was limited to {limit:effects} in all (--max-effects). More effects may explain the rest.",
     "verdict.not_repeated":
-        "No run was recorded twice with the same command, so the noise in the band of the command is not known: part "
-        "of the error may be this noise.",
+        "The noise floor was measured only at frequencies above those of the command, because no run was recorded "
+        "twice. Record one run twice with the same command to learn how much of the error is noise.",
+    "verdict.not_repeated_floor_unknown":
+        "Record one run twice with the same command to learn how much of the error is noise.",
     "group": "These data cannot distinguish {group:all}.",
     "group.two": "These data cannot tell which two of these are present: {group:listed}.",
     "contradicted.rises":
-        "With {named} the error on validation data rises from {before:error} to {after:error}: this effect may only "
-        "imitate another one.",
+        "With {named} the error on validation data rises from {before:error} to {after:error}: either it only "
+        "imitates something else, or the machine was different in these runs.",
     "contradicted.rises_by":
         "With {named} the error on validation data rises from {before:error} to {after:error} ({deviations:.1f} "
-        "standard errors): this effect may only imitate another one.",
+        "standard errors): either it only imitates something else, or the machine was different in these runs.",
     "contradicted.unstable":
-        "With {named} the model is {runs:unstable}; without, the error on validation data is {before:error}. This "
-        "effect may only imitate another one.",
+        "With {named} the model is {runs:unstable}; without, the error on validation data is {before:error}. "
+        "Either it only imitates something else, or the machine was different in these runs.",
     "alone.rises":
         "With {equation}, and without the terms after it, the error on validation data rises from {before:error} to "
         "{after:error}.",
@@ -228,9 +240,11 @@ STRUCTURES: Mapping[str, str] = {
 
 SEARCH: Mapping[str, str] = {
     "verdict.unfitted":
-        "The search was stopped early: there was no time to fit a model. Give more time (--time), or a fit (--fit).",
+        "The search was stopped early: there was no time to fit a model. Give it more "
+        "time (--time, in s), or a fit (--fit).",
     "verdict.unranked":
-        "The search was stopped early: there was no time to examine any effect. Give more time (--time).",
+        "The search was stopped early: there was no time to examine any effect. Give it more "
+        "time (--time, in s).",
     "stage.no_time": "There was no time for the {stage}.",
     "stage.failed": "The stage '{stage}' failed: {why}. What was found before it is valid.",
     "stage.unusable": "{error}",
@@ -254,9 +268,30 @@ SEARCH: Mapping[str, str] = {
     "recommended":
         "`servoident fit {matrix} --start {file}` makes the fit with {effects:titles}. It begins where "
         "the diagnosis ended, at an error of {error:percent}.",
-    "recommended.run": "`servoident next {matrix} --diagnosis {file} --out next-run` writes the proposed run.",
-    "recommended.run_sharpens":
-        "`servoident next {matrix} --diagnosis {file} --out next-run` writes a run that determines the "
+    "recommended.one_of":
+        "`servoident fit {matrix} --start {file}` makes the fit with {effects:titles}; {taken:title} is one of those "
+        "that these data cannot distinguish. It begins where the diagnosis ended, at an error of {error:percent}.",
+    "recommended.compare":
+        "`servoident fit {matrix} {options:words} --json without.json` makes the fit without {effects:titles}, "
+        "`servoident fit {matrix} --start {file} --json with.json` the fit with {effects:them}, and "
+        "`servoident compare {matrix} without.json with.json` compares the two.",
+    "recommended.time":
+        "`servoident diagnose {matrix} --time {seconds}` searches again for up to {seconds} s. Repeat your other "
+        "options with it.",
+    "recommended.more":
+        "`servoident diagnose {matrix} --max-effects {most}` searches again for up to {most} effects in all. Repeat "
+        "your other options with it.",
+    "recommended.run":
+        "`servoident next {matrix} --diagnosis {file} --out next-run` writes the proposed run, which determines the "
+        "parameters better.",
+    "recommended.run_distinguishes":
+        "`servoident next {matrix} --diagnosis {file} --out next-run` writes the proposed run, which distinguishes "
+        "{group:titles}.",
+    "recommended.run_differs":
+        "`servoident next {matrix} --diagnosis {file} --out next-run` writes the proposed run, on which the best "
+        "effects of the ranking differ most.",
+    "recommended.run_optional":
+        "Optional: `servoident next {matrix} --diagnosis {file} --out next-run` writes a run that determines the "
         "parameters better.",
     "recommended.terms": "--terms N takes the first N of the proposed terms, 0 none.",
     "run.next": "Run a {conditions}.",

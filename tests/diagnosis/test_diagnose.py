@@ -185,7 +185,7 @@ def test_what_the_catalogue_does_not_hold_is_called_unexplained(full):
     found = diagnose(matrix_of(records, PLANT), **little(full))
     assert found.ladder[0].error["fit"] > 1.5 * found.noise_floor["fit"]
     assert found.verdict.unexplained
-    assert "No run was recorded twice with the same command" in found.verdict.text
+    assert "no run was recorded twice. Record one run twice" in found.verdict.text
 
 
 @pytest.mark.usefixtures("few_effects")

@@ -12,8 +12,8 @@ import numpy as np
 import pytest
 
 from ident.custom.definition import read_effect
-from ident.diagnosis.recommended import End, next_command, next_run_command, recommended, settings_after
-from ident.diagnosis.result import Diagnosis, NextRun, Rung, Suspect, Verdict
+from ident.diagnosis.recommended import End, recommended, settings_after
+from ident.diagnosis.result import Diagnosis
 from ident.errors import Unusable
 from ident.fit.result import FitResult
 from ident.fit.settings import Settings
@@ -148,26 +148,6 @@ def test_what_a_diagnosis_did_not_refit_is_refused_with_what_it_did(chosen, said
     with pytest.raises(Unusable) as refused:
         settings_after(found, **chosen)
     assert said in str(refused.value)
-
-
-def test_the_command_that_comes_next_names_the_model_its_error_and_the_file():
-    found = stored(STORED[-1])[1]
-    told = next_command(found, "found.json")
-    assert told.startswith("`servoident fit MATRIX --start found.json` makes the fit with ")
-    assert "--terms N" in told
-    assert next_run_command(replace(found, next_experiment=None)) == ""
-    proposed = NextRun(amplitude=1e-3, signal="blwn", frequency=10.0, seconds=5.0, sample_rate=1000.0)
-    run = next_run_command(replace(found, next_experiment=proposed), "found.json")
-    assert run == "`servoident next MATRIX --diagnosis found.json --out next-run` writes the proposed run."
-    sharper = replace(found, next_experiment=proposed, verdict=Verdict())
-    assert next_run_command(sharper).endswith("writes a run that determines the parameters better.")
-    assert next_command(replace(found, verdict=replace(found.verdict, suspects=(Suspect("A"),)))) == ""
-    nothing = replace(found, proposals=(), ladder=found.ladder[:1])
-    assert next_command(nothing) == ""
-    earlier = replace(found, proposals=(), ladder=tuple(replace(rung, parameters={}) for rung in found.ladder))
-    assert next_command(replace(earlier, ladder=(*earlier.ladder, Rung(added="dead_zone")))) == ""
-    with pytest.raises(Unusable, match="holds no refit"):
-        recommended(earlier)
 
 
 def definition_with(shape: dict) -> dict:

@@ -50,7 +50,8 @@ def test_an_effect_of_a_group_is_said_with_the_others_and_the_probability_of_the
     groups, single = [("backlash", "spool_stiction")], {"spool_stiction": 0.6, "backlash": 0.36, "dead_zone": 0.97}
     text = verdict_text(("spool_stiction", "dead_zone"), groups, (), False, {"fit": 0.01}, 0.2, probabilities=single,
                         group_probabilities=[0.96])  # fmt: skip
-    assert "lacks spool stiction or backlash (probability 96 %) and dead zone (probability 97 %)" in text
+    assert "lacks spool stiction or backlash (one of them: probability 96 %) and dead zone (probability 97 %)" in text
+    assert ": with spool stiction and dead zone the error falls" in text
     doubtful = {"dead_zone": 0.04, "nothing": 0.95, "unlisted": 0.01}
     text = verdict_text(("dead_zone",), (), (), False, {"fit": 0.19}, 0.2, probabilities=doubtful)
     assert "lacks" not in text
@@ -61,7 +62,32 @@ def test_where_no_more_effects_could_be_added_it_is_not_said_that_none_explains_
     said = [verdict_text(("dead_zone",), (), (), True, {"fit": 0.1}, 0.2, limit=limit) for limit in (None, 1)]
     assert "no effect in the library explains" in said[0]
     assert "no effect in the library" not in said[1]
-    assert "The search was limited to 1 effect (--max-effects). More effects may explain this part." in said[1]
+    assert "The search was limited to 1 effect in all (--max-effects). More effects may explain the rest." in said[1]
+
+
+def test_what_validation_data_contradict_is_told_by_the_errors_on_both_data():
+    against = [Contradiction("backlash", 0.0107, 0.0239, 52.1)]
+    text = verdict_text(("backlash",), (), (), False, {"fit": 0.00499, "verify": 0.0239}, 0.0173, against=against)
+    assert text == (
+        "With backlash the error on validation data rises from 1.07 % to 2.39 % (52.1 standard errors): either it only "
+        "imitates something else, or the machine was different in these runs. With backlash the error on estimation "
+        "data falls from 1.73 % to 0.499 %."
+    )
+
+
+@pytest.mark.parametrize(
+    ("in_band", "floor", "said"),
+    [
+        (False, 0.005, "The noise floor was measured only at frequencies above those of the command"),
+        (False, None, "Record one run twice with the same command to learn"),
+        (True, 0.005, ""),
+    ],
+)
+def test_where_the_noise_floor_was_measured_is_said_where_it_is_not_that_of_the_whole_error(in_band, floor, said):
+    text = verdict_text((), (), (), True, {"fit": 0.07}, 0.07, in_band=in_band, floor=floor)
+    assert said in text
+    assert ("Record one run twice" in text) is not in_band
+    assert ("The noise floor was measured" in text) is (not in_band and floor is not None)
 
 
 @pytest.mark.parametrize("against", [True, False])
@@ -72,11 +98,10 @@ def test_a_verdict_says_what_an_effect_does_once(against):
     text = verdict_text(added, [("spool_stiction", "backlash")], (), False, {"fit": 0.01}, 0.2, against=rises,
                         described=models.described)  # fmt: skip
     assert text.count("stiffness that changes with position") == 1
-    assert text.count("the spool moves only above a breakaway signal, at the valve) ") == 0
-    assert text.count("(the spool moves only above a breakaway signal, at the valve): ") == 1
+    assert text.count("(the spool moves only above a breakaway signal, at the valve)") == 1
     assert text.count("spool stiction") == 2
     first = "cubic stiffness" if against else "cubic stiffness (stiffness that changes with position, at the load)"
-    assert f" by dead zone, {first} and" in text or f"lacks dead zone, {first} and" in text
+    assert f"With dead zone, {first} and" in text or f"lacks dead zone, {first} and" in text
 
 
 def test_a_stated_drive_is_a_description():

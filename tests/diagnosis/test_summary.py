@@ -36,12 +36,12 @@ def test_what_was_found_is_named_with_its_size_and_probability_its_errors_and_th
 def test_a_group_has_one_probability_and_the_run_that_tells_it_apart():
     group = ("dead_zone", "underlap")
     told = lines(indistinguishable=(group,), group_probabilities=(0.95,))
-    assert told[0] == "Missing: dead zone or underlap (probability 95 %)."
+    assert told[0] == "Missing: dead zone or underlap (one of them: probability 95 %)."
     experiment = NextRun(amplitude=1e-3, signal="blwn", frequency=10.0, seconds=5.0, sample_rate=1000.0)
     grouped = replace(FOUND.verdict, indistinguishable=(group,), group_probabilities=(0.95,))
     assert (
         replace(FOUND, verdict=grouped, next_experiment=experiment).summary[2]
-        == "Next: record the proposed run, which distinguishes dead zone and underlap."
+        == "Next: record the proposed run, which distinguishes dead zone and underlap. Then diagnose again."
     )
 
 
@@ -52,7 +52,7 @@ def test_of_a_stand_in_the_first_line_says_that_more_is_missing_and_the_last_whe
     run = NextRun(amplitude=1e-3, signal="blwn", frequency=10.0, seconds=5.0, sample_rate=1000.0)
     assert replace(partly, next_experiment=run).summary[2] == "Next: add it. Then record the proposed run."
     limited = replace(partly, max_effects=1).summary[2]
-    assert limited == "Next: add it, and search again with more effects (--max-effects 2)."
+    assert limited == "Next: search again with up to 2 effects in all (--max-effects 2)."
 
 
 def test_what_is_less_probable_than_not_is_told_apart_from_what_is_missing():
@@ -76,7 +76,7 @@ def test_what_is_less_probable_than_not_is_told_apart_from_what_is_missing():
     assert chance[2] == "Next: search for unknown terms."
     group = ("dead_zone", "underlap")
     grouped = lines(indistinguishable=(group,), group_probabilities=(0.8,), probabilities={"dead_zone": 0.3})
-    assert grouped[0] == "Missing: dead zone or underlap (probability 80 %)."
+    assert grouped[0] == "Missing: dead zone or underlap (one of them: probability 80 %)."
 
 
 def test_nothing_something_unlisted_and_what_is_contradicted_are_said():
@@ -90,21 +90,29 @@ def test_nothing_something_unlisted_and_what_is_contradicted_are_said():
     assert unlisted.summary[0] == "Missing: something that no effect in the library explains (probability 90 %)."
     against = lines(standing="contradicted", contradicted_by=("dead_zone",))
     assert against[0].startswith("Not confirmed: dead zone (")
-    assert against[2].startswith("Next: do not add dead zone yet. Compare the validation runs with and without it")
+    assert against[2].startswith("Next: do not add dead zone yet. Compare the fit with it and the fit without it")
 
 
 def test_a_wrong_label_and_a_search_that_was_stopped_come_first():
-    assert lines(suspects=(Suspect("run-3"),))[2] == "Next: correct the label of run-3, and fit again."
+    assert lines(suspects=(Suspect("run-3"),))[2] == (
+        "Next: correct the label of run-3 in matrix.yaml, then diagnose again: dead zone may still be missing."
+    )
     unnamed = replace(FOUND, verdict=Verdict(suspects=(Suspect("A"),), unexplained=True))
     assert unnamed.summary[0].startswith("The label of run A looks wrong")
     mass = Suspect("A", "mass", stated=0.87, found=2.671, unit="kg")
     assert lines(suspects=(mass,))[2] == (
-        "Next: correct the label of run A, and fit again. Its mass is stated as 0.8700 kg; the data say 2.671 kg."
+        "Next: correct the mass of run A in matrix.yaml, then diagnose again: dead zone may still be missing. "
+        "The mass is stated as 0.8700 kg; the data say 2.671 kg."
+    )
+    alone = replace(FOUND, verdict=Verdict(suspects=(mass,), unexplained=True))
+    assert alone.summary[2] == (
+        "Next: correct the mass of run A in matrix.yaml, then diagnose again. It is stated as 0.8700 kg; the data say "
+        "2.671 kg."
     )
     stopped = replace(FOUND, complete=False, verdict=Verdict())
     assert stopped.summary[::2] == (
-        "Nothing was found yet: the search was stopped early.",
-        "Next: search again with more time.",
+        "Nothing was examined: there was no time for it.",
+        "Next: search again with more time (--time, in s).",
     )
 
 

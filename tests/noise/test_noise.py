@@ -56,6 +56,7 @@ def test_repeats_tell_where_the_command_fills_the_spectrum(clean):
     band = np.pi * linear.SAMPLE_RATE
     once, twice = (with_noise(clean, "low_passed", SHARE, seed=4, repeats=repeats) for repeats in (0, 2))
     assert noise_floors(once.runs, band).of_use(once) == {"fit": None, "verify": None}
+    assert [noise_floors(of.runs, band).in_band for of in (once, twice)] == [False, True]
     told = noise_floors(twice.runs, band).by_run
     size = np.mean([SHARE * np.std(run.measured) for run in twice.runs[:4]])
     assert told == pytest.approx({run.id: size / np.std(run.measured) for run in twice.runs}, rel=0.15)

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from ident.matrix import Run
-from ident.noise.floor import noise_floor
+from ident.noise.floor import noise_floor, noise_floors
 from ident.noise.periodic import fundamental
 from tests.diagnosis.damper import Damper, dahl
 
@@ -40,6 +42,14 @@ def test_the_floor_of_a_periodic_record_is_its_noise(seed):
     run = record(seed, samples, periods, noise, triangle=seed % 4 == 3)
     told = noise_floor(run, 3.0 * 2 * np.pi)
     assert noise / 1.3 < told < 1.3 * noise, (samples, periods, noise, told)
+
+
+@pytest.mark.parametrize("periodic", [True, False])
+def test_only_periods_or_repeats_tell_the_noise_at_the_frequencies_of_the_command(periodic):
+    run = record(3, 100 / 3, 27.0, 0.02)
+    command = run.command if periodic else np.random.default_rng(3).standard_normal(len(run.command))
+    found = noise_floors([replace(run, channels={**run.channels, "command": command})], 2 * np.pi)
+    assert (found.measured, found.in_band) == (False, periodic)
 
 
 def test_the_lines_that_are_folded_back_are_no_noise():

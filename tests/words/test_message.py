@@ -179,12 +179,12 @@ def test_a_message_is_plain_data_with_those_within_it():
 
 def test_a_value_is_put_into_words_by_its_kind_and_may_be_a_message():
     effects = [
-        message("effect.probable", names=["dead zone", "underlap"], probability=0.874),
+        message("effect.one_of", names=["dead zone", "lap", "underlap"], probability=0.874),
         message("effect", names=["play"]),
     ]
     assert (
         str(message("summary.missing", effects=effects))
-        == "Missing: dead zone or underlap (probability 87 %) and play."
+        == "Missing: dead zone, lap or underlap (one of them: probability 87 %) and play."
     )
     late = message("late.seconds", value=0.0123, error=0.001)
     assert said([message("delay", time=late, names=["a"]), Message("next.use", {})]) == (
