@@ -19,7 +19,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from types import TracebackType
 from typing import Any
-from urllib.parse import quote
+from urllib.parse import quote, urlsplit
 from uuid import uuid4
 
 import httpx
@@ -45,6 +45,22 @@ _LOST = 5  # times that a stream of events may break off without having told any
 def without_number(error: Exception) -> str:
     """What a system says of a failure: "[Errno 111] Connection refused" without its number."""
     return str(error).rpartition("] ")[2]
+
+
+def start_command(server: str) -> str:
+    """The command that starts a service at an address, and the machine to type it on."""
+    try:
+        at = urlsplit(server)
+        host, port = at.hostname, at.port
+    except ValueError:
+        host, port = None, None
+    command = f"`servoident serve --port {port}`" if port else "`servoident serve`"
+    if host is None:
+        return command
+    return f"{command} on this machine" if host in _HERE else f"{command} on {host}"
+
+
+_HERE = ("127.0.0.1", "localhost", "::1")
 
 
 @dataclass
@@ -235,7 +251,8 @@ class Client:
         try:
             answer = self.http.request(method, f"{self.server}/api/v1{path}", headers=headers, **content)
         except (httpx.HTTPError, httpx.InvalidURL) as error:
-            reason, remedy = without_number(error), "start it with `servoident serve`, or give its address"
+            reason, command = without_number(error), start_command(self.server)
+            remedy = f"start it with {command}, or give its address"
             raise Refused("no-service", f"no answer from the service ({reason})", self.server, remedy) from None
         if answer.is_error:
             raise _refusal(answer)

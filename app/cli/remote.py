@@ -41,7 +41,7 @@ def request(server: str, token: str, method: str, path: str, **content: Any) -> 
     """The answer of the service to one request. Raises Unusable where it refuses, or where there is none."""
     import httpx
 
-    from app.client import without_number
+    from app.client import start_command, without_number
 
     server, token = reached(server, token)
     headers = {"Idempotency-Key": str(uuid4())} if method == "POST" else {}
@@ -55,7 +55,8 @@ def request(server: str, token: str, method: str, path: str, **content: Any) -> 
             "bad-token", "it is not plain ASCII", "--token", "give the token that the service printed"
         ) from None
     except (httpx.HTTPError, httpx.InvalidURL) as error:
-        remedy = "start it there with `servoident serve`, or give another address with --server"
+        command = start_command(server)
+        remedy = f"start it with {command}, or give another address with --server"
         raise Unusable("no-service", f"no answer from the service ({without_number(error)})", server, remedy) from None
     if answer.is_error:
         raise refusal(answer)
@@ -78,7 +79,7 @@ def receive(server: str, token: str, path: str, file: Path) -> int:
     """The file that a POST is answered by, whole or not at all; its size in bytes. Raises Unusable."""
     import httpx
 
-    from app.client import received, without_number
+    from app.client import received, start_command, without_number
 
     server, token = reached(server, token)
     headers = {"Authorization": f"Bearer {token}"} if token else {}
@@ -90,11 +91,12 @@ def receive(server: str, token: str, path: str, file: Path) -> int:
                 raise refusal(answer)
             return received(answer, file)
     except (httpx.HTTPError, httpx.InvalidURL) as error:
+        command = start_command(server)
         raise Unusable(
             "no-service",
             f"no answer from the service ({without_number(error)})",
             server,
-            "start it there, or give another address",
+            f"start it with {command}, or give another address with --server",
         ) from None
 
 

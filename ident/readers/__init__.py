@@ -138,10 +138,11 @@ def read_runs(
         for number, run in wanted:
             if run.dialect not in tables:
                 of_run = run_name(run.labels.id)
-                tables[run.dialect] = read_table(parts[0], name, run.dialect, limits, of_run, near)
+                table = read_table(parts[0], name, run.dialect, limits, of_run, near)
+                tables[run.dialect] = replace(table, file=name)
                 for notice in tables[run.dialect].notices:
                     notices.setdefault(notice.replace(name, "", 1), []).append(notice)
-            runs[number], told_of_split = read_run(run, tables[run.dialect])
+            runs[number], told_of_split = _read_run(run, tables[run.dialect])
             splits += told_of_split
             in_memory += sum(samples.nbytes for part in runs[number] for samples in part.channels.values())
             check_size(in_memory, limits.samples, "all samples together", name)
@@ -155,6 +156,17 @@ def read_runs(
         one if not more else f"{one}; so it was with {count(len(more), 'more file')}" for one, *more in notices.values()
     ]
     return tuple(outputs), (*told, *splits, *chosen), digest.hexdigest()
+
+
+def _read_run(run: RunDescription, table: Table) -> tuple[tuple[Run, ...], tuple[str, ...]]:
+    """As :func:`read_run`; what the description says wrongly of the file is refused with its name."""
+    try:
+        return read_run(run, table)
+    except Unusable as error:
+        raise error.within(DESCRIPTION) if error.code in _OF_DESCRIPTION else error from None
+
+
+_OF_DESCRIPTION = ("missing-column", "ambiguous-column", "rows-outside", "time-stamps", "bad-split")
 
 
 def by_file(runs: tuple[RunDescription, ...]) -> dict[str, list[tuple[int, RunDescription]]]:

@@ -25,7 +25,8 @@ class Fields:
         for key in data:
             if key not in known:
                 _check_comma(data, key, where)
-                remedy = f"move it one level up: indent it like {where.rpartition(' ')[2]}" if key in around else ""
+                outer = where.rpartition(" ")[2]
+                remedy = f"take it out of {outer}: it stands beside {outer}" if key in around else ""
                 remedy = remedy or did_you_mean(str(key), known)
                 raise Unusable("unknown-key", f"unknown key {shown(key)!r}", where, remedy)
 

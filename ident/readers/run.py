@@ -96,7 +96,8 @@ def difference(columns: list[Array], where: str) -> Array:
 
 def check_lengths(raw: dict[str, Array], described: RunDescription) -> None:
     """All columns of one length, long enough, and as long as `rows` says."""
-    where = f"{run_name(described.labels.id)} file {described.labels.file}"
+    run, file = run_name(described.labels.id), described.labels.file
+    where = f"{run} file {file}"
     lengths = {name: len(column) for name, column in raw.items()}
     count = min(lengths.values())
     if max(lengths.values()) != count:
@@ -105,8 +106,9 @@ def check_lengths(raw: dict[str, Array], described: RunDescription) -> None:
     if described.rows is not None:
         first, end = described.rows
         if end > count:
-            what = f"rows [{first}, {end}) end after the last sample of the file, which has {count}"
-            raise Unusable("rows-outside", what, where, f"give rows within [0, {count})")
+            what = f"[{first}, {end}] ends after the last sample of {file}, which has {count}"
+            remedy = f"write [{first}, {count}]" if first < count else f"give a part of [0, {count}]"
+            raise Unusable("rows-outside", what, f"{run} rows", remedy)
         count = end - first
     if count == 0:
         raise Unusable("empty-file", "the file has no samples", where, "give a record")

@@ -213,6 +213,6 @@ def describe_rows(fields: Fields) -> tuple[int, int] | None:
         return None
     first, end = pair
     if not isinstance(first, int) or not isinstance(end, int) or not 0 <= first < end:
-        remedy = "write [first, end), 0 being the first sample"
+        remedy = "write [first, end]: 0 is the first sample, and end is not included"
         raise Unusable("bad-rows", f"{shown(pair)} is not a part of a file", fields.place("rows"), remedy)
     return first, end

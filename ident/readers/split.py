@@ -50,7 +50,12 @@ def describe_split(fields: Fields, kind: str, use: str, time_unit: str) -> Split
     first, end = given.pair(VALIDATION) or (0, 0)
     if not isinstance(first, int) or not isinstance(end, int) or not 0 <= first < end:
         what = f"{given.data[VALIDATION]} is not a part of a file"
-        raise Unusable("bad-split", what, given.place(VALIDATION), "write [first, end), 0 being the first sample")
+        raise Unusable(
+            "bad-split",
+            what,
+            given.place(VALIDATION),
+            "write [first, end]: 0 is the first sample, and end is not included",
+        )
     return Split(first, end, seconds_or_samples(given, "gap", time_unit))
 
 
@@ -68,7 +73,7 @@ def split(run: Run, of: Split, rows: tuple[int, int]) -> tuple[tuple[Run, Run], 
     place = f"{run_name(run.id)} split"
     begin, end = (round((row - rows[0]) * run.length / (rows[1] - rows[0])) for row in (of.first, of.end))
     if begin < 0 or end > run.length:
-        what = f"rows [{of.first}, {of.end}) are not within [{rows[0]}, {rows[1]})"
+        what = f"rows [{of.first}, {of.end}] are not within [{rows[0]}, {rows[1]}]"
         raise Unusable("bad-split", what, place, "correct validation")
     lasts = memory(run)
     gap = lasts if of.gap is None else round(of.gap * run.sample_rate)

@@ -28,7 +28,8 @@ class Table:
     is written there and for a suggestion alone: what counts is the unit that matrix.yaml states. Loading checks
     declared sizes before it allocates. `aliases` are further names of the columns, each a row of them, for a heading of
     several lines; `stamps` are the columns that were time stamps and are loaded in seconds, `mostly` those of a
-    text that hold numbers, in some rows at least. `rate`, Hz, is the sample rate that the file states, 0 where none.
+    text that hold numbers, in some rows at least. `rate`, Hz, is the sample rate that the file states, 0 where
+    none; `file` is its name, for messages.
     """
 
     names: tuple[str, ...]
@@ -39,6 +40,7 @@ class Table:
     stamps: frozenset[int] = frozenset()
     mostly: frozenset[int] = frozenset()
     rate: float = 0.0
+    file: str = "the file"
 
     def number(self, column: str | int, where: str) -> int:
         """The number of a column given by name or by 0-based number.
@@ -48,7 +50,7 @@ class Table:
         """
         if isinstance(column, int):
             if not 0 <= column < len(self.names):
-                raise Unusable("missing-column", f"there is no column {column}", where, self.listed())
+                raise Unusable("missing-column", f"there is no column {column} in {self.file}", where, self.listed())
             return column
         found = self.named(column.strip())
         if len(found) > 1:
@@ -58,7 +60,7 @@ class Table:
             return found[0]
         otherwise = f"its columns are {some_of(self.names)}" if self.names else self.listed()
         remedy = did_you_mean(column, self.names, otherwise)
-        raise Unusable("missing-column", f"there is no column {shown(column)!r}", where, remedy)
+        raise Unusable("missing-column", f"there is no column {shown(column)!r} in {self.file}", where, remedy)
 
     def numbers(self, column: str | int, where: str) -> tuple[int, ...]:
         """The number of a column; of a difference ``in - out`` those of both, where no column has that very name.

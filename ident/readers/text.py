@@ -175,7 +175,7 @@ def by_line(
             if column >= len(fields):
                 what = f"line {number} has {len(fields)} fields and no column {column}"
                 raise Unusable("ragged-row", what, where, "complete the row or cut the file there")
-            values.append(as_float(fields[column], comma, number, where))
+            values.append(as_float(fields[column], comma, number, where, bool(values)))
     return [np.frombuffer(values, np.float64) for values in columns]
 
 
@@ -188,8 +188,8 @@ def _unquoted(line: bytes, delimiter: str) -> list[bytes]:
     return [field.encode() for field in cut]
 
 
-def as_float(field: bytes, comma: bool, line: int, where: str) -> float:
-    """One field as a number. Raises Unusable ``not-numeric`` with its line."""
+def as_float(field: bytes, comma: bool, line: int, where: str, within: bool = False) -> float:
+    """One field as a number; `within` the samples, not in their first row. Raises Unusable ``not-numeric``."""
     parted = comma and b"." in field and mixes_thousands(field.decode("utf-8", "replace"))
     if not parted:
         try:
@@ -202,6 +202,12 @@ def as_float(field: bytes, comma: bool, line: int, where: str) -> float:
         raise Unusable("not-numeric", what, where, "export it without signs between thousands")
     if not text.strip("\"' "):
         what = f"line {line} has an empty cell where a number belongs"
-        raise Unusable("not-numeric", what, where, f"fill it, or cut the record before line {line} with rows")
+        raise Unusable(
+            "not-numeric", what, where, "fill it, or write nan there and keep the part before or after it with rows"
+        )
+    if within:
+        what = f"line {line} holds {shown(text)!r} among numbers"
+        remedy = "correct the number, or write nan there and keep the part before or after it with rows"
+        raise Unusable("not-numeric", what, where, remedy)
     remedy = "correct the number, or name a column of numbers; if the line is part of the heading, give skip_rows"
     raise Unusable("not-numeric", f"line {line} holds {shown(text)!r} where a number belongs", where, remedy)

@@ -19,6 +19,7 @@ from ident.units.grammar import Powers, powers_of
 from ident.units.names import ANGLES, BASE, DERIVED, PREFIXES
 from ident.units.nearest import nearest
 from ident.units.usual import USUAL
+from ident.words.nearest import quoted
 
 DIMENSIONS = {
     "length": "m", "area": "m^2", "volume": "m^3", "mass": "kg", "time": "s", "frequency": "1/s", "velocity": "m/s",
@@ -211,7 +212,7 @@ def is_known_unit(unit: str) -> bool:
 def not_known(unit: str, where: str, target: str = "") -> Unusable:
     """The error for a unit that cannot be read, with the nearest one of the kind that is wanted, else of all."""
     near = nearest(unit, target)
-    hint = f"did you mean {near}?" if near else "write it as mm, N*s/m or m^3/(s*kPa)"
+    hint = f"did you mean {quoted(near)}?" if near else "write it as mm, N*s/m or m^3/(s*kPa)"
     return Unusable("unknown-unit", f"unit {shown(unit)!r} is not known", where, hint)
 
 

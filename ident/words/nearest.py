@@ -10,6 +10,8 @@ _NEAR = 0.6
 """Ratio of difflib (twice the letters in common over all letters) from which on a name may be meant."""
 _NEAR_IF_SHORT, _SHORT = 0.5, 3
 """The same of a name of at most three letters, one of which may be wrong."""
+_WORDS = frozenset(("a", "as", "at", "in", "is", "it", "no", "of", "on", "or", "to"))
+"""Names that are read as words of the sentence: in is a unit, too."""
 _PLAIN = re.compile(r"\S+")
 """A name that needs no quotes in a sentence."""
 
@@ -25,8 +27,8 @@ def did_you_mean(name: object, known: Iterable[str], otherwise: str = "") -> str
     names = list(dict.fromkeys(known))
     *others, near = _containing(str(name), names) or [nearest(str(name), names)]
     if near is not None:
-        first = f"{', '.join(map(_quoted, others))} or " if others else ""
-        return f"did you mean {first}{_quoted(near)}?"
+        first = f"{', '.join(map(quoted, others))} or " if others else ""
+        return f"did you mean {first}{quoted(near)}?"
     return otherwise or (f"choose from {', '.join(names)}" if names else "leave it out")
 
 
@@ -40,8 +42,9 @@ def nearest(name: str, known: Iterable[str]) -> str | None:
     return spelt[near[0]] if near and letters else None
 
 
-def _quoted(name: str | None) -> str:
-    return name if name is not None and _PLAIN.fullmatch(name) else repr(name)
+def quoted(name: str | None) -> str:
+    """A name as it stands in a sentence: in quotes where it has spaces, or could be read as a word of it."""
+    return name if name is not None and _PLAIN.fullmatch(name) and name not in _WORDS else repr(name)
 
 
 def _containing(name: str, known: Iterable[str]) -> list[str | None]:

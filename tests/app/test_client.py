@@ -9,7 +9,7 @@ import httpx
 import pytest
 
 from app.backup.service import restore
-from app.client import Client, Refused
+from app.client import Client, Refused, start_command
 from app.settings import Settings
 from tests.app.conftest import files, unpacked, zipped
 from tests.app.test_drafts import ANSWERS, record
@@ -116,6 +116,20 @@ def test_what_is_refused_says_where_and_what_to_do(lab, tmp_path):
     nobody = Client("http://127.0.0.1:9", http=httpx.Client(transport=httpx.MockTransport(gone)))
     with pytest.raises(Refused, match="no answer from the service"):
         nobody.matrix("x")
+
+
+@pytest.mark.parametrize(
+    ("server", "command"),
+    [
+        ("http://127.0.0.1:9", "`servoident serve --port 9` on this machine"),
+        ("http://bench-pc:8000", "`servoident serve --port 8000` on bench-pc"),
+        ("https://bench-pc", "`servoident serve` on bench-pc"),
+        ("http://bench-pc:port", "`servoident serve`"),
+        ("bench-pc", "`servoident serve`"),
+    ],
+)
+def test_of_a_service_that_does_not_answer_the_command_that_starts_it_is_said(server, command):
+    assert start_command(server) == command
 
 
 def gone(request):

@@ -38,7 +38,7 @@ CASES = [  # what is written, by what it is replaced, code, words of the message
     ("kind: blwn", "output: command", "unknown-output", "response"),
     ("gain: 7", "gian: 7", "unknown-key", "did you mean gain?"),
     ("displacement: {", "displacment: {", "unknown-key", "did you mean displacement?"),
-    ("displacement: {", "gain: {", "unknown-key", "move it one level up: indent it like channels"),
+    ("displacement: {", "gain: {", "unknown-key", "take it out of channels: it stands beside channels"),
     ("gain: 7", "gain: 7\n    gain: 8", "duplicate-key", "'gain' is given twice"),
     ("command: {column: u, unit: mm}", "force: {column: u, unit: N}", "missing-command", "channels"),
     ("sample_rate: 1000 Hz", "kind: other", "duplicate-key", "kind"),

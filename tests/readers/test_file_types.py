@@ -34,6 +34,8 @@ def test_a_missing_column_is_named_with_what_there_is(matrix, kind):
     with pytest.raises(Unusable, match="there is no column 'nothing'") as refused:
         read_matrix(matrix.write(kind))
     assert refused.value.code == "missing-column"
+    assert refused.value.where == "matrix.yaml, run first channels.displacement"
+    assert refused.value.what.startswith("there is no column 'nothing' in runs/first.")
     assert "t, " in refused.value.remedy
 
 
@@ -106,7 +108,12 @@ def test_two_runs_may_take_parts_of_one_file(matrix, columns):
 def test_rows_beyond_the_file_are_refused(matrix):
     with pytest.raises(Unusable) as refused:
         read_matrix(matrix.change("gain: 7", "rows: [0, 401]").write())
-    assert refused.value.code == "rows-outside"
+    assert str(refused.value) == (
+        "matrix.yaml, run first rows: [0, 401] ends after the last sample of runs/first.csv, which has 400; "
+        "write [0, 400]"
+    )
+    with pytest.raises(Unusable, match=r"give a part of \[0, 400\]"):
+        read_matrix(matrix.change("rows: [0, 401]", "rows: [400, 500]").write())
 
 
 def test_scale_offset_and_invert_act_in_this_order(matrix, columns):

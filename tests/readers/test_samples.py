@@ -71,7 +71,16 @@ def test_text_in_a_column_of_numbers_is_named_with_its_line(matrix):
     (path / "runs/first.csv").write_text("\n".join(text))
     refused = refusal(path)
     assert refused.code == "not-numeric"
-    assert "line 6 holds 'broken'" in str(refused)
+    assert "line 6 holds 'broken' among numbers; correct the number, or write nan there" in str(refused)
+    assert "heading" not in str(refused)
+
+
+def test_the_part_behind_a_sample_that_is_missing_is_used_as_the_error_says(matrix):
+    path = matrix.change("gain: 7", "rows: [10, 100]").write()
+    text = (path / "runs/first.csv").read_text().splitlines()
+    text[5] = "0.004,nan,1"
+    (path / "runs/first.csv").write_text("\n".join(text))
+    assert read_matrix(path).runs[0].length == 90
 
 
 def test_a_row_that_is_too_short_is_named_with_its_line(matrix):

@@ -178,6 +178,8 @@ def test_a_unit_becomes_factor_and_offset():
 def test_an_unknown_unit_is_answered_with_the_nearest_one():
     with pytest.raises(Unusable, match="did you mean inch"):
         quantity("2 inc", "length", "field")
+    with pytest.raises(Unusable, match="did you mean 'in'"):
+        quantity("2 inn", "length", "field")
 
 
 def test_pint_is_not_imported_before_a_unit_is_read():

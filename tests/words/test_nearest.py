@@ -30,6 +30,12 @@ def test_neither_case_nor_separators_count(misspelt, known, meant):
     assert nearest(misspelt, known) == meant
 
 
+def test_a_name_that_could_be_read_as_a_word_of_the_sentence_is_in_quotes():
+    assert did_you_mean("IN", ("in", "ft")) == "did you mean 'in'?"
+    assert did_you_mean("inches", ("inch", "ft")) == "did you mean inch?"
+    assert did_you_mean("dead zon", ("dead zone",)) == "did you mean 'dead zone'?"
+
+
 def test_where_none_is_near_the_names_are_listed_or_a_remedy_is_given():
     assert did_you_mean("magic", ("a", "b")) == "choose from a, b"
     assert did_you_mean("magic", ("a", "b"), "look there") == "look there"
