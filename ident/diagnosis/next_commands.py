@@ -27,7 +27,7 @@ def next_commands(found: Diagnosis, file: str, matrix: str, seconds: float | Non
     fit, run = next_command(found, file, matrix), next_run_command(found, file, matrix)
     ordered = (run, fit) if next_step(found).key in _RUN_FIRST else (fit, run)
     first = (_again(found, matrix, seconds), _compared(found, file, matrix))
-    return tuple(filter(None, (*(str(one) for one in first if one), *ordered)))
+    return tuple(filter(None, (*(str(command) for command in first if command), *ordered)))
 
 
 def next_command(found: Diagnosis, file: str = "D.json", matrix: str = "MATRIX") -> str:
@@ -45,11 +45,11 @@ def next_command(found: Diagnosis, file: str = "D.json", matrix: str = "MATRIX")
     end = recommended(found)
     values: dict[str, Any] = {"matrix": matrix, "file": file, "effects": end.added, "error": end.error.get("fit")}
     groups = [group for group in found.verdict.indistinguishable if not has_two(group, found.verdict.effects)]
-    one_of = next((name for name in end.added if any(name in group for group in groups)), None)
-    if one_of is None:
+    taken = next((name for name in end.added if any(name in group for group in groups)), None)
+    if taken is None:
         command = message("recommended", **values)
     else:
-        command = message("recommended.one_of", taken=one_of, **values)
+        command = message("recommended.one_of", taken=taken, **values)
     return said([command, *([message("recommended.terms")] if proposals else [])])
 
 

@@ -73,7 +73,7 @@ def recommended(found: Diagnosis, terms: int | None = None) -> End:
 
 
 def end_of_ladder(found: Diagnosis) -> tuple[str, ...]:
-    """What the last refit of the ladder has beyond the fitted model; nothing where no refit was told."""
+    """What the last refit of the ladder has beyond the fitted model; nothing where there was no refit."""
     return max((end.added for end in _rungs(found)), key=len, default=())
 
 

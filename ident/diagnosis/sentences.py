@@ -99,7 +99,7 @@ def verdict_text(
         found.append(message("verdict.stopped"))
     if added:
         of_groups = dict(zip(map(tuple, groups), group_probabilities, strict=False))
-        if against:  # a probability knows nothing of validation data, and the error there is told already
+        if against:  # a probability knows nothing of validation data, and the error there is said already
             effects = [message("effect", names=[named(name)]) for name in added]
             change = message("change", before=before, after=errors["fit"])
         else:

@@ -171,7 +171,7 @@ def next_step(found: Diagnosis) -> Message:
 
 
 def _correct(suspect: Suspect, effects: Sequence[str]) -> Message:
-    """The label to correct, with its value and that of the data where both are known, and what is missing beside it."""
+    """The label to correct, with its value and that of the data where both are known, and what else is missing."""
     if suspect.stated is None or suspect.found is None:
         if effects:
             return message("next.label_and", run=suspect.run, effects=effects)

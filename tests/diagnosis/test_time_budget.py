@@ -148,7 +148,8 @@ def test_after_the_limit_no_simulation_begins_in_any_stage(counted, full):
         assert len(cut.stages) == last - first
         assert not found.complete
         assert found.not_looked_at
-        assert f"Not examined: {', '.join(found.not_looked_at)}." in found.verdict.text
+        listed = f"Not examined: {', '.join(found.not_looked_at)}." in found.verdict.text
+        assert listed == bool(found.ladder)  # where nothing was examined, that alone is said
         assert Diagnosis.from_json(found.to_json()).to_json() == found.to_json()
         assert found.to_json()["complete"] is False
         _holds_what_was_found(found, whole, cut.stages[-1])
