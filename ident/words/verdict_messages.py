@@ -274,7 +274,7 @@ SEARCH: Mapping[str, str] = {
     "recommended.compare":
         "`servoident fit {matrix} {options:words} --json without.json` makes the fit without {effects:titles}, "
         "`servoident fit {matrix} --start {file} --json with.json` the fit with {effects:them}, and "
-        "`servoident compare {matrix} without.json with.json` compares the two.",
+        "`servoident compare {matrix} --fit without.json --fit with.json` compares the two.",
     "recommended.time":
         "`servoident diagnose {matrix} --time {seconds}` searches again for up to {seconds} s. Repeat your other "
         "options with it.",

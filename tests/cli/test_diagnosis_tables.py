@@ -56,7 +56,7 @@ def test_what_is_printed_ends_with_the_command_that_makes_the_recommended_fit(ca
     assert f"{command}dead zone. It begins where the diagnosis ended, at an error of 4.63 %." in printed(ladder=ladder)
     against = printed(Verdict(standing="contradicted", contradicted_by=("dead_zone",)), ladder=ladder)
     assert command not in against
-    assert "`servoident compare 'my data' without.json with.json`" in against
+    assert "`servoident compare 'my data' --fit without.json --fit with.json`" in against
     told = printed(ladder=ladder, proposals=(term(LEAK, "coulomb_friction"),))
     assert (
         f"{command}Coulomb friction and proposed 1. It begins where the diagnosis ended, at an error of 10.0 %. --terms"

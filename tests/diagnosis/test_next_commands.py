@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+import shlex
 from dataclasses import replace
 from typing import Any
 
@@ -83,8 +85,24 @@ def test_what_validation_data_contradict_is_compared_with_the_fit_without_it():
     assert compare == (
         "`servoident fit data --model qian2014 --json without.json` makes the fit without Coulomb friction, "
         "`servoident fit data --start last --json with.json` the fit with it, and "
-        "`servoident compare data without.json with.json` compares the two."
+        "`servoident compare data --fit without.json --fit with.json` compares the two."
     )
+
+
+def test_every_command_is_one_that_the_command_line_takes(tmp_path, monkeypatch):
+    from app.cli.program import commands
+
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "data").mkdir()
+    for name in ("with.json", "without.json", "last"):
+        (tmp_path / name).write_text("{}")
+    contradicted = Verdict(("coulomb_friction",), "contradicted", contradicted_by=("coulomb_friction",))
+    partly = replace(FOUND.verdict, standing="stand_in", unexplained=True)
+    said = (*told(contradicted), *told(partly, max_effects=1), *told(seconds=8.0, complete=False))
+    lines = re.findall(r"`servoident (.*?)`", " ".join(said))
+    assert len(lines) >= 7
+    for name, *arguments in map(shlex.split, lines):
+        commands().commands[name].make_context(name, arguments)
 
 
 def test_a_search_that_was_stopped_is_begun_again_with_twice_the_time():
