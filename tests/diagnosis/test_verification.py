@@ -59,7 +59,8 @@ def test_a_run_that_cannot_be_followed_with_an_effect_is_a_contradiction_and_one
     assert found.before == pytest.approx(0.1, rel=0.05)
     assert str(found.message("lead")) == (
         f"With lead the model is unstable on run {runs[1].id}; without, the error on validation data is "
-        f"{percent(found.before)}. This effect may only imitate another one."
+        f"{percent(found.before)}. Either it only imitates something else, or the "
+        "machine was different in these runs."
     )
     assert judged("lead", runs, lost, before) is None
     assert judged("lead", runs, lost, lost) is None
