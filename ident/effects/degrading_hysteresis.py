@@ -1,7 +1,7 @@
 """The specimen yields, and weakens with the energy that it has dissipated, after Bouc, Wen, Baber and Noori."""
 
 from ident.effects.effect import Effect
-from ident.effects.needs import force_answers
+from ident.effects.needs import one_force_record
 from ident.parameter import AtReversals, Parameter
 
 DEGRADING_HYSTERESIS = Effect(
@@ -40,5 +40,5 @@ DEGRADING_HYSTERESIS = Effect(
     ),
     of_specimen=True,
     takes_over=("k0", "kS"),
-    needs=force_answers,
+    needs=one_force_record,
 )

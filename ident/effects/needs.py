@@ -26,6 +26,14 @@ def force_answers(matrix: Matrix) -> bool:
     return all(run.output == "force" for run in matrix.runs)
 
 
+def one_force_record(matrix: Matrix) -> bool:
+    """Whether one run alone is fitted, whose force answers its motion: what it has dissipated grows from its begin on.
+
+    Of several runs each would have a damage of its own, found from its data, which is a strength of its own.
+    """
+    return force_answers(matrix) and len(matrix.of_use("fit")) == 1
+
+
 def one_sided_position(matrix: Matrix) -> bool:
     """Whether a measured position, such as a level, stays on one side of zero: about zero a curve bends nothing."""
     return all(run.output == "displacement" and one_sided(run.measured) for run in matrix.runs)

@@ -6,7 +6,7 @@ Each machine below is written out here, from the physics; nothing but its number
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import pytest
@@ -247,7 +247,9 @@ def test_an_effect_is_looked_for_only_where_the_record_could_show_it():
     assert of_records & found == {"normal_force_friction", "pressure_friction"}
     answers = Run("r", "", RATE, {"velocity": SPEED, "force": FORCE, "load_pressure": SQUEEZE}, {}, output="force")
     moves = CandidateModels.of(Matrix(Actuator("A"), (answers,)), Settings(model="specimen")).effects
-    assert {"pressure_friction", "pressure_force"} <= set(moves)
+    assert {"pressure_friction", "pressure_force", "degrading_hysteresis"} <= set(moves)
+    several = Matrix(Actuator("A"), (answers, replace(answers, id="s")))
+    assert "degrading_hysteresis" not in CandidateModels.of(several, Settings(model="specimen")).effects
     speed, volts = np.cos(T), {"command": "V", "velocity": "rad/s"}
     assert not of_records & candidates("motor", volts, command=FORCE, velocity=speed)
     assert of_records & candidates("motor", volts, command=FORCE, velocity=np.abs(speed)) == {"rectified_sensor"}
