@@ -13,6 +13,7 @@ from ident.checks.feedback import feedback
 from ident.checks.finding import Finding, Findings
 from ident.checks.flat import flat
 from ident.checks.gain import force_sign, gain
+from ident.checks.means import means
 from ident.checks.missing_input import missing_input
 from ident.checks.offset import offset
 from ident.checks.passivity import turned_sign
@@ -42,7 +43,13 @@ def check(matrix: Matrix) -> Findings:
     matrix = screen(matrix)
     measured = [(run, respond(run)) for run in matrix.runs]
     found = [finding for run, response in measured for finding in one_run(run, response, matrix.actuator)]
-    found += [*delays(measured), *(scaled := list(scale(measured))), *repeats(matrix), *statements(matrix)]
+    found += [
+        *delays(measured),
+        *(scaled := list(scale(measured))),
+        *repeats(matrix),
+        *means(matrix),
+        *statements(matrix),
+    ]
     found += unit_factor(measured, [one.run for one in scaled])
     return Findings(sorted(_once(found, matrix), key=lambda each: (each.code != BEYOND, ORDER.index(each.severity))))
 

@@ -144,6 +144,9 @@ CHECKS: Mapping[str, str] = {
     "check.duplicate_verify":
         "runs {runs:all} contain the same samples, so the validation is not independent. Keep one of them, or correct "
         "file, rows or columns",
+    "check.means":
+        "the means of {channel} differ between the runs by {ratio:.3g} times what it varies within a run. A fit hardly "
+        "counts them, since the zero may have been set for each run. If it was not, say zeroed: false of the channel",
     "check.repeat":
         "runs {runs:all} repeat the same command under the same conditions. Their difference is used to estimate the "
         "noise",
