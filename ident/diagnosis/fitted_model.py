@@ -213,9 +213,17 @@ class FittedModel:
         return {"fit": self.error, "held_out": held_out, "verify": verify}
 
     def residuals(self, runs: Sequence[Run]) -> list[Array]:
-        """What it leaves of any runs of the matrix, (n,) each, less its mean or over windows."""
+        """What it leaves of any runs of the matrix, (n,) each: less its mean or over windows.
+
+        Where the zero of a run is not its own its mean counts: the residual is less the offset of the transducer.
+        """
         outputs = self.fitness.fresh(tuple(runs)).outputs(self.point)
-        return [self.fitness.left(run, outputs[run.id]) for run in runs]
+        return [
+            run.measured - outputs[run.id] - offset_at(run, self._offsets)
+            if self.fitness.horizon is None and run.zeroed.get(run.output) is False
+            else self.fitness.left(run, outputs[run.id])
+            for run in runs
+        ]
 
     @cached_property
     def _known(self) -> Covariance:
