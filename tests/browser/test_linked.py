@@ -162,7 +162,7 @@ def test_two_fits_stand_side_by_side(page, site, fitted, second, screenshots):
     page.goto(f"{site.address}/fits/{second}")
     page.get_by_label("Compare with").select_option(f"{second},{fitted}")
     page.get_by_role("button", name="Compare fits").click()
-    expect(page.locator("h1")).to_have_text("Two fits side by side")
+    expect(page.locator("h1")).to_have_text("Two fits side by side", timeout=LONG)
     zone = page.locator("tr", has_text="dead zone: half of the overlap")
     expect(zone.locator("td").nth(1)).to_have_text("off")
     expect(zone.locator("td").nth(2)).to_contain_text(re.compile(r" ± .* µ?m$|⁻⁹ m"))
@@ -178,7 +178,7 @@ def test_two_fits_stand_side_by_side(page, site, fitted, second, screenshots):
                 page.screenshot(path=screenshots / f"compare-{width}-{theme}.png", full_page=True)
     page.goto(f"{site.address}/fits/{second}#history")
     page.get_by_role("link", name="compare", exact=True).click()
-    expect(page.locator("h1")).to_have_text("Two fits side by side")
+    expect(page.locator("h1")).to_have_text("Two fits side by side", timeout=LONG)
 
 
 @pytest.mark.parametrize("fits", ["", "one", "none,nothing"])
