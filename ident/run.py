@@ -249,6 +249,11 @@ class Run(Shown):
         """The channel by which the beginning is told: of many outputs the position, where it was recorded."""
         return self.channels.get("displacement", self.measured) if self.record else self.measured
 
+    @property
+    def mean_counts(self) -> bool:
+        """Whether the mean of the output counts in a fit of whole runs: its zero was not set for this run alone."""
+        return self.zeroed.get(self.output) is False
+
     @cached_property
     def zero_at_rest(self) -> tuple[float, float] | None:
         """What the transducer of the output reads where the machine is at zero, and its standard error; None: unknown.

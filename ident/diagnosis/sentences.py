@@ -86,7 +86,7 @@ def verdict_text(
 ) -> str:  # fmt: skip
     """The verdict in a few sentences, what speaks against it first.
 
-    Not `in_band`, nobody knows how much noise lies in the band of the command. Not `complete`, the search was stopped.
+    Not `in_band`, the noise in the band of the command is not known. Not `complete`, the search was stopped.
     `described` tells what an effect is the first time that it is named; `bounded` are those whose strength ended at the
     bound of its search. `fewer` is the error on verify runs without the last of what was added, where it is
     smaller there; `unstable` are the verify runs on which the model is unstable with it. `probabilities` are those

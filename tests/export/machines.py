@@ -39,6 +39,20 @@ int main(void)
 """
 
 
+def unit_of_control(source: str, folder: Path) -> tuple[int, set[str]]:
+    """The bytes of code, tables and memory of a compiled source, and the names that it calls of libraries."""
+    (folder / "unit.c").write_text(source)
+    subprocess.run([compiler(), "-Os", "-std=c99", "-c", "unit.c"], cwd=folder, check=True)
+    tools = [shutil.which("size"), shutil.which("nm")]
+    if not all(tools):
+        pytest.skip("no binutils on this machine")
+    told, called = (
+        subprocess.run([tool, *option, "unit.o"], cwd=folder, check=True, capture_output=True, text=True).stdout
+        for tool, option in zip(tools, ((), ("-u",)), strict=True)
+    )
+    return int(told.splitlines()[1].split()[3]), {line.split()[-1] for line in called.splitlines()}
+
+
 def fitted() -> FitResult:
     """The fit of Qian's actuator with a dead zone that an earlier version wrote."""
     return FitResult.from_json(json.loads(FIT.read_text()))

@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import io
-import shutil
-import subprocess
 import zipfile
 from dataclasses import replace
 
@@ -21,7 +19,7 @@ from ident.presets import preset
 from ident.run import Run, Specimen
 from ident.simulation.simulate import responses
 from ident.stages.bench import FRACTIONS, node_names
-from tests.export.machines import compiled, compiler, fitted, largest_error
+from tests.export.machines import compiled, compiler, fitted, largest_error, unit_of_control
 from tests.reference.kononykhin_reference import STROKE, Truth, _advance
 
 RATE = 1000.0
@@ -79,17 +77,9 @@ def test_the_code_of_a_control_unit_is_small_and_takes_no_memory(tmp_path):
     calls = (
         "void step(double u, double *y) { servoident_step(&m, u, y); }\nvoid reset(void) { servoident_reset(&m); }\n"
     )
-    (tmp_path / "unit.c").write_text(f'#include "machine.h"\nstatic servoident_machine m;\n{calls}')
-    subprocess.run([compiler(), "-Os", "-std=c99", "-c", "unit.c"], cwd=tmp_path, check=True)
-    tools = [shutil.which("size"), shutil.which("nm")]
-    if not all(tools):
-        pytest.skip("no binutils on this machine")
-    told, called = (
-        subprocess.run([tool, *option, "unit.o"], cwd=tmp_path, check=True, capture_output=True, text=True).stdout
-        for tool, option in zip(tools, ((), ("-u",)), strict=True)
-    )
-    assert int(told.splitlines()[1].split()[3]) < 64 * 1024
-    assert {line.split()[-1] for line in called.splitlines()} <= {"sqrt", "memset", "memcpy", "fmod"}
+    size, called = unit_of_control(f'#include "machine.h"\nstatic servoident_machine m;\n{calls}', tmp_path)
+    assert size < 64 * 1024
+    assert called <= {"sqrt", "memset", "memcpy", "fmod"}
 
 
 def test_the_mat_file_of_a_bench_holds_its_blocks():

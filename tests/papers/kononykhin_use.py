@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import shutil
-import subprocess
 import tempfile
 import time
 from dataclasses import replace
@@ -12,13 +10,12 @@ from pathlib import Path
 
 import numpy as np
 
-from ident.bench.acceptance import found_quantities, sheet
+from ident.bench.acceptance import sheet
 from ident.bench.analysis import analyse
 from ident.bench.describing_function import first_harmonic
 from ident.bench.position_loop import Regulator, margins
 from ident.bench.records import bench_set
 from ident.export import as_fmu, as_header, exported
-from ident.export.identification import QUANTITIES, as_identification, values_of
 from ident.fit.settings import Settings
 from ident.planning.plan import plan
 from ident.rig.limits import RigLimits
@@ -28,10 +25,10 @@ from tests.acceptance.test_rounding import SHORT
 from tests.bench.sets import as_matrix, as_set
 from tests.bench.test_diagnosis import CALLED, HIDDEN, SI, fitted, matrix_with, plain
 from tests.bench.test_position_loop import SMOOTH, Actuator, model_of, sine
-from tests.export.machines import compiled, largest_error
+from tests.export.machines import compiled, largest_error, unit_of_control
 from tests.export.test_bench import RATE, current, of_bench
 from tests.export.test_bench import reference as exported_truth
-from tests.export.test_identification import SEED, identified
+from tests.export.test_identification import SEED, off_the_sheet
 from tests.papers import data
 from tests.papers.row import Measured, Row, counted
 from tests.reference import kononykhin_reference as reference
@@ -196,18 +193,16 @@ def embedded() -> tuple[Measured, ...]:
     machine, u = exported(of_bench(), sample_rate=RATE), current()
     with tempfile.TemporaryDirectory() as folder:
         found = compiled(machine, u, Path(folder))
-        unit = Path(folder) / "unit.c"
         (Path(folder) / "machine.h").write_text(as_header(machine))
-        unit.write_text('#include "machine.h"\nstatic servoident_machine m;\n'
-                        "void step(double u, double *y) { servoident_step(&m, u, y); }\n")  # fmt: skip
-        subprocess.run([shutil.which("gcc") or "cc", "-Os", "-c", "unit.c"], cwd=folder, check=True)
-        told = subprocess.run(["size", "unit.o"], cwd=folder, check=True, capture_output=True, text=True).stdout
+        call = "void step(double u, double *y) { servoident_step(&m, u, y); }\n"
+        source = f'#include "machine.h"\nstatic servoident_machine m;\n{call}'
+        size, _ = unit_of_control(source, Path(folder))
     position, _ = exported_truth(u)
     off = largest_error(found[:, machine.outputs.index("displacement")], position)
     return (
         Measured("identification in C, from values 10 % off, against the sheet", identified_off(), "of a value", 1e-6),
         Measured("C against the flat actuator", float(off), "of its std", 1e-5),
-        Measured("code and state by gcc -Os", int(told.splitlines()[1].split()[3]) / 1024, "kB", 64.0),
+        Measured("code and state by gcc -Os", size / 1024, "kB", 64.0),
         Measured("FMU", len(as_fmu(machine)) / 1024, "kB", None, 1.0),
     )
 
@@ -216,13 +211,8 @@ def identified_off() -> float:
     """How far the compiled identification ends from the sheet, of the quantity that is farthest."""
     truth = reference.scattered(SEED)
     bench = as_set(truth, reference.full_set(truth, SEED, short=True))
-    analysis = analyse(bench)
-    values = np.array(values_of(analysis.model))
-    begin = values * (1 + 0.1 * np.random.default_rng(SEED).uniform(-1, 1, len(values)))
     with tempfile.TemporaryDirectory() as folder:
-        found, _ = identified(as_identification(analysis), bench, begin, Path(folder))
-    told = found_quantities(analysis)
-    return max(abs(float(found[i] / told[name].value - 1)) for i, name in enumerate(QUANTITIES))
+        return max(map(abs, off_the_sheet(bench, analyse(bench), Path(folder)).values()))
 
 
 def over_conditions() -> tuple[Measured, ...]:
