@@ -36,3 +36,14 @@ def test_the_error_of_a_difference_holds_for_a_record_of_twenty_correlation_time
     assert held >= 0.8 * count  # both sides: 10 % are chance
     assert held >= two - 0.06 * count
     assert np.median(bounds) < 0.8
+
+
+def test_a_record_of_forty_correlation_times_has_more_blocks_than_ten_of_them_would_give() -> None:
+    """Ten of four correlation times and more, where blocks of ten would be four; seeds 700 to 719."""
+    found, long = [], replace(EVIDENCE_CRITERIA, enough_blocks=1)
+    for seed in range(700, 720):
+        series = slow(np.random.default_rng(seed), 1600, 0.95)
+        found.append((block_mean([series], EVIDENCE_CRITERIA).blocks, block_mean([series], long).blocks))
+    short, of_ten = np.median(found, axis=0)
+    assert short >= 8
+    assert of_ten <= 5

@@ -59,7 +59,7 @@ class EvidenceCriteria:
     enough_blocks: int = 12
     """[blocks] Of a record, up to which its blocks may be shorter than ten correlation times. Why: Student's value of
     twelve is 1.8, one tenth above that of many; that of four is 2.4, and their scatter is hardly known.
-    Test: test_blocks.py::test_the_error_of_a_difference_holds_for_a_record_of_twenty_correlation_times"""
+    Test: test_blocks.py::test_a_record_of_forty_correlation_times_has_more_blocks_than_ten_of_them_would_give"""
     whole_runs: int = 4
     """[runs] Runs from which on whole runs are the blocks. Why: what differs from run to run shows between runs
     only; of fewer than four their scatter tells nothing.
