@@ -68,12 +68,9 @@ class FittedModel:
         return [run.measured - outputs[run.id] for run in runs]
 
     def _seen(self, number: int, residual: Array) -> Array:
-        """A residual of one of the fitted runs as the loss sees it."""
-        return self._as_counted(self.fitness.runs[number], residual)
-
-    def _as_counted(self, run: Run, residual: Array) -> Array:
-        """A residual of any run as the loss sees it: less its mean or the offset of its transducer, or over windows."""
-        if self.fitness.horizon is None and run.mean_counts:
+        """A residual of a run as the loss sees it: less its mean or the offset of its transducer, or over windows."""
+        run = self.fitness.runs[number]
+        if self.local.runs[number].counted:
             return residual - offset_at(run, self._offsets)
         with np.errstate(over="ignore", invalid="ignore"):
             return self.fitness.left(run, run.measured - residual)
@@ -216,9 +213,9 @@ class FittedModel:
         return {"fit": self.error, "held_out": held_out, "verify": verify}
 
     def residuals(self, runs: Sequence[Run]) -> list[Array]:
-        """The residuals of any runs of the matrix, (n,) each, as the loss sees them."""
+        """What it leaves of any runs of the matrix, (n,) each, less its mean or over windows."""
         outputs = self.fitness.fresh(tuple(runs)).outputs(self.point)
-        return [self._as_counted(run, run.measured - outputs[run.id]) for run in runs]
+        return [self.fitness.left(run, outputs[run.id]) for run in runs]
 
     @cached_property
     def _known(self) -> Covariance:

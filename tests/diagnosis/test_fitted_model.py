@@ -16,9 +16,6 @@ from ident.diagnosis.evidence.energy_bands import EnergyBands, Record
 from ident.diagnosis.fitted_model import FittedModel
 from ident.diagnosis.report import _ladder
 from ident.fit.levenberg_marquardt import Way, promise
-from ident.fit.settings import Settings
-from ident.matrix import Actuator, Matrix
-from ident.run import Run
 
 MEASURED = np.sin(np.arange(1000) / 50.0)
 
@@ -147,18 +144,3 @@ def test_a_better_optimum_is_sought_unless_what_is_left_is_known_to_be_noise(at_
         leading=lambda starts, _aim: starts, refit=lambda _effects, _values: other, converged=lambda refit: refit,
     )  # fmt: skip
     assert CandidateModels.best_optimum(models, found).local.error == error
-
-
-@pytest.mark.parametrize("stated", [{}, {"force": False}])
-def test_the_mean_of_a_run_to_verify_counts_where_its_zero_is_not_its_own(stated):
-    """A third level of a force lies far above the two that are fitted."""
-    speed = np.cos(np.arange(1500) / 50.0)
-    runs = tuple(
-        Run(name, "", 100.0, {"velocity": speed, "force": 3.0 * speed + level}, {"velocity": "m/s", "force": "N"},
-            output="force", use=use, zeroed=stated)
-        for name, level, use in (("low", 0.0, "fit"), ("high", 20.0, "fit"), ("higher", 60.0, "verify"))
-    )  # fmt: skip
-    models = CandidateModels.of(Matrix(Actuator("A"), runs), Settings(model="specimen"))
-    fitted = models.refit((), {"cS": 3.0, "kS": 0.1, "mS": 0.01})
-    (left,) = fitted.residuals(models.matrix.of_use("verify"))
-    assert left.mean() > 30.0 if stated else abs(left.mean()) < 1e-9
