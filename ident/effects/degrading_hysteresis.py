@@ -2,8 +2,7 @@
 
 from ident.effects.effect import Effect
 from ident.effects.needs import one_force_record
-from ident.effects.specimen_hysteresis import YIELD_DISPLACEMENT
-from ident.parameter import Parameter
+from ident.parameter import AtReversals, Parameter
 
 DEGRADING_HYSTERESIS = Effect(
     name="degrading_hysteresis",
@@ -19,7 +18,18 @@ DEGRADING_HYSTERESIS = Effect(
     ),
     units={"S": "N"},
     shape=(
-        YIELD_DISPLACEMENT,
+        Parameter(
+            "yield_displacement",
+            "xy",
+            "m",
+            1e-5,
+            1e-2,
+            5e-4,
+            "displacement at yield",
+            relative=0.2,
+            of_motion=True,
+            at_reversals=AtReversals.WAY,
+        ),
         Parameter("degradation", "delta", "1", 1e-3, 1.0, 0.1, "loss of strength and stiffness for each energy fy xy"),
         Parameter("pinching", "zeta", "1", 0.02, 0.98, 0.3, "loss of stiffness near zero force after many cycles"),
     ),

@@ -3,11 +3,6 @@
 from ident.effects.effect import Effect
 from ident.parameter import AtReversals, Parameter
 
-YIELD_DISPLACEMENT = Parameter(
-    "yield_displacement", "xy", "m", 1e-5, 1e-2, 5e-4, "displacement at yield", relative=0.2, of_motion=True,
-    at_reversals=AtReversals.WAY,
-)  # fmt: skip
-"""Where a specimen of the Bouc-Wen class yields."""
 SPECIMEN_HYSTERESIS = Effect(
     name="specimen_hysteresis",
     place="load",
@@ -20,7 +15,18 @@ SPECIMEN_HYSTERESIS = Effect(
     ),
     units={"S": "N"},
     shape=(
-        YIELD_DISPLACEMENT,
+        Parameter(
+            "yield_displacement",
+            "xy",
+            "m",
+            1e-5,
+            1e-2,
+            5e-4,
+            "displacement at yield",
+            relative=0.2,
+            of_motion=True,
+            at_reversals=AtReversals.WAY,
+        ),
         Parameter("exponent", "n", "1", 1.0, 5.0, 1.0, "sharpness of the yield"),
         Parameter(
             "gamma", "gamma", "1", -2.0, 2.0, 0.5, "γ/2β: at ½ it yields at fy, above it softens, below it hardens"

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import pytest
-from playwright.sync_api import Browser, Page
+from playwright.sync_api import Browser, ConsoleMessage, Page
 
 from tests.app.conftest import zipped
 from tests.browser.window import Window, hearing, signed_in
@@ -92,12 +92,17 @@ class Watch:
     requests: list[str]
 
 
+def complaint(message: ConsoleMessage) -> str:
+    """What the browser's console said, and of which address."""
+    return f"{message.text} {message.location['url']}"
+
+
 @pytest.fixture(autouse=True)
 def watch(page, site) -> Iterator[Watch]:
     """Listens to every test's page; at the end nothing was complained of and nothing left the origin."""
     seen = Watch([], [])
     heard = {
-        "console": lambda message: seen.complaints.append(message.text) if message.type != "log" else None,
+        "console": lambda message: seen.complaints.append(complaint(message)) if message.type != "log" else None,
         "pageerror": lambda error: seen.complaints.append(str(error)),
         "request": lambda request: seen.requests.append(request.url),
     }

@@ -99,6 +99,8 @@ def test_files_of_any_form_are_described_each_by_its_own(page, watch, site, tmp_
     clock.select_option("time")
     expect(page.locator("[data-question]")).to_have_count(0, timeout=60_000)
     expect(page.locator("#draft [role=alert]")).to_be_empty()
+    for plot in page.locator("#draft td img").all():
+        expect(plot).to_have_js_property("naturalWidth", 160)  # the draft, and so its plots, end with the data set
     page.get_by_role("button", name="Create data set").click(timeout=60_000)
     expect(page.get_by_role("heading", name=f"Test data of CASE-{case.name}")).to_be_visible(timeout=60_000)
     made = page.url.rpartition("/")[2]
