@@ -28,6 +28,14 @@ TOLD = 1e-6
 """[of the samples] Fewer tell no mean, as where a first position does the same as an offset.
 
 Test: tests/fit/test_windows.py::test_what_a_first_position_does_as_well_as_an_offset_is_the_first_position"""
+ALIKE = 0.01
+"""[of the samples] Fewer tell the mean only where the offset is determined: first states do nearly the same.
+
+Test: tests/fit/test_windows.py::test_an_offset_that_first_states_do_nearly_as_well_is_none_unless_it_is_determined"""
+RECOGNISED = 3.0
+"""Standard errors beyond which an offset is determined: chance passes that once in 370 records.
+
+Test: tests/fit/test_transducer.py::test_without_an_offset_nothing_is_found_and_the_fit_is_that_of_equation_17"""
 _ESCAPED = 1e12  # times the record's power: the model has run away, and its nuisances would explain anything
 
 
@@ -132,13 +140,23 @@ class NormalMatrices:
         """How many samples tell the mean: all of them where no first state does the same."""
         return float(self._level @ self.blocks.sum(axis=0) @ self._level)
 
+    @property
+    def _offset_determined(self) -> bool:
+        """Whether the offset is beyond chance, by its standard error from the sums over blocks."""
+        if self.informing <= TOLD * self.length:
+            return False
+        offset = self.offset * np.sqrt(self.total / self.length)
+        scatter = float(np.linalg.norm(self.sums_about(self.means[-1])))
+        return bool(abs(offset) * self.informing > RECOGNISED * scatter)
+
     def begun_without_offset(self) -> NormalMatrices:
         """The same with what the first states do as well as an offset left to them: then they tell the mean alone.
 
         The first position of a machine that integrates moves its whole record, as an offset does. Of both together
-        only the sum is known, and the least squares of least norm would share it between them by chance.
+        only the sum is known, and the least squares of least norm would share it between them by chance. One with a
+        weak spring forgets it so slowly that the difference of both is hardly known: it would be any number.
         """
-        if not len(self.release) or self.informing > TOLD * self.length:
+        if not len(self.release) or self.informing > ALIKE * self.length or self._offset_determined:
             return self
         p = self.remove.shape[1] - 1
         alike = -self._level[p:-2]  # what of each first state does the same as an offset of 1

@@ -22,17 +22,13 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from ident.fit.normal_matrices import TOLD, NormalMatrices
+from ident.fit.normal_matrices import RECOGNISED, TOLD, NormalMatrices
 from ident.run import Run, over_runs
 from ident.words.error import MEAN_COUNTS
 
 Array = NDArray[np.float64]
 _ROUNDS = 200  # of reweighting
 _SETTLED = 1e-13  # of the largest mean: a step that changes nothing
-RECOGNISED = 3.0
-"""Standard errors beyond which an offset that nobody stated is one: chance passes that once in 370 records.
-
-Test: test_transducer.py::test_without_an_offset_nothing_is_found_and_the_fit_is_that_of_equation_17"""
 
 
 @dataclass(frozen=True)
