@@ -117,6 +117,8 @@ def verdict_text(
         found.append(_probable("verdict.nothing", "nothing", probabilities, before=before))
     found += [message("verdict.bounded", effect=named(name)) for name in bounded]
     found += [_group(group, added, named, unexplained) for group in groups]
+    if not against and (others := _others(added, groups, probabilities)):
+        found.append(message("verdict.others", others=others))
     found += [message("verdict.label", run=one.run, what=one.what, evidence=one.evidence) for one in suspects]
     if unexplained:
         found += _remaining(complete, limit, probabilities, in_band, floor)
@@ -181,6 +183,15 @@ def _group(group: Sequence[str], added: Sequence[str], named: Callable[[str], st
     else:
         key = "verdict.group_unexplained" if unexplained else "verdict.group"
     return message(key, group=list(map(named, group)))
+
+
+def _others(added: Sequence[str], groups: Sequence[Sequence[str]], probabilities: Mapping[str, float]) -> list[Message]:
+    """Effects that are neither named nor of a group, and at least half as probable as one that is named."""
+    said = {*added, *(name for group in groups for name in group), "nothing", "unlisted"}
+    least = min((probabilities[name] for name in added if name in probabilities), default=1.0) / 2
+    others = [name for name, probability in probabilities.items() if name not in said and probability >= least]
+    others.sort(key=probabilities.__getitem__, reverse=True)
+    return [_probable("effect", name, probabilities, names=[title(name)]) for name in others]
 
 
 def has_two(group: Sequence[str], added: Sequence[str]) -> bool:

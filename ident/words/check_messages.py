@@ -64,13 +64,13 @@ CHECKS: Mapping[str, str] = {
         "the time of {run:run} has gaps: {missing} samples are missing, and they were interpolated. Use the longest "
         "part without a gap (rows), or repeat the run",
     "check.jitter":
-        "the clock of {run:run} has a jitter of up to {jitter:.2g} samples, and a constant sample rate is assumed. "
+        "the clock of {run:run} has a jitter of up to {jitter:.3g} samples, and a constant sample rate is assumed. "
         "Record with a hardware clock, or print the time with more digits",
     "check.jitter_held":
-        "the clock of {run:run} has a jitter of up to {jitter:.2g} samples. The record was resampled to {rate:.6g} Hz "
+        "the clock of {run:run} has a jitter of up to {jitter:.3g} samples. The record was resampled to {rate:.6g} Hz "
         "by its time column, with the steps of the held command at their time",
     "check.jitter_interpolated":
-        "the clock of {run:run} has a jitter of up to {jitter:.2g} samples. The record was resampled to {rate:.6g} Hz "
+        "the clock of {run:run} has a jitter of up to {jitter:.3g} samples. The record was resampled to {rate:.6g} Hz "
         "by its time column, by interpolation",
     "check.few_samples":
         "{run:run} has {samples:.2g} samples per cycle at {highest:.3g} Hz, and {share:share} of the power of the "

@@ -124,6 +124,7 @@ VERDICT: Mapping[str, str] = {
     "verdict.two_unexplained":
         "These data cannot tell which two of these are present: {group:listed}. Their refits differ by less than "
         "chance, or than the unexplained residual.",
+    "verdict.others": "Nearly as probable: {others:all}.",
     "verdict.label": "The label of {run:run} in matrix.yaml looks wrong ({what}): {evidence}.",
     "verdict.unlisted": "Something remains that no effect in the library explains.",
     "verdict.unlisted_probable":

@@ -58,6 +58,17 @@ def test_an_effect_of_a_group_is_said_with_the_others_and_the_probability_of_the
     assert "More probably this has another cause, or is chance." in text
 
 
+def test_effects_that_are_nearly_as_probable_as_the_named_one_are_said():
+    """Dry friction of two forms explains nearly as much: whoever reads one name alone would think that it is sure."""
+    probable = {"presliding_friction": 0.11, "coulomb_friction": 0.1, "backlash": 0.09, "dead_zone": 0.05}
+    text = verdict_text(("presliding_friction",), [("presliding_friction", "backlash")], (), False, {"fit": 0.1}, 0.2,
+                        probabilities=probable | {"nothing": 0.2, "unlisted": 0.4})  # fmt: skip
+    assert "Nearly as probable: Coulomb friction (probability 10 %)." in text
+    sure = probable | {"presliding_friction": 0.8}
+    text = verdict_text(("presliding_friction",), (), (), False, {"fit": 0.1}, 0.2, probabilities=sure)
+    assert "as probable" not in text
+
+
 def test_where_no_more_effects_could_be_added_it_is_not_said_that_none_explains_the_rest():
     said = [verdict_text(("dead_zone",), (), (), True, {"fit": 0.1}, 0.2, limit=limit) for limit in (None, 1)]
     assert "no effect in the library explains" in said[0]
