@@ -335,6 +335,10 @@ class Ambiguity:
 
     alternatives: int = 3
     """[effects] Of one other model that are told. Why: a sentence holds no more."""
+    worth_saying: float = 0.05
+    """[probability] Below which an effect is not worth a word as a rival of one that is named. Why: one in 20 is
+    the custom of the field. Test: test_sentences.py::
+    test_effects_that_are_nearly_as_probable_as_the_named_one_are_said"""
     delay_near: float = 1.05
     """[ratio of errors] Above which another lag in its place is given up. Why: what cannot come below it is not
     equal."""

@@ -7,6 +7,7 @@ from types import MappingProxyType
 from typing import Any
 
 from ident.diagnosis.candidate import Candidate
+from ident.diagnosis.criteria import CRITERIA
 from ident.diagnosis.discovery.proposal import Proposal
 from ident.diagnosis.evidence.comparison import HALVES, Evidence, generalises, losing_part, matters
 from ident.diagnosis.evidence.criteria import EVIDENCE_CRITERIA
@@ -186,9 +187,14 @@ def _group(group: Sequence[str], added: Sequence[str], named: Callable[[str], st
 
 
 def _others(added: Sequence[str], groups: Sequence[Sequence[str]], probabilities: Mapping[str, float]) -> list[Message]:
-    """Effects that are neither named nor of a group, and at least half as probable as one that is named."""
+    """Effects that are neither named nor of a group, and at least half as probable as one that is named.
+
+    What is hardly probable has no rivals, and is none.
+    """
     said = {*added, *(name for group in groups for name in group), "nothing", "unlisted"}
-    least = min((probabilities[name] for name in added if name in probabilities), default=1.0) / 2
+    worth = CRITERIA.ambiguity.worth_saying
+    named = [probabilities[name] for name in added if probabilities.get(name, 0.0) >= worth]
+    least = max(min(named, default=2.0) / 2, worth)
     others = [name for name, probability in probabilities.items() if name not in said and probability >= least]
     others.sort(key=probabilities.__getitem__, reverse=True)
     return [_probable("effect", name, probabilities, names=[title(name)]) for name in others]

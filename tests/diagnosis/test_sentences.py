@@ -64,6 +64,9 @@ def test_effects_that_are_nearly_as_probable_as_the_named_one_are_said():
     text = verdict_text(("presliding_friction",), [("presliding_friction", "backlash")], (), False, {"fit": 0.1}, 0.2,
                         probabilities=probable | {"nothing": 0.2, "unlisted": 0.4})  # fmt: skip
     assert "Nearly as probable: Coulomb friction (probability 10 %)." in text
+    text = verdict_text(("presliding_friction", "dead_zone"), (), (), False, {"fit": 0.1}, 0.2,
+                        probabilities={**probable, "dead_zone": 0.002, "free_play": 0.001})  # fmt: skip
+    assert "Nearly as probable: Coulomb friction (probability 10 %) and backlash (probability 9 %)." in text
     sure = probable | {"presliding_friction": 0.8}
     text = verdict_text(("presliding_friction",), (), (), False, {"fit": 0.1}, 0.2, probabilities=sure)
     assert "as probable" not in text
