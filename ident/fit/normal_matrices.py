@@ -162,7 +162,20 @@ class NormalMatrices:
         alike = -self._level[p:-2]  # what of each first state does the same as an offset of 1
         size = np.sqrt(self.total / self.length)
         release = self.release + self.offset * size * alike
-        return replace(self, release=release, offset=0.0, means=np.zeros_like(self.means))
+        if self.informing <= TOLD * self.length:
+            return replace(self, release=release, offset=0.0, means=np.zeros_like(self.means))
+        return replace(self.about(self.means)._centred(), release=release)
+
+    def _centred(self) -> NormalMatrices:
+        """The same about the means of [J, r], with what else is projected out as it is."""
+        total, p = self.blocks.sum(axis=0), self.remove.shape[1] - 1
+        means = total[-2] @ self.remove / self.length
+        remove = self.remove.copy()
+        remove[-2] -= means
+        gram = self.gram - self.length * np.outer(means, means)
+        scores = (self.blocks @ remove[:, -1]) @ remove[:, :p]
+        offset = float(means[-1] / np.sqrt(self.total / self.length))
+        return replace(self, gram=gram, remove=remove, scores=scores, means=means, offset=offset, mean_power=0.0)
 
     def about(self, means: Array) -> NormalMatrices:
         """The same with the mean counted: [J, r] have these means, (p+1,)."""

@@ -274,8 +274,8 @@ def turning_rotor(use: str, seed: int, offset: float = 0.0) -> Run:
     return Run(use, "", 50, channels, {"drive_force": "N", "velocity": "m/s"}, output="velocity", hold="zoh", use=use)
 
 
-@pytest.mark.parametrize(("offset", "found"), [(0.0, 0.0), (3.0, 2.52)])
-def test_an_offset_that_first_states_do_nearly_as_well_is_none_unless_it_is_determined(offset, found):
+@pytest.mark.parametrize(("offset", "found", "error"), [(0.0, 0.0, 0.0985), (3.0, 2.52, 0.0968)])
+def test_an_offset_that_first_states_do_nearly_as_well_is_none_unless_it_is_determined(offset, found, error):
     """A spring that is next to none lets go of a first position so slowly that it moves the whole record, too.
 
     Without an offset, one of twice the deviation of the speed was found, and the error with the mean was 200 %.
@@ -283,5 +283,5 @@ def test_an_offset_that_first_states_do_nearly_as_well_is_none_unless_it_is_dete
     matrix = Matrix(Actuator("M"), (turning_rotor("fit", 1, offset),))
     fitness = CandidateModels.of(matrix, Settings(model="drive"), horizon=None).fitness(())
     (run,) = fitness.exact(fitness.space.point({"m0": 0.1, "c0": 1.0, "k0": 0.003})).runs
-    assert run.error == pytest.approx(0.097, abs=0.001)
+    assert run.error == pytest.approx(error, abs=2e-4)
     assert run.offset * matrix.runs[0].measured.std() == pytest.approx(found, abs=0.02)
