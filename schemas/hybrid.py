@@ -125,7 +125,9 @@ class HybridRequest(_Asked):
     unit or in SI. An `isolator` on the specimen belongs to the structure, and no controller knows it. With `map` there
     is also the map over the shares of mass and stiffness that are physical, for several actuators over the delays of
     two of them. With a `spread` 100 machines that are drawn from it are simulated, too. `before` is the loop when it
-    was stable, by which the cause is found where it no longer is. `at` moves the machine to another condition.
+    was stable, by which the cause is found where it no longer is. `at` moves the machine to another condition. Of
+    several actuators a `spread` and a condition hold for the machine of each, by the sets of its model, and each has
+    an isolator, or the `isolator_part` of that name alone.
     """
 
     fit: str
@@ -135,6 +137,7 @@ class HybridRequest(_Asked):
     effects: list[Short] = Field(default_factory=list, max_length=50)
     set: dict[str, Value] = Field(default_factory=dict, max_length=50)
     isolator: SpecimenRequest | None = None
+    isolator_part: Short | None = None
     map: bool = False
     spread: SpreadRequest | None = None
     at: AtRequest | None = None

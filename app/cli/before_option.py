@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -11,8 +12,12 @@ from app.cli.arguments import number
 from app.cli.given import read_fit
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from ident.fit.result import FitResult
     from ident.hybrid.case import Case
+    from ident.hybrid.coupled_case import CoupledCase
+    from ident.hybrid.coupled_loop import EarlierParts
     from ident.hybrid.hybrid_loop import EarlierCase
 
 EarlierFit = Annotated[
@@ -30,6 +35,29 @@ CaseBefore = Annotated[
     str | None,
     typer.Option("--before-case", metavar="CASE", help="Case when its loop was stable. Default: this case."),
 ]
+
+
+@dataclass(frozen=True)
+class Before:
+    """The three options as they were given."""
+
+    fit: Path | None
+    gain: str | None
+    case: str | None
+
+
+def earlier_parts(fits: Sequence[FitResult], of: CoupledCase, given: Before) -> EarlierParts | None:
+    """As :func:`earlier_case`, of several actuators, whose machines are now those of `fits`. Raises Unusable."""
+    from ident.hybrid.coupled_loop import EarlierParts
+    from ident.hybrid.coupled_reading import read_system
+
+    if given == Before(None, None, None):
+        return None
+    then = None if given.case is None else read_system(given.case)
+    folder = Path(given.case or "").parent
+    fit = None if given.fit is None else read_fit(given.fit)
+    stated = EarlierParts.stated(fits, of, then, fit, lambda name: read_fit(folder / name))
+    return stated.with_gain(gain_of(given.gain))
 
 
 def gain_of(text: str | None) -> float | None:

@@ -9,10 +9,10 @@ import typer
 
 from app.cli.arguments import effect_values
 from app.cli.at_option import At, Over, Sets, moved_to
-from app.cli.before_option import CaseBefore, EarlierFit, EarlierGain, earlier_case
+from app.cli.before_option import Before, CaseBefore, EarlierFit, EarlierGain, earlier_case
 from app.cli.figure_files import write_figures
 from app.cli.given import read_fit
-from app.cli.hybrid_parts import refuse_options, show_parts
+from app.cli.hybrid_parts import PartsAsked, show_parts
 from app.cli.output import STANDARD_OUTPUT, check_target, write_bytes, write_json
 from app.cli.progress import shown
 from app.cli.rig_option import RigFile, rig_in
@@ -47,7 +47,7 @@ def hybrid(
         str | None,
         typer.Option(
             metavar="KEY=VALUE,…",
-            help="Isolator on the specimen, unknown to the controller: mass, stiffness, damping.",
+            help="Isolator on the specimen, unknown to the controller: mass, stiffness, damping; part of several.",
         ),
     ] = None,
     shares: Annotated[
@@ -84,16 +84,16 @@ def hybrid(
     from ident.hybrid.specimen_effects import wanted_in
 
     check_target(json)
-    moved, of = moved_to(read_fit(fit), at, over, sets), read_system(case)
-    result = moved.fit
+    own, of = read_fit(fit), read_system(case)
     of = of if ground is None else of.with_ground(ground)
     if isinstance(of, CoupledCase):
-        refuse_options(
-            at=at, isolator=isolator, spread=spread, before=before, before_gain=before_gain, before_case=before_case
+        of, on = of if rig is None else of.changed(rig=rig_in(rig)), effect_values(effect or [], own.model)
+        asked = PartsAsked(
+            controller, on, shares, isolator, spread, at, over, sets, Before(before, before_gain, before_case)
         )
-        of = of if rig is None else of.changed(rig=rig_in(rig))
-        on = effect_values(effect or [], result.model)
-        raise typer.Exit(0 if show_parts(result, of, Path(case).parent, controller, on, shares, json, out) else 1)
+        raise typer.Exit(0 if show_parts(own, of, Path(case).parent, asked, json, out) else 1)
+    moved = moved_to(own, at, over, sets)
+    result = moved.fit
     of = of if rig is None else replace(of, rig=rig_in(rig))
     effects, wide = effect_values(effect or [], result.model), spread_in(spread, result.model)
     earlier = earlier_case(result, of, before, before_gain, before_case)

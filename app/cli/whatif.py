@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -29,6 +30,7 @@ if TYPE_CHECKING:
     from ident.run import Specimen
 
 _OF_SPECIMEN = {"mass": "mass", "stiffness": "stiffness", "damping": "damping"}
+_PART = "part"
 _NEAR = 2 / 45  # of the frequency: the usual tolerance, 2 Hz at 45 Hz
 
 
@@ -165,19 +167,35 @@ def _change(fit: FitResult, set_: list[str], fitted: list[str], specimen: str | 
 
 def specimen_of(text: str | None, option: str = "--specimen") -> Specimen:
     """A specimen from `mass=2.06 kg, stiffness=30.65 kN/m`, the value of an `option`. Raises Unusable."""
+    return _specimen(_stated(text, option), option, tuple(_OF_SPECIMEN))
+
+
+def isolator_of(text: str) -> tuple[Specimen, str | None]:
+    """An isolator from `stiffness=1 MN/m, part=left`, and the part that has it; None for all. Raises Unusable."""
+    option = "--isolator"
+    stated = _stated(text, option)
+    part = next((value.strip() for name, value in stated if name == _PART), None)
+    return _specimen([one for one in stated if one[0] != _PART], option, (*_OF_SPECIMEN, _PART)), part
+
+
+def _stated(text: str | None, option: str) -> list[tuple[str, str]]:
+    """The names and values of a text such as `mass=2.06 kg, stiffness=30.65 kN/m`. Raises Unusable."""
+    parts = re.split(r",(?=\s*\w+\s*=)", text or "")  # a comma before digits is a decimal sign
+    return [split(part, option, "mass=…,stiffness=…,damping=…") for part in parts if part.strip()]
+
+
+def _specimen(stated: Sequence[tuple[str, str]], option: str, names: Sequence[str]) -> Specimen:
     from ident.errors import Unusable
     from ident.run import Specimen
     from ident.units.quantity import quantity
 
-    form, found = "mass=…,stiffness=…,damping=…", {}
-    for part in re.split(r",(?=\s*\w+\s*=)", text or ""):  # a comma before digits is a decimal sign
-        if part.strip():
-            name, value = split(part, option, form)
-            if name not in _OF_SPECIMEN:
-                raise Unusable("bad-option", f"a specimen has no {name!r}", option, did_you_mean(name, _OF_SPECIMEN))
-            found[name] = quantity(value, _OF_SPECIMEN[name], f"{option} {name}")
-            if found[name] < 0:
-                raise Unusable("bad-number", f"{value} is below 0", f"{option} {name}", "give 0 or more")
+    found = {}
+    for name, value in stated:
+        if name not in _OF_SPECIMEN:
+            raise Unusable("bad-option", f"a specimen has no {name!r}", option, did_you_mean(name, names))
+        found[name] = quantity(value, _OF_SPECIMEN[name], f"{option} {name}")
+        if found[name] < 0:
+            raise Unusable("bad-number", f"{value} is below 0", f"{option} {name}", "give 0 or more")
     return Specimen(**found)
 
 

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 from app.hybrid.asked import AskedCase, asked_case
 from ident.fit.result import FitResult
 from ident.hybrid.case import Case
+from ident.hybrid.coupled_case import CoupledCase
+from ident.hybrid.coupled_loop import EarlierParts
 from ident.hybrid.hybrid_loop import EarlierCase
 from schemas.hybrid import EarlierRequest
 
@@ -32,3 +34,14 @@ def earlier_case(
     then = find(given["fit"]) if "fit" in given else fit
     was = AskedCase(given["case"], None).read() if "case" in given else case
     return EarlierCase(then, was).with_gain(given.get("gain"))
+
+
+def earlier_parts(
+    given: Stated | None, now: Sequence[FitResult], case: CoupledCase, find: Callable[[str], FitResult]
+) -> EarlierParts | None:
+    """As :func:`earlier_case`, of several actuators, whose machines are now those of the fits."""
+    if given is None:
+        return None
+    then = find(given["fit"]) if "fit" in given else None
+    was = AskedCase(given["case"], None).system() if "case" in given else None
+    return EarlierParts.stated(now, case, was, then, find).with_gain(given.get("gain"))

@@ -25,7 +25,7 @@ from ident.fit.result import FitResult
 from ident.hybrid.acting import FEEDFORWARD, linear
 from ident.hybrid.case import Case
 from ident.hybrid.controller import Controller, SampledController, name_of
-from ident.hybrid.coupled_case import CoupledCase, System
+from ident.hybrid.coupled_case import CoupledCase, System, case_of_part
 from ident.hybrid.machine import machine
 from ident.plain import written
 from schemas.fit import JobView
@@ -41,14 +41,14 @@ MOST_MAPPED = 500_000
 def submit(context: Context, request: HybridRequest, job: str) -> JobView:
     """Queue a hybrid simulation under the id decided for its job. Raises Unusable where it cannot be run."""
     row = fits.find(context, request.fit)
-    moved = moved_to(context, FitResult.from_json(row.result), request.at)
-    fit = moved.fit
-    asked = asked_case(request.case, request.ground)
-    system, effects = asked.system(), effects_of(request, fit.model)
+    own, asked = FitResult.from_json(row.result), asked_case(request.case, request.ground)
+    system, effects = asked.system(), effects_of(request, own.model)
     if isinstance(system, CoupledCase):
-        settings = parts.settings(context, request, fit, system, asked, effects)
+        settings = parts.settings(context, request, own, system, asked, effects)
         return jobs.record(context, job, row.matrix, settings, request.fit, KIND)
-    case, isolator = system, None if request.isolator is None else specimen_of(request.isolator, "isolator")
+    moved = moved_to(context, own, request.at)
+    fit, case = moved.fit, case_of_part(system, request.isolator_part)
+    isolator = None if request.isolator is None else specimen_of(request.isolator, "isolator")
     given, stored = kept_controller(context, request.controller)
     chosen = acting(given, fit, case)
     _check(fit, case if isolator is None else case.with_isolator(isolator), effects, chosen, request.map)

@@ -78,9 +78,10 @@ class HybridWork(InOnePiece):
 
     def _parts(self, asked: Mapping[str, Any], fit: FitResult, case: CoupledCase) -> State:
         """The same of several actuators."""
-        main, alone = simulated(asked, fit, case, self._blob, self.task.report)
+        main, alone, drawn = simulated(asked, fit, case, self._blob, self.task.report)
         return {
             "result": main.to_json(), "without": alone.to_json() if alone else None, "map": None,
+            "spread": drawn.to_json() if drawn else None,
             "records": base64.b85encode(packed_parts(main.parts, alone.parts if alone else None)).decode(),
         }  # fmt: skip
 

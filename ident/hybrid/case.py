@@ -166,12 +166,16 @@ class Case:
     def with_isolator(self, isolator: Specimen) -> Case:
         """The case whose specimen has an isolator on it: in the laboratory, and in the whole structure."""
         self.not_a_table("isolator")
-        p, own = self.place, self.physical
+        own = self.physical
+        both = Specimen(*(getattr(own, name) + getattr(isolator, name) for name in ("mass", "stiffness", "damping")))
+        return replace(self.with_added(isolator, self.place), physical=both)
+
+    def with_added(self, specimen: Specimen, place: int) -> Case:
+        """The case whose whole structure has a specimen more at a place, which is not this actuator's."""
         whole = {name: getattr(self, name).copy() for name in _STRUCTURE}
         for name, matrix_ in whole.items():
-            matrix_[p, p] += getattr(isolator, name)
-        both = Specimen(*(getattr(own, name) + getattr(isolator, name) for name in ("mass", "stiffness", "damping")))
-        return replace(self, mass=whole["mass"], stiffness=whole["stiffness"], damping=whole["damping"], physical=both)
+            matrix_[place, place] += getattr(specimen, name)
+        return replace(self, mass=whole["mass"], stiffness=whole["stiffness"], damping=whole["damping"])
 
     def not_a_table(self, what: str) -> None:
         """Raise Unusable for what belongs to a structure."""

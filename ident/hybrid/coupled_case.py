@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 from ident.errors import Unusable
 from ident.hybrid.case import Case
 from ident.hybrid.ground import Ground
+from ident.run import Specimen
 from ident.words.nearest import did_you_mean
 
 Array = NDArray[np.float64]
@@ -145,6 +146,23 @@ class CoupledCase:
         """The case with another motion, as :meth:`ident.hybrid.case.Case.with_ground`."""
         return self.changed(ground=self.cases[0].with_ground(given).ground)
 
+    def with_isolator(self, isolator: Specimen, name: str | None = None) -> CoupledCase:
+        """The case with an isolator on the specimen of each part, or of the part of that `name` alone.
+
+        It stands in the laboratory and in the whole structure. Raises Unusable where there is no such part.
+        """
+        on = self.places if name is None else (self.part(name).case.place,)
+        cases, specimen = self.cases, self.specimen.copy()
+        for number, place in enumerate(self.places):
+            if place in on:
+                specimen[:, number, number] += [getattr(isolator, quantity) for quantity in QUANTITIES]
+                cases = tuple(
+                    case.with_isolator(isolator) if case.place == place else case.with_added(isolator, place)
+                    for case in cases
+                )
+        parts = tuple(replace(one, case=case) for one, case in zip(self.parts, cases, strict=True))
+        return replace(self, parts=parts, specimen=specimen)
+
     def with_delays(self, delays: tuple[int, ...]) -> CoupledCase:
         """The case whose parts have these delays, in samples."""
         cases = (replace(one.case, delay=delay) for one, delay in zip(self.parts, delays, strict=True))
@@ -153,22 +171,6 @@ class CoupledCase:
 
 System = Case | CoupledCase
 """What a hybrid simulation is of: one actuator or several."""
-
-
-SEVERAL = {
-    "at": "the law of a condition moves one machine: give each part the fit at its condition",
-    "isolator": "an isolator belongs to one part: state it in the specimen of the case",
-    "before": "the cause is found for one actuator: the remedies are listed without it",
-    "spread": "machines are drawn for one actuator: run each part as a case of its own",
-}
-"""Why an option is there for one actuator only, with the remedy, by its first word."""
-
-
-def refuse_for_several(options: Mapping[str, object]) -> None:
-    """Raise Unusable where an option is given, by the name that the user knows, that is there for one actuator only."""
-    if where := next((name for name, value in options.items() if value is not None), ""):
-        why, _, remedy = SEVERAL[where.strip("-").partition("-")[0]].partition(": ")
-        raise Unusable("bad-option", f"a case of several parts has none: {why}", where, f"leave it out; {remedy}")
 
 
 def case_of_part(of: System, name: str | None) -> Case:

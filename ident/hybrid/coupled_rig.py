@@ -14,7 +14,7 @@ from ident.errors import Unusable
 from ident.fit.result import FitResult
 from ident.hybrid.controller import Controller, SampledController, name_of, no_controller
 from ident.hybrid.coupled_case import CoupledCase
-from ident.hybrid.coupled_loop import CoupledLoop
+from ident.hybrid.coupled_loop import CoupledLoop, EarlierParts, judge_coupled
 from ident.hybrid.coupled_stability import DelayMap, coupled_critical_delay, coupled_poles, delay_map, with_poles
 from ident.hybrid.machine import Machine, machine
 from ident.hybrid.rig import HELD, RUNAWAY, HybridResult, notes_of
@@ -24,7 +24,6 @@ from ident.hybrid.scores import Scores, scores
 from ident.hybrid.specimen_effects import of_specimen
 from ident.hybrid.substructure import reference
 from ident.progress import Report, silent
-from ident.stability.judgement import judge
 from ident.words.engineering import quantity
 from ident.words.message import message
 from ident.words.percent import percent
@@ -93,6 +92,16 @@ class CoupledResult(Shown):
             yield name, *(quantity(value, "s") if name == "delay" else percent(value) for value in values)
         yield "command_rms", *(quantity(one.command_rms or 0.0, "m") for one in self.parts.values())
 
+    def with_notes(self, notes: Sequence[Sequence[str]]) -> CoupledResult:
+        """The same with notes of each part before its own; one that only some have names these."""
+        of: dict[str, list[str]] = {}
+        for name, said in zip(self.parts, notes, strict=True):
+            for one in said:
+                of.setdefault(one, []).append(name)
+        further = [one if len(names) == len(self.parts) else f"{', '.join(names)}: {one}" for one, names in of.items()]
+        parts = {name: replace(one, notes=(*further, *one.notes)) for name, one in self.parts.items()}
+        return replace(self, parts=parts)
+
     def to_json(self) -> dict[str, Any]:
         """As plain JSON data: what one actuator gives, of the worst of the parts, and `parts` with each of them."""
         data, worst = self.first.to_json(), self.scores
@@ -113,15 +122,16 @@ class CoupledResult(Shown):
 
 def simulate_coupled(
     fits: Sequence[FitResult], case: CoupledCase, controllers: Sequence[Controller],
-    effects: Mapping[str, float] | None = None, report: Report = silent,
+    effects: Mapping[str, float] | None = None, report: Report = silent, before: EarlierParts | None = None,
 ) -> CoupledResult:  # fmt: skip
     """Simulate a case of several actuators, each the machine of its fit under its controller, at rest in the beginning.
 
     `effects` are further effects of every machine: values by name, SI. Each motion is held against the limits of its
-    part. Raises Unusable as :func:`ident.hybrid.rig.simulate_hybrid`.
+    part. `before` is the case when its loop was stable, by which the cause of an unstable one is found. Raises Unusable
+    as :func:`ident.hybrid.rig.simulate_hybrid`.
     """
     machines = machines_of(fits, case, effects)
-    found = simulate_machines(machines, case, controllers, effects, report)
+    found = simulate_machines(machines, case, controllers, effects, report, before)
     if found.first.ended is not None:
         return found
     parts = {
@@ -134,6 +144,7 @@ def simulate_coupled(
 def simulate_compared(
     fits: Sequence[FitResult], case: CoupledCase, controllers: Sequence[Controller],
     effects: Mapping[str, float] | None = None, *, without: bool, mapped: bool, report: Report = silent,
+    before: EarlierParts | None = None,
 ) -> tuple[CoupledResult, CoupledResult | None]:  # fmt: skip
     """The simulation, `mapped` with its map over delays; and the same `without` controllers, None if not wanted.
 
@@ -142,7 +153,7 @@ def simulate_compared(
     machines = machines_of(fits, case, effects)
     if mapped:
         with_poles(machines, controllers)
-    found = simulate_coupled(fits, case, controllers, effects, report)
+    found = simulate_coupled(fits, case, controllers, effects, report, before)
     nothing = [no_controller(case.sample_rate)] * len(fits)
     alone = simulate_coupled(fits, case, nothing, effects, report) if without else None
     if mapped:
@@ -164,7 +175,7 @@ def machines_of(
 
 def simulate_machines(
     machines: Sequence[Machine], case: CoupledCase, controllers: Sequence[Controller],
-    effects: Mapping[str, float] | None = None, report: Report = silent,
+    effects: Mapping[str, float] | None = None, report: Report = silent, before: EarlierParts | None = None,
 ) -> CoupledResult:  # fmt: skip
     """As :func:`simulate_coupled`, of machines that are at hand."""
     begun = perf_counter()
@@ -174,7 +185,7 @@ def simulate_machines(
     largest = np.full(len(limits), limits.max())  # a part that hardly moves in the whole may move in the loop
     _kept, rig = rig_of(machines, (case,), controllers, ground, largest)
     run(rig, controllers, report)
-    whole = _whole(machines, case, controllers, int(rig.ended[0]), len(ground))
+    whole = _whole(machines, case, controllers, int(rig.ended[0]), len(ground), before)
     kept = whole["ended"] is None
     parts = {
         part.name: HybridResult(
@@ -191,14 +202,18 @@ def simulate_machines(
 
 
 def _whole(
-    machines: Sequence[Machine], case: CoupledCase, controllers: Sequence[Controller], ended: int, samples: int
-) -> dict[str, Any]:
+    machines: Sequence[Machine], case: CoupledCase, controllers: Sequence[Controller], ended: int, samples: int,
+    before: EarlierParts | None,
+) -> dict[str, Any]:  # fmt: skip
     """What holds for the whole loop: whether it is stable, by its poles where it has them."""
     kept, radius, judged = ended >= samples, None, None
     sampled = [one for one in controllers if isinstance(one, SampledController)]
     if len(sampled) == len(controllers) and not any(one.nonlinear for one in machines):
         radius = float(np.abs(coupled_poles(machines, case, sampled)).max())
-        judged = judge(CoupledLoop(machines, case, sampled)) if radius >= 1.0 else None
+        judged = None if radius < 1.0 else judge_coupled(
+            CoupledLoop(machines, case, sampled),
+            None if before is None else CoupledLoop(machines_of(before.fits, before.case), before.case, sampled),
+        )  # fmt: skip
     return {
         "stable": kept and (radius is None or radius < 1.0), "radius": radius, "stability": judged,
         "critical_delay": coupled_critical_delay(case), "ended": None if kept else ended / case.sample_rate,

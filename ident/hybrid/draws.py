@@ -47,7 +47,7 @@ class Covariance:
 
 
 def drawn_parameters(
-    fit: FitResult, count: int = DRAWS, seed: int = 0, spread: Spread | None = None
+    fit: FitResult, count: int = DRAWS, seed: int | tuple[int, int] = 0, spread: Spread | None = None
 ) -> dict[str, Array]:
     """`count` values of every parameter that a `spread` leaves open, without one the covariance of the fit.
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -20,7 +20,7 @@ from ident.stability.loop import DELAY, GAIN, LOAD, SAMPLES, SHARE, SHORTEST, Co
 
 Array = NDArray[np.float64]
 _SHARE, _DELAY, _GAIN, _FORCE = "share", "delay", "gain", "force"
-_SPECIMEN = {"mass": "kg", "stiffness": "N/m", "damping": "N*s/m"}
+SPECIMEN = {"mass": "kg", "stiffness": "N/m", "damping": "N*s/m"}
 _LEAST = 1e-12
 """Of a pole in the z-plane: a command on its way through the delay has poles at 0, whose logarithm is none."""
 
@@ -58,7 +58,7 @@ class HybridLoop:
             LoopPart(_SHARE, SHARE, "physical part, of what the case states", 1.0, "1"),
             *(
                 LoopPart(f"specimen {name}", LOAD, f"{name} of the specimen", getattr(specimen, name), unit, True)
-                for name, unit in _SPECIMEN.items()
+                for name, unit in SPECIMEN.items()
             ),
             *parts_of(self.machine.parameters, self.machine.values),
         )
@@ -105,7 +105,7 @@ def _one(of: Mapping[str, Array], i: int) -> dict[str, float]:
 def _changed(of: Specimen, factors: Mapping[str, float]) -> Specimen:
     """The specimen times the share that is physical, and each of its quantities times its factor."""
     share = factors.get(_SHARE, 1.0)
-    return Specimen(**{n: getattr(of, n) * share * factors.get(f"specimen {n}", 1.0) for n in _SPECIMEN})
+    return Specimen(**{n: getattr(of, n) * share * factors.get(f"specimen {n}", 1.0) for n in SPECIMEN})
 
 
 def judge_hybrid(
@@ -116,11 +116,13 @@ def judge_hybrid(
     The cause is sought where the case is known as it was `before`, when its loop was stable.
     """
     loop = HybridLoop(of, case, controller)
-    return judge(loop, None if before is None else _values_before(before, loop))
+    if before is None:
+        return judge(loop)
+    earlier = HybridLoop(machine(before.fit, before.case), before.case, controller)
+    return judge(loop, values_before(earlier.parts, loop.parts))
 
 
-def _values_before(before: EarlierCase, loop: HybridLoop) -> dict[str, float]:
+def values_before(earlier: Iterable[LoopPart], parts: Iterable[LoopPart]) -> dict[str, float]:
     """The values of the parts of a loop as they were, by name; off what the machine had not."""
-    earlier = HybridLoop(machine(before.fit, before.case), before.case, loop.controller)
-    off = {part.name: SHORTEST if part.unit == "s" else 0.0 for part in loop.parts}
-    return {**off, **{part.name: part.value for part in earlier.parts}}
+    off = {part.name: SHORTEST if part.unit == "s" else 0.0 for part in parts}
+    return {**off, **{part.name: part.value for part in earlier}}

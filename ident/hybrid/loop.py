@@ -38,8 +38,8 @@ class Rig(NamedTuple):
     buffer (rows × 16) begins in `buffer`, its `rows`, steps a sample, lanes that are advanced and what column each is
     (G, 16); delay of the command in steps (G, 16) and whether it has a fraction; what they are fed from. Of the
     columns: its kernel, its lane, its part, the samples of `delay`. `held` (n + delay, C) are the commands that act.
-    Of what joins specimens: K, C and M beside the diagonal (3, P, P), inverse of the joint mass (P, P), masses of
-    machine and of specimen (2, P), what acts and what acted at the last two steps (3, C). Of the numerical part: Φ
+    Of what joins specimens: K, C and M beside the diagonal (3, P, P), inverse of the joint mass (L, P, P), masses of
+    machine and of specimen (2, C), what acts and what acted at the last two steps (3, C). Of the numerical part: Φ
     (L, N, N), drives (L, 2P + 2, N) of each f(k) and f̂(k+1), then a(k), a(k+1), its places (P,), state (L, N), last
     forces (C,). Of the controllers: A, B, C, D (P, …), states (C, m) and what was computed `ahead` (…, P). `ground`
     (n,), noise (P, n, 2), the converters' steps (P, 2). `d`, `y` and `f` (n, C) are what is recorded; a system of which
@@ -187,32 +187,34 @@ def _advance_joined(k: int, rig: Any) -> None:
                 rig.pushed_at[g * LANES + lane] = g * LANES + lane - step - 1
             _advance(g, step, step + 1, rig)
         for system in range(len(rig.phi)):
-            _interact(k if step == k * steps else -1, system * parts, parts, rig)
+            _interact(k if step == k * steps else -1, system, parts, rig)
 
 
 @jit(nogil=True)
-def _interact(k: int, first: int, parts: int, rig: Any) -> None:
+def _interact(k: int, system: int, parts: int, rig: Any) -> None:
     """What the machines of a system feel of each other at the begin of the step; at sample k, if any, they are read."""
     felt, push, a = 0, parts, 2 * parts  # where each stands in `rig.u`
+    first = system * parts
     for i in range(parts):
         still = 0.0
         for j in range(parts):
             still += rig.coupling[0, i, j] * _shown(first + j, POSITION, rig)
             still += rig.coupling[1, i, j] * _shown(first + j, SPEED, rig)
-        alone = rig.masses[0, i] * _shown(first + i, ACCELERATION, rig) if rig.masses[0, i] else 0.0
+        moved = rig.masses[0, first + i]
+        alone = moved * _shown(first + i, ACCELERATION, rig) if moved else 0.0
         rig.u[felt + i] = still
         rig.u[push + i] = alone + rig.interaction[0, first + i] - still
     for i in range(parts):
         rig.u[a + i] = 0.0
         for j in range(parts):
-            rig.u[a + i] += rig.inverse[i, j] * rig.u[push + j]
+            rig.u[a + i] += rig.inverse[system, i, j] * rig.u[push + j]
     for i in range(parts):
         for j in range(parts):
             rig.u[felt + i] += rig.coupling[2, i, j] * rig.u[a + j]
         if k >= 0:
-            changed = rig.u[a + i] - _shown(first + i, ACCELERATION, rig) if rig.masses[0, i] else 0.0
+            changed = rig.u[a + i] - _shown(first + i, ACCELERATION, rig) if rig.masses[0, first + i] else 0.0
             beyond = rig.u[felt + i] - rig.interaction[0, first + i]
-            _read(k, first + i, beyond + rig.masses[1, i] * changed, rig)
+            _read(k, first + i, beyond + rig.masses[1, first + i] * changed, rig)
         rig.interaction[2, first + i] = rig.interaction[1, first + i]
         rig.interaction[1, first + i] = rig.u[felt + i]
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -125,6 +126,7 @@ FELT = "fx"
 """The symbol of what the others make it feel, N, where small signals are taken."""
 
 
+@lru_cache(maxsize=64)
 def joined(chain: Chain, felt: str = INTERACTION) -> Chain:
     """The chain whose specimen is pushed back by an interaction `felt` (N), an input or a symbol, and shows its motion.
 

@@ -70,17 +70,16 @@ def rig_of(
     rng = np.random.default_rng(noises[0].seed)
     noise = np.array([rng.standard_normal((n, 2)) * [one.displacement, one.force] for one in noises])
     numericals = [numerical(one) for one in systems]
-    coupling, masses = np.zeros((3, parts, parts)), np.zeros((2, parts))
+    coupling, masses = np.zeros((3, parts, parts)), np.zeros((2, count))
     if joint:
         coupling = joint[0].coupling[[2, 1, 0]]
         masses = np.array(
             [[one.moved_mass(case), case.physical.mass] for one, case in zip(machines, cases, strict=True)]
-        )
-        masses = masses[:parts].T
+        ).T
     return steppers, Rig(
         **kernels, part=np.arange(count) % parts, spare=np.zeros(LANES), delay=delay,
         held=np.zeros((n + int(delay.max()), count)),
-        joined=bool(joint), coupling=coupling, inverse=_inverse_mass(masses[0], coupling[2]), masses=masses,
+        joined=bool(joint), coupling=coupling, inverse=_inverse_masses(masses[0], coupling[2]), masses=masses,
         interaction=np.zeros((3, count)),
         phi=np.array([one.phi for one in numericals]), drives=np.array([one.drives for one in numericals]),
         place=np.array(first.places), z=np.zeros((len(systems), 2 * first.storeys)), before=np.zeros(count),
@@ -99,11 +98,14 @@ def _ahead(acting: Sequence[Controller]) -> Array:
     return np.stack([np.pad(one, (0, longest - len(one)), mode="edge") for one in known], axis=1)
 
 
-def _inverse_mass(moved: Array, coupling: Array) -> Array:
-    """Of the joint mass, (P, P); a machine without inertia moves whatever it takes, and has no row."""
-    found, able = np.zeros_like(coupling), np.flatnonzero(moved)
-    if len(able):
-        found[np.ix_(able, able)] = np.linalg.inv(np.diag(moved[able]) + coupling[np.ix_(able, able)])
+def _inverse_masses(masses: Array, coupling: Array) -> Array:
+    """Of the joint mass of each system, (L, P, P); a machine without inertia moves whatever it takes: it has no row."""
+    systems = masses.reshape(-1, len(coupling))
+    found = np.zeros((*systems.shape, len(coupling)))
+    for inverse, moved in zip(found, systems, strict=True):
+        able = np.flatnonzero(moved)
+        if len(able):
+            inverse[np.ix_(able, able)] = np.linalg.inv(np.diag(moved[able]) + coupling[np.ix_(able, able)])
     return found
 
 

@@ -424,7 +424,36 @@ def test_two_actuators_over_http_have_their_own_fits_and_controllers(service, fi
     part = {"fit": fitted, "case": case, "part": "left"}
     assert service.post(f"{API}/controllers", json=part).json()["case"] == "own case, left"
     refused_by_service(service.post(f"{API}/controllers", json={"fit": fitted, "case": case}), "several-parts")
-    refused_by_service(service.post(f"{API}/hybrid-simulations", json=body | {"before": {"gain": 2}}), "bad-option")
+
+
+def test_two_actuators_over_http_have_spread_isolator_and_cause(service, fitted):
+    """An unstable beam with an isolator on one part, before at a lower gain, over 5 %; what cannot be is refused."""
+    parts = [
+        {"name": name, "storey": n, "mass": "8 kg", "stiffness": "17.5 kN/m"} for name, n in (("left", 1), ("b", 2))
+    ]
+    case = {
+        "structure": {"mass": ["87.5 kg", "87.5 kg"], "damping": {"ratio": "5 %"},
+                      "stiffness": {"matrix": [[175, -87.5], [-87.5, 87.5]], "unit": "kN/m"}},
+        "physical": [parts[0] | {"gain": 90}, parts[1]], "gain": 16, "piston_area": "497 mm^2",
+    }  # fmt: skip
+    motion = {"kind": "blwn", "duration": "0.2 s"}
+    body = {"fit": fitted, "case": case, "ground": motion, "spread": {"share": "5 %"}, "before": {"gain": 16},
+            "isolator": {"stiffness": "1 kN/m"}, "isolator_part": "b"}  # fmt: skip
+    job = ended(service, service.post(f"{API}/hybrid-simulations", json=body))
+    assert job["state"] == "succeeded", job
+    found = service.get(f"{API}/hybrid-simulations/{job['id']}").json()
+    assert [one["name"] for one in found["stability"]["causes"]] == ["left.Kp"]
+    assert found["spread"]["draws"] == 100
+    assert found["spread"]["parts"].keys() == {"left", "b"}
+    assert found["spread"]["quantities"]["gain_margin"]["value"] == pytest.approx(found["stability"]["gain_margin"])
+    page = service.get(f"/fits/{fitted}/use", params={"simulation": job["id"]}).text
+    assert "of 100 draws of the machines are stable" in page
+    for change, code in (
+        ({"isolator_part": "c"}, "unknown-part"), ({"controller": "kalman"}, "bad-option"),
+        ({"before": {"case": OWN}}, "bad-case"), ({"spread": {"serial": "NOBODY"}}, "too-few"),
+        ({"case": OWN}, "unknown-part"),
+    ):  # fmt: skip
+        refused_by_service(service.post(f"{API}/hybrid-simulations", json=body | change), code)
 
 
 def test_a_shaking_table_over_http_has_its_acceleration(service, fitted):

@@ -86,7 +86,10 @@ MISSPELT: dict[tuple[str, str], list[tuple[tuple[str, ...], str]]] = {
     ("whatif", "--over"): [(("FIT", "--at", "60 degC", "--over", "temprature"), "temperature")],
     ("statistics", "--over"): [(("tau", "--over", "temprature", *SERVICE), "temperature")],
     ("verdict", "--over"): [(("NEAR-1", "--at", "60 degC", "--over", "temprature", *SERVICE), "temperature")],
-    ("hybrid", "--isolator"): [(("FIT", "--case", "qian", "--isolator", "stifness=1 N/m"), "stiffness")],
+    ("hybrid", "--isolator"): [
+        (("FIT", "--case", "qian", "--isolator", "stifness=1 N/m"), "stiffness"),
+        (("FIT", "--case", "PARTS", "--isolator", "mass=1 kg, part=lefd"), "left"),
+    ],
     ("hybrid", "--before-case"): [(("FIT", "--case", "qian", "--before-case", "qain"), "qian")],
     ("hybrid", "--case"): [(("FIT", "--case", "benchmark202"), "benchmark2020")],
     ("hybrid", "--controller"): [(("FIT", "--case", "qian", "--controller", "kalmann"), "kalman")],

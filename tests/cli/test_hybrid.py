@@ -3,10 +3,18 @@
 from __future__ import annotations
 
 import json
-from dataclasses import replace
+from dataclasses import asdict, replace
 from pathlib import Path
 
+import numpy as np
+
+from app.cli.at_option import moved_to
+from ident.hybrid.controller import no_controller
+from ident.hybrid.coupled_reading import read_system
+from ident.hybrid.coupled_rig import simulate_coupled
 from ident.hybrid.followed import Followed
+from ident.run import Specimen
+from tests.app.test_conditions import sets
 from tests.hybrid.cases import fitted
 
 FIT = Path(__file__).parents[1] / "stored" / "fit.json"
@@ -117,9 +125,37 @@ def test_two_actuators_have_their_own_fits_controllers_scores_and_figures(servoi
     assert (out / "right-end" / "response.pdf").is_file()
     assert (out / "delay-map.svg").is_file()
     assert "right end: " in done.stdout  # its stroke is too short
-    assert servoident("hybrid", fit, "--case", case, "--spread", "20 %").returncode == 2
     refused = servoident("hybrid", FIT, "--case", case, "--map")
     assert "dead_zone has no poles" in refused.stderr
+
+
+def test_two_actuators_are_taken_to_another_condition_with_an_isolator(servoident, tmp_path, full):
+    """Each by the law of its model's sets, an isolator on one part: as the library. A spread in the long form."""
+    case, held = tmp_path / "beam.yaml", tmp_path / "sets.json"
+    case.write_text(BEAM.replace("left/controller.json", "none").replace("gain: 7", "gain: 16"))
+    fits = [replace(one, conditions={"temperature": 293.15}) for one in (fitted(), fitted(tau=2e-3))]
+    given = sets(np.random.default_rng(581), 40)
+    held.write_text(json.dumps([
+        {"model": "qian2014", "parameters": {name: {"value": value} for name, value in one.items()}} for one in given
+    ]))  # fmt: skip
+    for name, one in zip(("fit.json", "other.json"), fits, strict=True):
+        (tmp_path / name).write_text(json.dumps(one.to_json()))
+    start = ("hybrid", tmp_path / "fit.json", "--case", case)
+    wide = ("--spread", "5 %")
+    done = servoident(*start, "--at", "60 degC", "--sets", held, *(wide if full else ()),
+                      "--isolator", "stiffness=1 kN/m, part=left", "--json", tmp_path / "found.json")  # fmt: skip
+    data = json.loads((tmp_path / "found.json").read_text())
+    assert any(one.startswith("Moved from 20 °C to 60 °C") for one in data["notes"])
+    if full:
+        assert data["spread"]["parts"].keys() == {"left", "right end"}
+        assert "of 100 draws of the machines are stable" in done.stdout
+    moved = [moved_to(one, "60 degC", "temperature", held).fit for one in fits]
+    of = read_system(case).with_isolator(Specimen(stiffness=1e3), "left")
+    alone = simulate_coupled(moved, of, [no_controller(4096.0)] * 2)
+    assert [one["scores"] for one in data["parts"]] == [asdict(one.scores) for one in alone.parts.values()]
+    for refused in (("--isolator", "mass=1 kg, part=middle"), ("--before-case", "qian"), ("--at", "60 degC"),
+                    (*wide, "--controller", "kalman")):  # fmt: skip
+        assert servoident(*start, *refused).returncode == 2
 
 
 TABLE = """

@@ -27,7 +27,7 @@ def rows(matrix: np.ndarray, unit: str) -> dict[str, Any]:
     return {"matrix": matrix.tolist(), "unit": unit}
 
 
-def beam(seconds: float = 1.0, joined: bool = True, ratio: float = 0.05, gains: tuple[float, float] = (7.0, 5.0),
+def beam(seconds: float = 1.0, joined: bool = True, ratio: float = 0.05, gains: tuple[float, float] = (16.0, 10.0),
          delays: tuple[int, int] = (1, 2)) -> tuple[CoupledCase, Loop]:  # fmt: skip
     """Two actuators on the first and the third of three masses, with a specimen each or one that joins them."""
     damping = modal_damping(BEAM_MASS, BEAM_STIFFNESS, ratio)

@@ -9,7 +9,6 @@ from ident.errors import Unusable
 from ident.hybrid.case import case_of
 from ident.hybrid.compensation import Compensation
 from ident.hybrid.controller import no_controller
-from ident.hybrid.coupled_case import SEVERAL, refuse_for_several
 from ident.hybrid.coupled_reading import coupled_of
 from ident.hybrid.coupled_rig import machines_of, simulate_coupled
 from ident.hybrid.coupled_stability import coupled_critical_delay, delay_map
@@ -161,13 +160,3 @@ def test_a_loop_that_one_gain_makes_unstable_is_told_that_gain():
     assert radii[0] < 1.0
     assert radii[1] < 1.0
     assert radii[2] > 1.0
-
-
-def test_what_is_for_one_actuator_only_is_refused_with_the_reason():
-    """By command and over HTTP the option is named as it was given."""
-    for given in ("--at", "at", "--isolator", "--spread", "--before-gain"):
-        with pytest.raises(Unusable, match="several parts") as refused:
-            refuse_for_several({"--map": None, given: "something"})
-        why = SEVERAL[given.strip("-").partition("-")[0]]
-        assert why.partition(": ")[2] in str(refused.value)
-    refuse_for_several({"--at": None})

@@ -82,6 +82,7 @@ async function simulation(form) {
   asked.map = fields.has("map");
   const isolator = ["stiffness", "damping", "mass"].map((name) => [name, fields.get(`isolator.${name}`).trim()]).filter(([, value]) => value);
   if (isolator.length) asked.isolator = Object.fromEntries(isolator);
+  if (fields.get("isolator.part").trim()) asked.isolator_part = fields.get("isolator.part").trim();
   const effects = fields.getAll("effects");
   asked.effects = effects.filter((name) => !fields.get(`strength.${name}`)?.trim());
   const stated = effects.filter((name) => !asked.effects.includes(name));
