@@ -23,6 +23,7 @@ from ident.hybrid.rig_limits import leaving
 from ident.hybrid.scores import Scores, scores
 from ident.hybrid.specimen_effects import of_specimen
 from ident.hybrid.substructure import reference
+from ident.parallel import one_thread
 from ident.progress import Report, silent
 from ident.words.engineering import quantity
 from ident.words.message import message
@@ -173,6 +174,7 @@ def machines_of(
     return found
 
 
+@one_thread()  # small matrices, for which more threads wait longer than they work
 def simulate_machines(
     machines: Sequence[Machine], case: CoupledCase, controllers: Sequence[Controller],
     effects: Mapping[str, float] | None = None, report: Report = silent, before: EarlierParts | None = None,

@@ -29,6 +29,7 @@ COMMAND, DISPLACEMENT, FORCE, INTERACTION, POSITION, SPEED, ACCELERATION = range
 """The columns of `rows`: of its command and of what a kernel shows; the last four where a specimen joins actuators."""
 ROWS = 7
 _NEVER = 1 << 40  # steps between rows that a kernel writes: the loop reads the buffer itself
+_inlined = jit(nogil=True, forceinline=True)  # a call passes all that a rig holds, which takes longer than its work
 
 
 class Rig(NamedTuple):
@@ -97,7 +98,7 @@ class Rig(NamedTuple):
 # Machines -----------------------------------------------------------------------------------------------------------
 
 
-@jit(nogil=True)
+@_inlined
 def _feed(k: int, g: int, rig: Any) -> None:
     """The commands of the lanes of a kernel before, at and behind the steps of sample k.
 
@@ -144,7 +145,7 @@ def advance_machines(k: int, rig: Any) -> None:
             _advance(g, k * rig.steps[g] + 1, (k + 1) * rig.steps[g], rig)
 
 
-@jit(nogil=True)
+@_inlined
 def _advance(g: int, first: int, last: int, rig: Any) -> None:
     advance_from(
         rig.code[g], rig.buffer, rig.begin[g], rig.window, rig.pushes, rig.places, rig.pushed_at, g * LANES, first,
@@ -152,14 +153,14 @@ def _advance(g: int, first: int, last: int, rig: Any) -> None:
     )  # fmt: skip
 
 
-@jit(nogil=True)
+@_inlined
 def _shown(c: int, what: int, rig: Any) -> Any:
     """What the kernel of a column shows of it."""
     g = rig.kernel[c]
     return rig.buffer[rig.begin[g] + rig.rows[g, what] * LANES + rig.lane[c]]
 
 
-@jit(nogil=True)
+@_inlined
 def _read(k: int, c: int, beside: float, rig: Any) -> None:
     """The transducers of a column at sample k; the load cell reads a force `beside` that of the kernel."""
     p = rig.part[c]
@@ -190,7 +191,7 @@ def _advance_joined(k: int, rig: Any) -> None:
             _interact(k if step == k * steps else -1, system, parts, rig)
 
 
-@jit(nogil=True)
+@_inlined
 def _interact(k: int, system: int, parts: int, rig: Any) -> None:
     """What the machines of a system feel of each other at the begin of the step; at sample k, if any, they are read."""
     felt, push, a = 0, parts, 2 * parts  # where each stands in `rig.u`
@@ -263,7 +264,7 @@ def close(k: int, system: int, rig: Any) -> None:
         rig.z[system, i] = rig.scratch[i]
 
 
-@jit(nogil=True)
+@_inlined
 def _ask(k: int, system: int, rig: Any) -> None:
     """What the substructure asks of the actuators of a system; one that ran away is taken out.
 

@@ -22,6 +22,7 @@ from ident.hybrid.shaking_table import Acceleration, acceleration
 from ident.hybrid.specimen_effects import of_specimen, reference_of
 from ident.hybrid.stability import critical_delay, spectral_radius
 from ident.hybrid.substructure import driven_by
+from ident.parallel import one_thread
 from ident.plain import written
 from ident.progress import Report, silent
 from ident.stability.judgement import STABLE, UNSTABLE, Judgement
@@ -150,6 +151,7 @@ def simulate_hybrid(
     return replace(found, beyond=leaving(fit, case, found.measured, found.command, found.force))
 
 
+@one_thread()  # small matrices, for which more threads wait longer than they work
 def simulate_machine(
     of: Machine, case: Case, controller: Controller | None = None, effects: Mapping[str, float] | None = None,
     report: Report = silent,
