@@ -1,4 +1,4 @@
-"""Tokens and the audit."""
+"""Tokens, display units and the audit."""
 
 from typing import Literal
 
@@ -38,6 +38,13 @@ class TokenPage(BaseModel):
 
     items: list[TokenView]
     next: str | None = None
+
+
+class DisplayUnits(BaseModel):
+    """The display units of an account, one a quantity at most; the others are shown in SI units."""
+
+    model_config = ConfigDict(extra="forbid")
+    units: list[str] = Field(max_length=50, examples=[["bar", "l/min"]])
 
 
 class AuditView(BaseModel):

@@ -126,8 +126,8 @@ ROOMS = (
 
 ROOMS_OF_THE_SERVICE = (
     "environment", "settings", "request_id", "nearest_field", "lru", "processes", "storage", "database", "tables",
-    "client", "blobs", "context", "errors", "display", "form", "paging", "security", "reserve", "idempotency",
-    "access", "openapi",
+    "client", "blobs", "context", "errors", "form", "paging", "security", "reserve", "idempotency",
+    "access", "display", "openapi",
     "catalogue", "parameters", "webhooks", "matrices", "drafts", "live", "stream", "backup",
     "jobs", "retention", "workers", "operation", "own_effects", "limits", "statistics",
     "fits", "approvals", "annotations", "diagnoses", "profiles", "refits", "hybrid", "plans", "regress", "deletions",

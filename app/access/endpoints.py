@@ -1,4 +1,4 @@
-"""/tokens and /audit: who may do what, and who did what."""
+"""/tokens, /display-units and /audit: who may do what, sees which units, and who did what."""
 
 from __future__ import annotations
 
@@ -9,12 +9,13 @@ from fastapi import APIRouter, Query, Response
 from fastapi.responses import JSONResponse
 
 from app.access import service
-from app.access.roles import ADMIN
+from app.access.roles import ADMIN, READERS, may
 from app.access.secret import Secret
+from app.access.who import Me, Role
 from app.context import Here
 from app.errors import COMMON
 from app.idempotency import Answer, Key, fingerprint, once
-from schemas.access import AuditPage, NewToken, TokenPage, TokenRequest, TokenView
+from schemas.access import AuditPage, DisplayUnits, NewToken, TokenPage, TokenRequest, TokenView
 
 router = APIRouter(tags=["access"], responses=COMMON)
 Limit = Annotated[int, Query(ge=1, le=1000)]
@@ -57,6 +58,18 @@ def _saying(token: str, kept: Response) -> Response:
 def revoke_token(here: Here, token: str) -> TokenView:
     """Revoke a token: its next request is refused, its sessions end, its open streams end within 5 s."""
     return service.revoke(here.sessions, token)
+
+
+@router.get("/display-units", dependencies=[READERS])
+def get_display_units(here: Here, me: Me) -> DisplayUnits:
+    """The display units of the account, in which it sees pages, figures and reports."""
+    return service.display_units(here.sessions, me)
+
+
+@router.put("/display-units", dependencies=[may(Role.LAB, Role.LINE, Role.CI)])
+def set_display_units(here: Here, me: Me, request: DisplayUnits) -> DisplayUnits:
+    """Choose the display units of the account, for every browser in which it signs in."""
+    return service.choose_units(here.sessions, me, request)
 
 
 @router.get("/audit", dependencies=[ADMIN])

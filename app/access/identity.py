@@ -76,7 +76,7 @@ def _of_cookie(context: Context, session: Session, secret: Secret) -> Who | None
     if who is None:
         return None
     _prolong(context, row)
-    return replace(who, session=row.id)
+    return replace(who, session=row.id, units=repository.display_units(session, who.token))
 
 
 def _bearer(context: Context, row: TokenRow | None) -> Who | None:

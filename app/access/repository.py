@@ -1,4 +1,4 @@
-"""Every query on tokens, sessions and the audit."""
+"""Every query on tokens, sessions, display units and the audit."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from sqlalchemy import delete, select, update
 from sqlalchemy.orm import Session
 
 from app.access.who import Who
-from app.tables import AuditRow, SessionRow, TokenRow, now
+from app.tables import AuditRow, DisplayUnitsRow, SessionRow, TokenRow, now
 
 
 def add_token(session: Session, token: str, name: str, role: str, hashed: str, expires_at: str | None) -> TokenRow:
@@ -64,6 +64,17 @@ def prolong(session: Session, session_id: str, expires_at: str) -> None:
 def end(session: Session, session_id: str) -> None:
     """End a session."""
     session.execute(delete(SessionRow).where(SessionRow.id == session_id))
+
+
+def display_units(session: Session, account: str) -> tuple[str, ...] | None:
+    """The display units that an account has chosen; None where it has chosen none."""
+    row = session.get(DisplayUnitsRow, account)
+    return None if row is None else tuple(row.units)
+
+
+def choose_units(session: Session, account: str, units: Sequence[str]) -> None:
+    """Keep the display units of an account, in the place of those before."""
+    session.merge(DisplayUnitsRow(account=account, units=list(units)))
 
 
 def note(session: Session, who: Who, action: str, on: str, request: str) -> None:

@@ -1,4 +1,4 @@
-"""Tokens: make, list, revoke; sign in and out; read the audit."""
+"""Tokens: make, list, revoke; sign in and out; choose display units; read the audit."""
 
 from __future__ import annotations
 
@@ -16,9 +16,13 @@ from app.context import Context
 from app.errors import Failure, missing
 from app.paging import cursor, keys_of
 from app.tables import AuditRow, TokenRow, before, now
-from schemas.access import AuditPage, AuditView, NewToken, TokenPage, TokenRequest, TokenView
+from ident.words import display
+from schemas.access import AuditPage, AuditView, DisplayUnits, NewToken, TokenPage, TokenRequest, TokenView
 
-__all__ = ["COMMAND", "audit", "drop", "end", "keep", "listed", "made_as", "new", "revoke", "sign_in"]
+__all__ = [
+    "COMMAND", "audit", "choose_units", "display_units", "drop", "end", "keep", "listed", "made_as", "new", "revoke",
+    "sign_in",
+]  # fmt: skip
 
 Records = sessionmaker[Session]
 COMMAND = Who("command line", Role.ADMIN, "command")
@@ -80,6 +84,21 @@ def view(row: TokenRow) -> TokenView:
 def sign_in(context: Context, tries: Tries, token: str, address: str) -> Secret:
     """Begin a session by a token; what its cookie is to hold. Raises Failure 401, 429."""
     return sessions.begin(context, tries.identify(context, Shown(token.strip()), address))
+
+
+def display_units(records: Records, who: Who) -> DisplayUnits:
+    """The display units that an account has chosen."""
+    with records() as session:
+        return DisplayUnits(units=list(repository.display_units(session, who.token) or ()))
+
+
+def choose_units(records: Records, who: Who, request: DisplayUnits) -> DisplayUnits:
+    """Keep the display units of an account, each once. Raises Unusable."""
+    with display.displaying(request.units):
+        units = display.display_units()
+    with records.begin() as session:
+        repository.choose_units(session, who.token, units)
+    return DisplayUnits(units=list(units))
 
 
 def audit(records: Records, after: str | None, limit: int, *, by: str | None, on: str | None) -> AuditPage:

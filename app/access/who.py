@@ -25,12 +25,13 @@ class Role(StrEnum):
 
 @dataclass(frozen=True)
 class Who:
-    """The bearer of a token: its name, role and id; and the session, where a browser asks."""
+    """The bearer of a token: its name, role and id; the session, where a browser asks, and its display units."""
 
     name: str
     role: Role
     token: str
     session: str | None = None
+    units: tuple[str, ...] | None = None  # None: none were chosen
 
     def has(self, *roles: Role) -> bool:
         """Whether one of these roles is its own; the admin has all."""

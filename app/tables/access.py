@@ -51,6 +51,14 @@ class SessionRow(Base):
     expires_at: Mapped[str] = mapped_column(String(40), index=True)
 
 
+class DisplayUnitsRow(Base):
+    """The display units that an account has chosen: by the id of its token, or "start" for the start token."""
+
+    __tablename__ = "display_units"
+    account: Mapped[str] = mapped_column(String(64), primary_key=True)
+    units: Mapped[list[Any]]
+
+
 class AuditRow(Base):
     """A change: when, by which token, what, on what, in which request. The database refuses to change a row."""
 

@@ -1,11 +1,12 @@
-// The display units that are chosen: a cookie, so that pages, figures and reports come in them.
+// The display units that are chosen: kept with the account, so that pages, figures and reports come in them.
 
-const YEAR = 365 * 24 * 3600; // s
+import { send, submitted } from "./api.js";
+
 const form = document.querySelector("#units");
 
-form.addEventListener("submit", (event) => {
-  event.preventDefault();
-  const chosen = [...new FormData(form).values()].filter(Boolean);
-  document.cookie = `units=${encodeURIComponent(chosen.join(","))}; path=/; max-age=${YEAR}; samesite=strict`;
-  form.querySelector("[role=status]").textContent = "Saved.";
+submitted(form, async () => {
+  const said = form.querySelector("[role=status]");
+  said.textContent = "";
+  await send("PUT", "/api/v1/display-units", { units: [...new FormData(form).values()].filter(Boolean) });
+  said.textContent = "Saved.";
 });

@@ -55,6 +55,8 @@ OF_API = (
     Call("POST", "/tokens", ADMIN, {"name": "station", "role": "line", "expires": "1d"}, changes=True),
     Call("DELETE", "/tokens/{token}", ADMIN, changes=True),
     Call("GET", "/audit", ADMIN),
+    read("/display-units"),
+    Call("PUT", "/display-units", EVERY, {"units": ["bar"]}, changes=True),
     Call("GET", "/workers", ADMIN),
     Call("POST", "/matrices", LAB, "the archive", changes=True),
     read("/matrices"),
