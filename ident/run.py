@@ -12,6 +12,8 @@ from numpy.typing import ArrayLike, NDArray
 from ident.beginning import ROUNDING, Beginning, beginning, standing_for, zero_at_rest
 from ident.cached import cached_property
 from ident.slopes import slopes
+from ident.words.engineering import multiple
+from ident.words.number import plain
 from ident.words.run_name import run_name
 from ident.words.shown import Listing, Shown
 
@@ -130,15 +132,18 @@ class Run(Shown):
         return 1.0 if self.gain is None else self.gain
 
     def listings(self) -> Sequence[Listing | str]:
-        """What was recorded, a row a channel: between which values it lies, in its SI unit."""
-        rows = [
-            (name, *(f"{of(samples):.4g}" for of in (np.min, np.max, np.std)), self.units.get(name, "?"))
-            for name, samples in self.channels.items()
-        ]
+        """What was recorded, a row a channel: between which values it lies."""
+        rows = [self._row(name, samples) for name, samples in self.channels.items()]
         numbers = ("least", "largest", "std")
         long = f"{self.duration:.4g} {self.time_unit}, {self.length} samples"
         title = f"{run_name(self.id, begins=True)}: {self.use}, {self.kind}, {long}"
         return [Listing(title, ("channel", *numbers, "unit"), rows, numbers)]
+
+    def _row(self, name: str, samples: Samples) -> tuple[str, ...]:
+        """A channel, in a readable multiple of its unit; where that is unknown, as recorded."""
+        unit = self.units.get(name, "")
+        size, shown = multiple(float(np.abs(samples).max()), unit) if unit else (1.0, "?")
+        return name, *(plain(float(of(samples)) / size) for of in (np.min, np.max, np.std)), shown
 
     def of_outputs(self, outputs: Sequence[str]) -> tuple[Run, ...]:
         """The run for each of several outputs; itself where it has one."""

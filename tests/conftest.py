@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import contextvars
 import gc
 import io
 import logging
@@ -230,7 +231,7 @@ def servoident(tmp_path_factory) -> Iterator[Program]:
     def run(*arguments: object) -> Outcome:
         out, err = io.StringIO(), io.StringIO()
         with contextlib.redirect_stdout(out), contextlib.redirect_stderr(err), pytest.raises(SystemExit) as ended:
-            main([str(argument) for argument in arguments])
+            contextvars.copy_context().run(main, [str(argument) for argument in arguments])  # units that it chose go
         assert "Warning" not in err.getvalue()
         return Outcome(ended.value.code, out.getvalue(), err.getvalue())
 

@@ -54,6 +54,7 @@ def fit_each(matrices: Sequence[Path], fitted: Callable[[Path, Report], FitResul
 def show_each(found: dict[str, FitResult | Unusable]) -> None:
     """Print a line a matrix: the actuator, the model, its errors and floor, its parameters, or why there is no fit."""
     from app.cli.tables import output, table
+    from ident.words.engineering import quantity
     from ident.words.percent import percent
 
     header = ("matrix", "serial", "model", "fit", "verify", "noise floor", "parameters")
@@ -62,7 +63,7 @@ def show_each(found: dict[str, FitResult | Unusable]) -> None:
         if isinstance(one, Unusable):
             rows.append((name, "–", "–", "–", "–", "–", str(one)))
             continue
-        values = ", ".join(f"{symbol} {entry.value:.4g} {entry.unit}" for symbol, entry in one.parameters.items())
+        values = ", ".join(f"{symbol} {quantity(entry.value, entry.unit)}" for symbol, entry in one.parameters.items())
         errors = (*(one.error_of(use).said() for use in ("fit", "verify")), percent(one.noise_floor.get("fit")))
         serial = one.actuator.serial if one.actuator else "–"
         rows.append((name, serial, " + ".join((one.model, *one.effects)), *errors, values))

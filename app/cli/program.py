@@ -122,7 +122,7 @@ def options(
             "--units",
             metavar="UNITS",
             envvar="SERVOIDENT_UNITS",
-            help="Display units of figures and reports, separated by commas, such as bar,l/min,in.",
+            help="Display units of tables, figures and reports, separated by commas, such as bar,l/min,in.",
         ),
     ] = "",
     _: Annotated[bool, typer.Option("--version", help="Print the version.", callback=_version, is_eager=True)] = False,

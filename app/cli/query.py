@@ -84,12 +84,15 @@ def show(sets: list[dict[str, Any]]) -> None:
     """Print the sets as a table."""
     from app.cli.tables import output, table
     from app.parameters.error import error_of
+    from ident.words.engineering import quantity
     from schemas.parameters import ParameterSetView
 
     header = ("serial", "fit", "model", "approved", "current", "error fit", "verify", "parameters")
     rows = []
     for one in sets:
-        parameters = ", ".join(f"{name} {entry['value']:.4g}" for name, entry in one["parameters"].items())
+        parameters = ", ".join(
+            f"{name} {quantity(entry['value'], entry['unit'])}" for name, entry in one["parameters"].items()
+        )
         approved = (one["approved_at"] or "–")[:10]
         said = ParameterSetView.model_validate(one)
         errors = (error_of(said, "fit").said(), error_of(said, "verify").said())

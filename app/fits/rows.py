@@ -10,8 +10,7 @@ from markupsafe import Markup, escape
 from ident.equations.mathml import mathml
 from ident.errors import Unusable
 from ident.fit.result import Estimate, FitResult
-from ident.words.display import displayed
-from ident.words.engineering import power_of, quantity, scaled_unit
+from ident.words.engineering import multiple, quantity
 from ident.words.error import ErrorOf
 from ident.words.number import fixed, trimmed
 from ident.words.percent import percent_in_print
@@ -78,9 +77,7 @@ def parameter_rows(fit: FitResult) -> tuple[ParameterRow, ...]:
 
 
 def _parameter(name: str, entry: Estimate, undetermined: bool) -> ParameterRow:
-    size, unit = displayed(entry.unit)
-    power = power_of(entry.value / size)
-    size *= 10.0**power
+    size, unit = multiple(entry.value, entry.unit)
     value = entry.value / size
     error = None if entry.std_error is None else entry.std_error / size
     places, known = decimals(value, error), determined(entry.value, entry.std_error)
@@ -88,7 +85,7 @@ def _parameter(name: str, entry: Estimate, undetermined: bool) -> ParameterRow:
         name=name,
         symbol=symbol(name, entry.symbol),
         meaning=of_parameter(name, entry.meaning),
-        unit=scaled_unit(unit, power),
+        unit=unit,
         value=fixed(value, places) if known else UNDETERMINED,
         std_error=fixed(error, places),
         relative=percent_in_print(error / abs(value), 2) if error is not None and value and known else "–",

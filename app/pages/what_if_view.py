@@ -17,8 +17,7 @@ from ident.hybrid.root_locus import Pole
 from ident.hybrid.what_if import HIGHEST, USUAL_GAINS, Response, WhatIf
 from ident.presets import preset
 from ident.stability.judgement import UNSTABLE
-from ident.words.display import displayed
-from ident.words.engineering import power_of, quantity, scaled_unit
+from ident.words.engineering import multiple, quantity
 from ident.words.number import fixed, places, plain, trimmed
 from ident.words.plus_minus import plus_minus
 from schemas.hybrid import WhatIfRequest
@@ -240,13 +239,12 @@ def _critical(found: WhatIf) -> str:
 
 def _carried(found: WhatIf, named: Mapping[str, ParameterRow]) -> Iterator[CarriedRow]:
     for name, entry in found.parameters.items():
-        size, unit = displayed(entry.unit)
-        power = power_of(entry.before / size)
-        before, after = (value / size / 10.0**power for value in (entry.before, entry.after))
+        size, unit = multiple(entry.before, entry.unit)
+        before, after = entry.before / size, entry.after / size
         changed = entry.before != entry.after
         yield CarriedRow(
             symbol=named[name].symbol, meaning=named[name].meaning, before=plain(before, 5), after=plain(after, 5),
-            unit=scaled_unit(unit, power), factor=plain(after / before, 4) if changed and before else "–",
+            unit=unit, factor=plain(after / before, 4) if changed and before else "–",
             why=entry.why, changed=changed,
         )  # fmt: skip
 

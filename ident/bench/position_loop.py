@@ -30,6 +30,7 @@ from ident.errors import Unusable
 from ident.fit.result import FitResult
 from ident.plain import written
 from ident.rig.regulator import Regulator
+from ident.words.engineering import quantity
 from ident.words.message import Message, message
 from ident.words.shown import Listing, Shown
 
@@ -125,7 +126,7 @@ def _row(one: AmplitudeMargin) -> tuple[str, ...]:
         return "none" if value is None else f"{value:.4g} {unit}"
 
     return (
-        f"{100 * one.amplitude:.4g} %", f"{one.gain:.4g} m/s", f"{one.phase:.3g}°", cell(one.gain_margin, "dB"),
+        f"{100 * one.amplitude:.4g} %", quantity(one.gain, "m/s"), f"{one.phase:.3g}°", cell(one.gain_margin, "dB"),
         cell(one.phase_margin, "°"), cell(one.crossover, "Hz"), cell(one.oscillation_frequency, "Hz"),
         cell(one.oscillation_gain, "1/m"),
     )  # fmt: skip

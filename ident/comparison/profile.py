@@ -30,8 +30,10 @@ from ident.matrix import Matrix
 from ident.noise.effective_sample_size import independent_samples
 from ident.preprocessing import screen
 from ident.progress import Progress, Report, silent
+from ident.words.engineering import multiple, quantity
 from ident.words.error import error_said
 from ident.words.nearest import did_you_mean
+from ident.words.number import plain
 from ident.words.shown import Listing, Shown
 
 Array = NDArray[np.float64]
@@ -59,7 +61,7 @@ class Profile(Shown):
     @property
     def text(self) -> str:
         """The interval in words."""
-        low, high = (None if end is None else f"{end:.4g} {self.unit}" for end in (self.lower, self.upper))
+        low, high = (None if end is None else quantity(end, self.unit) for end in (self.lower, self.upper))
         if low and high:
             return f"{self.parameter}: 95 % from {low} to {high}, by profile likelihood"
         side = f"above {low}" if low else f"below {high}" if high else ""
@@ -67,16 +69,17 @@ class Profile(Shown):
             return (
                 f"{self.parameter}: 95 % {side}, by profile likelihood; to the other side only the search has a bound"
             )
-        between = f"between {self.values[0]:.4g} and {self.values[-1]:.4g} {self.unit}"
+        between = f"between {quantity(self.values[0], self.unit)} and {quantity(self.values[-1], self.unit)}"
         return f"{self.parameter}: the data set no limit {between}"
 
     def listings(self) -> Iterable[Listing | str]:
         """The interval, and a row a value."""
+        size, unit = multiple(max(map(abs, self.values)), self.unit)
         rows = [
-            (f"{value:.5g}", error_said(error), f"{deviance:.3g}")
+            (plain(value / size, 5), error_said(error), f"{deviance:.3g}")
             for value, error, deviance in zip(self.values, self.errors, self.deviance, strict=True)
         ]
-        header = (f"{self.parameter} ({self.unit})", "error (eq. 17)", "D")
+        header = (f"{self.parameter} ({unit})", "error (eq. 17)", "D")
         yield Listing("", header, rows, header)
         yield self.text
 

@@ -11,7 +11,7 @@ from ident.preprocessing.told import told
 from ident.words.error import error_said
 from ident.words.message import message
 from ident.words.percent import percent
-from ident.words.plus_minus import UNDETERMINED, plus_minus_si
+from ident.words.plus_minus import UNDETERMINED, plus_minus
 from ident.words.probability import probability_said
 from ident.words.shown import Listing, listings
 from ident.words.uses import DATA
@@ -113,7 +113,7 @@ def strength(ranked: Ranked) -> str:
 
 def _searched(value: float, std_error: float | None, unit: str) -> str:
     """A strength, which is always searched for: without a standard error the data do not determine it."""
-    return UNDETERMINED if std_error is None else plus_minus_si(value, std_error, unit, digits=4)
+    return UNDETERMINED if std_error is None else plus_minus(value, std_error, unit)
 
 
 def ladder_rows(found: Diagnosis) -> Iterator[Row]:

@@ -6,9 +6,11 @@ from collections.abc import Iterator, Mapping
 
 from ident.fit.result import Estimate, FitResult
 from ident.preprocessing.told import told
+from ident.words.engineering import multiple
 from ident.words.error import error_said
+from ident.words.number import fixed
 from ident.words.percent import percent
-from ident.words.plus_minus import UNDETERMINED, determined, plus_minus_si
+from ident.words.plus_minus import UNDETERMINED, decimals, determined, plus_minus
 from ident.words.shown import Listing, listings
 from ident.words.uses import DATA
 
@@ -31,7 +33,7 @@ def remarks(result: FitResult) -> Iterator[str]:
     if result.aic is not None:
         yield f"AIC: {result.aic:.6g} (only for comparison with fits to the same samples; the smaller is the better)"
     for combination in result.determined:
-        value = plus_minus_si(combination.value, combination.std_error, combination.unit)
+        value = plus_minus(combination.value, combination.std_error, combination.unit)
         yield f"identifiable: {combination.expression} = {value}"
     for entry in result.undetermined:
         yield f"not identifiable: {entry.name}: {entry.reason}"
@@ -42,12 +44,14 @@ def remarks(result: FitResult) -> Iterator[str]:
 
 
 def parameter_rows(parameters: Mapping[str, Estimate]) -> Iterator[tuple[str, ...]]:
-    """One row a parameter."""
+    """One row a parameter, in a readable multiple of its unit."""
     for name, estimate in parameters.items():
         remark = "fixed" if estimate.fixed else "at its bound" if estimate.at_bound else ""
-        std_error = "–" if estimate.std_error is None else f"{estimate.std_error:.2g}"
-        value = f"{estimate.value:.5g}" if determined(estimate.value, estimate.std_error) else UNDETERMINED
-        yield name, value, std_error, estimate.unit, remark
+        size, unit = multiple(estimate.value, estimate.unit)
+        value, error = estimate.value / size, None if estimate.std_error is None else estimate.std_error / size
+        places = decimals(value, error)
+        known = determined(estimate.value, estimate.std_error)
+        yield name, fixed(value, places) if known else UNDETERMINED, fixed(error, places), unit, remark
 
 
 def error_rows(result: FitResult) -> Iterator[tuple[str, ...]]:

@@ -31,7 +31,8 @@ from ident.rig.limits import RigLimits
 from ident.run import Specimen
 from ident.stability.gain_margin import WANTED
 from ident.stability.judgement import STABLE, UNSTABLE, Judgement, judge
-from ident.words.number import trimmed
+from ident.words.engineering import multiple
+from ident.words.number import plain, trimmed
 from ident.words.shown import Listing, Shown
 
 Array = NDArray[np.float64]
@@ -106,11 +107,8 @@ class WhatIf(Shown):
             yield from one.text
         for drawn in self.spread:
             yield from drawn.sentences()
-        rows = [
-            (name, f"{entry.before:.5g}", f"{entry.after:.5g}", entry.unit, entry.why)
-            for name, entry in self.parameters.items()
-        ]
-        yield Listing("", ("parameter", "fitted", "changed", "unit", ""), rows, ("fitted", "changed"))
+        header = ("parameter", "fitted", "changed", "unit", "")
+        yield Listing("", header, self._rows(), header[1:3])
         for each in self.responses:
             yield _in_words(each)
         for each in self.with_peak:
@@ -119,6 +117,12 @@ class WhatIf(Shown):
             yield f"stability is lost at Kp = {self.critical_gain:.4g}"
         for note in self.notes:
             yield f"note: {note}"
+
+    def _rows(self) -> Iterator[tuple[str, ...]]:
+        """A row a parameter, in a readable multiple of its unit."""
+        for name, entry in self.parameters.items():
+            size, unit = multiple(entry.before, entry.unit)
+            yield name, plain(entry.before / size, 5), plain(entry.after / size, 5), unit, entry.why
 
     def to_json(self) -> dict[str, Any]:
         """As plain JSON data."""

@@ -44,6 +44,16 @@ def scaled_unit(unit: str, power: int, signs: str = PRINT) -> str:
     return " ".join(part for part in (factor, of) if part) or NO_UNIT
 
 
+def multiple(value: float, unit: str) -> tuple[float, str]:
+    """The multiple of a unit in which a value is read: its size in SI and its name, (1e-6, "mm²") of 497e-6, "m^2".
+
+    Of the display unit, where one is chosen.
+    """
+    size, shown = displayed(unit)
+    power = power_of(value / size)
+    return size * 10.0**power, scaled_unit(shown, power)
+
+
 def with_unit(number: str, unit: str, power: int = 0) -> str:
     """A number that was divided by 10^power before its unit: "2.592" → "2.592·10⁻⁶ m⁴/s"."""
     printed = scaled_unit(unit, power)

@@ -45,7 +45,7 @@ def plus_minus(value: float, std_error: float | None, unit: str) -> str:
 
 
 def plus_minus_si(value: float, std_error: float | None, unit: str, digits: int = 5) -> str:
-    """ "8.027e-05 ± 1.8e-07 m": on a terminal, in SI with its unit as a command takes them."""
+    """ "8.027e-05 ± 1.8e-07 m": in SI, for a text that is stored."""
     if not determined(value, std_error):
         return f"{UNDETERMINED} (± {std_error:.2g} {unit})"
     error = "" if std_error is None else f" ± {std_error:.2g}"

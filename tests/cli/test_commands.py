@@ -69,11 +69,21 @@ def test_fit_tells_a_reader_parameters_and_errors(servoident, few):
     """The table names each parameter with its unit, and the error on the verify runs in per cent."""
     done = servoident("fit", few, "--set", "tau=3.6 ms", "--set", "m0=4.25 kg", "--seed", 1)
     assert done.returncode == 0, done.stderr
-    assert "m^3/(s*Pa)" in done.stdout
+    rows = [line.split() for line in done.stdout.splitlines()]
+    assert ["tau", "3.6000", "–", "ms", "fixed"] in rows
+    assert next(row for row in rows if row[:1] == ["Cl"])[-2:] == ["10⁻¹²", "m³/(s·Pa)"]
     assert "fixed" in done.stdout
     assert "validation" in done.stdout
     assert "%" in done.stdout
     assert "search" in done.stderr
+
+
+def test_tables_stand_in_the_units_that_are_chosen_and_json_in_si(servoident, few):
+    """The same fit twice: a mass in pounds for the reader, in kilograms for a program."""
+    asked = ("--units", "lb", "fit", few, "--set", "tau=3.6 ms", "--set", "m0=4.25 kg", "--seed", 1)
+    shown, sent = servoident(*asked), servoident(*asked, "--json", "-")
+    assert ["m0", "9.3696", "–", "lb", "fixed"] in [line.split() for line in shown.stdout.splitlines()]
+    assert json.loads(sent.stdout)["parameters"]["m0"]["value"] == 4.25
 
 
 def test_a_profile_is_told_and_written_beside_the_fit(servoident, few, tmp_path):
@@ -117,7 +127,7 @@ def test_each_matrix_of_a_folder_is_fitted_and_what_cannot_be_used_is_said_in_it
     assert done.returncode == 2
     good, bad = (next(line for line in done.stdout.splitlines() if line.startswith(name)) for name in ("good", "bad"))
     assert "'serial' is missing" in bad
-    assert "Z0 2.592e-06 m^4/s" in good
+    assert "Z0 2.592·10⁻⁶ m⁴/s" in good
     fits = json.loads((tmp_path / "fits.json").read_text())["fits"]
     assert [entry["matrix"] for entry in fits] == ["bad", "good"]
     assert fits[1]["fit"]["model"] == "qian2014"

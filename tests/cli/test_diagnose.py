@@ -46,8 +46,8 @@ def test_the_tables_say_it_with_units(told):
     printed, found = told
     line = next(line for line in printed.splitlines() if line.startswith("dead_zone "))
     strength = found["candidates"][0]["parameters"]["dead_zone.half_width"]["value"]
-    assert f"{strength:.4g} ±" in line
-    assert " m" in line
+    assert f"{1e6 * strength:.2f} ±" in line
+    assert " µm" in line
     assert line.count("%") == 4  # its probability, and three errors
     assert "noise floor" in printed
     assert "(the fitted model)" in printed

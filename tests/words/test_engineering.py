@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from ident.words.engineering import printed_unit, quantity, scaled_unit
+from ident.words.display import displaying
+from ident.words.engineering import NO_UNIT, multiple, printed_unit, quantity, scaled_unit
 from ident.words.symbols import symbol
 
 
@@ -49,3 +50,11 @@ def test_a_ratio_keeps_its_divisor_beside_the_symbol():
     assert symbol("Z0/A^2", "Z₀") == "Z₀/A²"
     assert symbol("tau", "τ") == "τ"
     assert symbol("x", "") == "x"
+
+
+def test_a_column_of_numbers_has_one_readable_multiple_of_its_unit():
+    assert multiple(497e-6, "m^2") == (pytest.approx(1e-6), "mm²")
+    assert multiple(0.0, "m") == (1.0, "m")
+    assert multiple(0.5, "1") == (1.0, NO_UNIT)
+    with displaying(("bar",)):
+        assert multiple(2.1e7, "Pa") == (1e5, "bar")
