@@ -192,7 +192,7 @@ class CandidateModels:
         if self.effects[effect].has_searched_shapes:
             return True
         strength = self.strength(effect)
-        lower, upper = refit.space.bounds(refit.values)[strength]
+        lower, upper = refit.space.reach(strength, refit.values)
         return abs(refit.values[strength]) < CRITERIA.estimation.off_strength * max(-lower, upper)
 
     def at_bound(self, refit: FittedModel, effect: str) -> bool:

@@ -246,7 +246,9 @@ def _target(models: CandidateModels, base: FittedModel, incumbent: FittedModel |
 
 
 def _near(models: CandidateModels, base: FittedModel, predictions: Sequence[Prediction]) -> list[Prediction]:
-    """The contenders for a further effect: those that promise anything near what the best promises."""
+    """The contenders for a further effect: those that promise anything near what the best promises, if any is left."""
+    if not predictions:
+        return []
     near = CRITERIA.ranking.near_best * predictions[0].after.error
     return [p for p in predictions if _is_worth_a_trial(p) and p.after.error < near][: _few(models, base)]
 
@@ -296,7 +298,7 @@ def _multistart(
 def _strong_starts(models: CandidateModels, base: FittedModel, refit: FittedModel) -> list[dict[str, float]]:
     """The model without the effect that a refit added, and that effect at large strengths of the refit's sign."""
     symbol = models.strength(refit.effects[-1])
-    lower, upper = refit.fitness.space.bounds({**refit.values, **base.values})[symbol]
+    lower, upper = refit.fitness.space.reach(symbol, {**refit.values, **base.values})
     end = lower if refit.values[symbol] < 0 else upper
     added = models.effects[refit.effects[-1]].added[1:]
     shape = {p.in_equations: refit.values[p.in_equations] for p in added if p.in_equations in refit.values}
@@ -309,7 +311,7 @@ def _perturbed_starts(models: CandidateModels, refit: FittedModel) -> list[dict[
     Between two of them lies where one more reversal of the way shows in the record.
     """
     symbol = models.strength(refit.effects[-1])
-    lower, upper = refit.fitness.space.bounds(refit.values)[symbol]
+    lower, upper = refit.fitness.space.reach(symbol, refit.values)
     return [
         {**refit.values, symbol: float(np.clip(s * refit.values[symbol], lower, upper))}
         for s in CRITERIA.ranking.perturbed_starts

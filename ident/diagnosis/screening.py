@@ -125,10 +125,12 @@ def _response_of_each(given: _Sensitivities, base: FittedModel, names: Sequence[
 
 
 def _values_without(models: CandidateModels, base: FittedModel, fitness: SimulatedFitness) -> dict[str, float]:
-    """The values of everything in a space, the effects that are not the model's own off."""
+    """The values of everything in a space, the effects that are not the model's own off, also what is held of them."""
     off = {symbol: value for symbol, value in models.off.items() if symbol not in base.values}
     held = {name: value for name, value in fitness.space.fixed.items() if name not in base.values}
-    return {name: value for name, value in {**off, **base.values, **held}.items() if name in fitness.space.order}
+    strengths = {symbol: 0.0 for symbol in map(models.strength, models.effects) if symbol in off}
+    known = {**off, **base.values, **held, **strengths}
+    return {name: value for name, value in known.items() if name in fitness.space.order}
 
 
 def _predicted(given: _Sensitivities, base: FittedModel, names: Sequence[str]) -> list[Prediction]:
@@ -189,10 +191,10 @@ def _beyond(
     for promise in promises:
         effect = promise[0].effect
         best[effect] = min(best.get(effect, promise), promise, key=_score)
-    bounds, most = fitness.space.bounds(values), (1.0 - EPSILON) * CRITERIA.screening.max_scaling
+    most = (1.0 - EPSILON) * CRITERIA.screening.max_scaling
     found = []
     for trial, _, step in best.values():
-        lower, upper = bounds[models.strength(trial.effect)]
+        lower, upper = fitness.space.reach(models.strength(trial.effect), values)
         at_end = trial.strength >= (1.0 - EPSILON) * upper or trial.strength <= (1.0 - EPSILON) * lower < 0
         if at_end and step[-1] >= most and models.may_reach_farther(fitness, trial.effect):
             found.append(replace(trial, strength=FURTHER * trial.strength))
@@ -345,7 +347,7 @@ def _trials(
     models: CandidateModels, base: FittedModel, space: Space, name: str, known: Mapping[str, float]
 ) -> Iterator[_Trial]:
     """The strengths to try, SI: shares of the way from off to each bound, from wherever the shapes may begin."""
-    lower, upper = space.bounds(known)[models.strength(name)]
+    lower, upper = space.reach(models.strength(name), known)
     covered = strength_in_records(base, models.effects[name])
     shapes = initial_guesses(base, models.effects[name], space, known)
     shares = (
@@ -357,6 +359,8 @@ def _trials(
     )
     if covered is not None:
         shares, upper, lower = CRITERIA.screening.strengths_of_stop, min(covered, upper), 0.0
+    if models.strength(name) in space.fixed:
+        shares, lower = (1.0,), 0.0
     for shape in shapes:
         for end in (upper, lower):
             yield from (_Trial(name, share * end, shape) for share in shares if end)

@@ -56,6 +56,8 @@ class Effect:
     """What a matrix must have for a diagnosis to look for it (:mod:`ident.effects.needs`); None is nothing."""
     shown: bool = False
     """Whether a record that has what it needs shows it by itself: it then comes before what explains as much."""
+    whole: bool = False
+    """Whether it is there wholly or not at all: what has it then has the upper bound of its strength."""
     takes_over: tuple[str, ...] = ()
     """Symbols of a machine's springs, of which a part is this effect's at small motions: its strength over its way."""
     unless: str = ""

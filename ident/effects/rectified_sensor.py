@@ -16,4 +16,5 @@ RECTIFIED_SENSOR = Effect(
     steps=2,
     needs=rectified,
     shown=True,
+    whole=True,
 )

@@ -100,6 +100,10 @@ class Space:
         scales = {axis.name: float(_scale(axis, known, self.typical)) for axis in self.axes}
         return {axis.name: (axis.lower * scales[axis.name], axis.upper * scales[axis.name]) for axis in self.axes}
 
+    def reach(self, name: str, values: Mapping[str, float]) -> tuple[float, float]:
+        """Between what a parameter may lie, SI: its bounds, or of one that is held twice its value."""
+        return (self.fixed[name],) * 2 if name in self.fixed else self.bounds(values)[name]
+
 
 def _ratio(axis: Axis, u: Array) -> Array:
     """The ratio at places of an axis. Within the axis it is within the bounds, which rounding alone would leave.
@@ -144,7 +148,7 @@ def search_space(preset: Preset, matrix: Matrix, settings: Settings, band: float
     if force:  # a mass that would need it
         typical["mL"] = force / (typical["V"] * band)
     of_effects = [p for effect in preset.effects for p in effect.added]
-    known = _shapes(preset, typical) | {name: value for name, value in preset.data.gains.items() if name != "Kp"}
+    known = _held(preset, typical) | {name: value for name, value in preset.data.gains.items() if name != "Kp"}
     fixed = {name: value for name, value in known.items() if name not in given} | fixed
     convention = None
     forced = force or preset.data.driven_by != "command"
@@ -173,9 +177,10 @@ def search_space(preset: Preset, matrix: Matrix, settings: Settings, band: float
     return Space(tuple(axes), order, fixed, typical, convention, held, not same, not (same or bounded))
 
 
-def _shapes(preset: Preset, typical: Mapping[str, float]) -> dict[str, float]:
-    """What effects' shapes are held at where nobody says otherwise."""
-    return {
+def _held(preset: Preset, typical: Mapping[str, float]) -> dict[str, float]:
+    """What of effects is held where nobody says otherwise: shapes, and the strength of what is there wholly."""
+    whole = {effect.added[0].in_equations: effect.strength.upper for effect in preset.effects if effect.whole}
+    return whole | {
         p.in_equations: p.relative * typical["L"] if p.relative and preset.search.relative_ways else p.value
         for effect in preset.effects
         for p in effect.added[1:]
