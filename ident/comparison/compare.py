@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from typing import Any
 
@@ -19,7 +19,7 @@ from ident.effects.effect import usual_shapes
 from ident.errors import Unusable
 from ident.fit.normal_matrices import output
 from ident.fit.result import FitResult
-from ident.fit.simulated_runs import every_run, is_simulated
+from ident.fit.simulated_runs import BegunOver, every_run, is_simulated
 from ident.fit.transducer import offset_at
 from ident.linear import LinearModel
 from ident.matrix import Actuator, Matrix
@@ -247,9 +247,11 @@ class Comparison(Shown):
         return float(over_runs([getattr(run, what) for run in found], [run.run for run in found])) if found else None
 
 
-def modelled(preset: Preset, values: Mapping[str, float], matrix: Matrix) -> dict[str, Array]:
-    """The output of a model with effects for every run of a matrix, by the run's id."""
-    return every_run(preset, matrix).outputs_at(values)
+def modelled(
+    preset: Preset, values: Mapping[str, float], matrix: Matrix, begun_over: BegunOver | None = None
+) -> dict[str, Array]:
+    """The output of a model with effects for every run of a matrix, by the run's id; it may be begun over windows."""
+    return replace(every_run(preset, matrix), begun_over=begun_over).outputs_at(values)
 
 
 def compare(matrix: Matrix, fit: FitResult, simulator: Simulator = modelled) -> Comparison:
@@ -258,6 +260,8 @@ def compare(matrix: Matrix, fit: FitResult, simulator: Simulator = modelled) -> 
     Raises Unusable where the fit is of another model's data.
     """
     preset, matrix, values = fitted(fit, matrix)
+    if fit.window:
+        simulator = partial(modelled, begun_over=(fit.window.horizon, fit.window.memory))
     outputs = simulator(preset, values, matrix) if is_simulated(preset, matrix) else None
 
     def one(run: Run) -> RunComparison:

@@ -22,7 +22,7 @@ from ident.effects.effect import Effect
 from ident.fit.anchoring import Anchoring
 from ident.fit.modes import extreme, fastest, motion
 from ident.fit.normal_matrices import NormalMatrices, first_state, normal_matrices_of
-from ident.fit.products import add_block_products, completed
+from ident.fit.products import add_block_products, add_products, completed
 from ident.fit.reduction import excited_band
 from ident.fit.settling import ROUNDS, Least, Settling, better
 from ident.matrix import Matrix
@@ -36,10 +36,14 @@ from ident.simulation.simulate import Simulation
 from ident.simulation.steps import Modes, steps_at_jumps, steps_at_passages, steps_at_reversals, steps_needed
 
 Array = NDArray[np.float64]
+BegunOver = tuple[float, float | None]
+"""The horizon and the memory (s) of the windows over which first states are found."""
 _TOGETHER = 1024  # lanes simulated in one go: what is done once for all of them costs little
 _BLOCKS = 32  # of a record: see ident.fit.normal_matrices
 _REACH = 1e-3  # of a state's size, for sensitivities to the first state
 _BLOCK = 512  # samples simulated at a time: what they leave stays near the core
+_FIRST = 16  # samples that tell where a record begins: the fewest of a window
+_BOUND = 1e3  # times all other samples of a record count these: what drifts later does not move its beginning
 
 
 @dataclass
@@ -50,8 +54,10 @@ class SimulatedRuns:
     equations' names, SI: numbers, or arrays of v parameter vectors side by side. With a `horizon` (s)
     the moments are those of windows of that length, each begun where it was measured: see :mod:`ident.fit.windows`;
     with a `memory` (s) at the speed, too, that was found before. Of the outputs named in `absolute` the mean counts
-    too, which eq. (17) does not see. A search follows the kinks of a core `roughly`. `sizes` are those of the core's
-    states, (n,), and `sizes_of_effects` those of what effects begin with, (m,), once a run has begun that moves.
+    too, which eq. (17) does not see. A free run `begun_over` windows has the first states that these find, by their
+    horizon and memory: none is free to make up for where the record drifts to. A search follows the kinks of a core
+    `roughly`. `sizes` are those of the core's states, (n,), and `sizes_of_effects` those of what effects begin with,
+    (m,), once a run has begun that moves.
     """
 
     preset: Preset
@@ -62,6 +68,7 @@ class SimulatedRuns:
     horizon: float | None = field(default=None, kw_only=True)
     memory: float | None = field(default=None, kw_only=True)
     absolute: tuple[str, ...] = field(default=(), kw_only=True)
+    begun_over: BegunOver | None = field(default=None, kw_only=True)
     roughly: bool = field(default=False, kw_only=True)
     sizes: Array = field(default_factory=lambda: np.zeros(1), kw_only=True)
     sizes_of_effects: Array = field(default_factory=lambda: np.zeros(1), kw_only=True)
@@ -88,6 +95,7 @@ class SimulatedRuns:
 
         From those that are known, or from each guess: a model that is not linear in them has several best ones.
         """
+        self._begin_as_windows_do(values)
         vector = {name: np.array([value]) for name, value in values.items()}
         steps = int(self.steps(vector).max())
         moving = tuple(run for run in self.runs if run.begins == "moving")
@@ -154,9 +162,22 @@ class SimulatedRuns:
         together = max(1, _BLOCK // length) * length
         for rows, begin, end in released.outputs(together):
             add_block_products(anchored(rows), records[begin:end], q - 2, length, sums[begin // length :])
+            if begin == 0 and window and len(self._free(runs[0])):
+                sums[0] += self._beginning(runs, rows, sums[0])
         if window or not free:
             sums[..., -2, :] = sums[..., :, -2] = 0.0  # no mean is free: each window begins where it was measured
         return completed(sums, strides).transpose(1, 0, 2, 3)
+
+    def _beginning(self, runs: tuple[Run, ...], rows: Array, like: Array) -> Array:
+        """Products of [J, N, 0, r] of where the runs begin, (runs, q, q): the mean of the first samples, not anchored.
+
+        A constant has no part in it: what is one of the record, such as an offset, does not begin it elsewhere.
+        """
+        first, measured = rows[:_FIRST], np.array([run.measured[:_FIRST] for run in runs]).T
+        sums = np.zeros_like(like)
+        add_products(first.mean(axis=0, keepdims=True), measured.mean(axis=0, keepdims=True), sums.shape[1] - 2, sums)
+        sums[:, -2, :] = sums[:, :, -2] = 0.0
+        return sums * (_BOUND * runs[0].length)
 
     def anchoring(self, run: Run, count: int = 1) -> Anchoring:
         """How the windows of a run begin, of its samples or of means of `count` of them."""
@@ -184,7 +205,8 @@ class SimulatedRuns:
 
     def whole(self) -> Self:
         """The same over whole runs, as eq. (17) sees them."""
-        return replace(self, horizon=None, memory=None, absolute=(), starts=dict(self.starts))
+        over = self.begun_over if self.horizon is None else (self.horizon, self.memory)
+        return replace(self, horizon=None, memory=None, absolute=(), begun_over=over, starts=dict(self.starts))
 
     def released(self, runs: tuple[Run, ...], values: Mapping[str, Array], steps: int) -> Simulation:
         """A simulation of vectors and, where runs start moving, of the first with each of its first states moved."""
@@ -249,16 +271,29 @@ class SimulatedRuns:
         return {self.chain.states.index(state): float(samples[0]) for state, samples in known.items()}
 
     def _free(self, run: Run) -> NDArray[np.intp]:
-        """The places of the first states that are to be found: of a run that starts moving those not recorded."""
-        if run.begins != "moving":
+        """The places of the first states that are to be found: of a run that starts moving those not recorded.
+
+        None of a free run that begins as windows do.
+        """
+        if run.begins != "moving" or self.begun_over:
             return np.empty(0, np.intp)
         recorded = self._recorded(run)
         return np.array([state for state in range(len(self.chain.begun)) if state not in recorded], np.intp)
 
     def begin(self, values: Mapping[str, float]) -> None:
-        """Take the first states that are not known yet from the linear model at `values`."""
+        """Take the first states that are not known yet from the linear model at `values`, or from its windows."""
+        self._begin_as_windows_do(values)
         new = [run for run in self.runs if run.begins == "moving" and run.id not in self.starts]
         self.starts |= {run.id: self._guesses(run, values)[0] for run in new}
+
+    def _begin_as_windows_do(self, values: Mapping[str, float]) -> None:
+        """Find the first states that are not known yet over the windows, where a free run is begun over these."""
+        new = tuple(run for run in self.runs if run.begins == "moving" and run.id not in self.starts)
+        if self.begun_over and new:
+            horizon, memory = self.begun_over
+            over = replace(self, runs=new, begun_over=None, horizon=horizon, memory=memory, starts={})
+            over.settle(values)
+            self.starts |= over.starts
 
     def _guesses(self, run: Run, values: Mapping[str, float]) -> list[Array]:
         """First states (n,) of the linear model at `values`: that least is left of a run with, first.

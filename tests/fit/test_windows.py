@@ -16,7 +16,7 @@ from ident.fit.settings import Settings
 from ident.fit.windows import unforeseen
 from ident.matrix import Actuator, Matrix
 from ident.run import Run
-from ident.workflows import diagnose, identify
+from ident.workflows import compare, diagnose, identify
 
 RATE, GAIN, LAG = 20.0, 0.05, 0.15
 MOTOR = Settings(model="motor", options={"population": 24.0, "generations": 6.0, "elite": 3.0})
@@ -110,6 +110,24 @@ def test_the_free_run_is_reported_with_its_interval():
         assert low < 1.001 * errors[1] < 1.002 * high
         assert 0.7 * np.ptp(errors) < high - low < 2.0 * np.ptp(errors)
     assert type(fit).from_json(fit.to_json()).window == fit.window
+
+
+def test_a_free_run_begins_where_the_record_was_measured():
+    """Over windows only a bent sensor tells a first position: were that free, its curve could be any."""
+    runs = []
+    for run in cylinder(7, wander=1e-3).runs:
+        bent, first = run.measured * (1 + 0.6 * run.measured), 300  # from the middle of a motion on
+        runs.append(replace(run, channels={"command": run.command[first:], "displacement": bent[first:]}))
+    matrix = Matrix(Actuator("BENT"), tuple(runs))
+    fit = identify(matrix, replace(MOTOR, effects=("sensor_curve",)))
+    assert fit.window is not None
+    curvature = fit.parameters["sensor_curve.curvature"]
+    assert curvature.std_error is not None
+    assert curvature.std_error < 0.1
+    assert curvature.value == pytest.approx(0.6, abs=3 * curvature.std_error)
+    for compared in compare(matrix, fit).runs:
+        assert compared.modelled[0] == pytest.approx(compared.run.measured[0], abs=2e-3)  # ten times the noise
+        assert compared.rmse == pytest.approx(fit.rmse[compared.run.use], rel=1e-3)
 
 
 def test_a_free_run_that_goes_astray_has_no_interval(monkeypatch):
