@@ -176,7 +176,8 @@ class RiseView(BaseModel):
     """The error on runs to verify without an effect and with it, and by how many standard errors it rises.
 
     The last two are null where the model is unstable on runs to verify with the effect: on those in `unstable`.
-    `instead_of` are effects that the model has which it rises from, and that are not in this one.
+    `instead_of` are effects that the model has which it rises from, and that are not in this one. Of a `free_run` the
+    errors are those with its mean, of a machine that is fitted over windows, and there are no standard errors.
     """
 
     effect: str
@@ -185,6 +186,7 @@ class RiseView(BaseModel):
     deviations: float | None
     unstable: list[str] = Field(default_factory=list)
     instead_of: list[str] = Field(default_factory=list)
+    free_run: bool = False
 
 
 class TermView(BaseModel):

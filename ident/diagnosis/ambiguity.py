@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from ident.diagnosis.alternative_structures import AlternativeModel, alternative_explanations
 from ident.diagnosis.budget import SearchBudget
 from ident.diagnosis.criteria import CRITERIA
+from ident.diagnosis.fitted_model import FittedModel
 from ident.diagnosis.ladder import Rungs
 from ident.diagnosis.result import Explanation, Suspect
 from ident.diagnosis.selection import Selection
@@ -18,8 +19,9 @@ from ident.diagnosis.sentences import delay_sentence
 from ident.diagnosis.stages import LAGS, NOISE, OTHERS, VERIFY, Stages
 from ident.diagnosis.total_delay import lag_ambiguities, total_delay
 from ident.diagnosis.verdict import Findings
-from ident.diagnosis.verification import VerifyChange, verify_change
+from ident.diagnosis.verification import VerifyChange, verify_change, with_free_run
 from ident.progress import Progress
+from ident.run import Run
 from ident.time_budget import in_time
 
 Names = tuple[str, ...]
@@ -52,17 +54,24 @@ def challenged(
 
 def _verify_changes(selection: Selection, steps: Rungs) -> Iterator[VerifyChange]:
     """How the error on verify runs changes with each effect of the ladder."""
-    runs = selection.models.matrix.of_use("verify")
+    models = selection.models
+    runs = models.matrix.of_use("verify")
     if not runs:
         return
     before: list[NDArray[np.float64]] | None = None
+    less: FittedModel | None = None
     for added, refit in steps:
         if not refit.stable:
             continue  # a rung of the ladder that no search stood on
         after = refit.residuals(runs)
-        if added and before and (change := verify_change(added, runs, before, after)):
-            yield change
-        before = after
+        if added and before and less and (change := verify_change(added, runs, before, after)):
+            yield change if models.horizon is None else _freely(change, runs, less, refit)
+        before, less = after, refit
+
+
+def _freely(change: VerifyChange, runs: Sequence[Run], less: FittedModel, more: FittedModel) -> VerifyChange:
+    """The change over windows, with what the free runs say."""
+    return with_free_run(change, less.free_run_of(runs), more.free_run_of(runs))
 
 
 def other_machines(

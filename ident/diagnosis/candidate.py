@@ -8,7 +8,7 @@ from itertools import groupby
 
 from ident.diagnosis.candidate_models import CandidateModels
 from ident.diagnosis.criteria import CRITERIA
-from ident.diagnosis.evidence.comparison import Evidence
+from ident.diagnosis.evidence.comparison import Evidence, runs_freely
 from ident.diagnosis.evidence.criteria import EVIDENCE_CRITERIA, OF_SHOWN
 from ident.diagnosis.fitted_model import FittedModel
 from ident.diagnosis.model_comparison import dominated, evidence, indistinguishable, is_improvement
@@ -20,7 +20,8 @@ from ident.diagnosis.tie_breaking import stable_ranking
 class Candidate:
     """An effect, what it promises, its refit on all records where it came that far, and what speaks for it.
 
-    `improves` is whether adding it to the model without it is worth it.
+    `improves` is whether adding it to the model without it is worth it. It `drives_away` a free run where that is all
+    that speaks against it: over windows it would be.
     """
 
     prediction: Prediction
@@ -28,6 +29,7 @@ class Candidate:
     refit: FittedModel | None = None
     evidence: Evidence | None = None
     improves: bool = False
+    drives_away: bool = False
 
     @property
     def effect(self) -> str:
@@ -48,10 +50,13 @@ class Candidate:
 
     def refitted(self, models: CandidateModels, base: FittedModel, refit: FittedModel) -> Candidate:
         """The candidate with a refit on all records, and what speaks for it against the model without the effect."""
-        found = evidence(base, refit) if base.finite else None
-        criteria = OF_SHOWN if models.is_shown(self.effect) else EVIDENCE_CRITERIA
-        improves = found is None or is_improvement(models, base, found, criteria)
-        return replace(self, refit=refit, evidence=found, improves=improves)
+        if not base.finite:
+            return replace(self, refit=refit, evidence=None, improves=True, drives_away=False)
+        found, criteria = evidence(base, refit), OF_SHOWN if models.is_shown(self.effect) else EVIDENCE_CRITERIA
+        improves = is_improvement(models, base, found, criteria)
+        over_windows = replace(found, by_free_run=None)
+        away = not improves and not runs_freely(found) and is_improvement(models, base, over_windows, criteria)
+        return replace(self, refit=refit, evidence=found, improves=improves, drives_away=away)
 
 
 def in_rank_order(models: CandidateModels, candidates: Iterable[Candidate]) -> list[Candidate]:

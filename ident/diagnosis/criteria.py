@@ -324,6 +324,10 @@ class Selection:
     global_restarts: int = 8
     """[effects] Of the first ranking started from the whole search space. Why: a model that went far astray makes
     another effect look better. Test: test_selection.py::test_one_effect_from_anywhere_takes_the_place_of_the_first"""
+    companions: int = 2
+    """[effects] That drive the free run away by themselves, each of which is tried with all others. Why: each costs a
+    ranking, and more than the leading ones seldom act.
+    Test: test_free_run.py::test_friction_and_a_constant_force_are_found_that_only_together_run_freely"""
     pair_finalists: int = 5
     """[finalists] Tried two at a time. Why: two lags look like a delay, one at a time.
     Test: test_selection.py::test_two_that_only_together_explain_the_data_are_found_where_a_third_came_first"""

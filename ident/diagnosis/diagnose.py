@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
 
@@ -24,7 +24,7 @@ from ident.diagnosis.report import report
 from ident.diagnosis.result import Diagnosis, NextRun, Suspect
 from ident.diagnosis.selection import Selection
 from ident.diagnosis.selection_loop import select
-from ident.diagnosis.sentences import alternative_sentences, dispensable_sentence, horizon_sentence
+from ident.diagnosis.sentences import alternative_sentences, dispensable_sentence, free_run_sentence, horizon_sentence
 from ident.diagnosis.stages import EFFECTS, ERROR_BUDGET, FURTHER, LABELS, LATER, NEXT_RUN, TERMS, Stages, not_looked_at
 from ident.diagnosis.undetermined import rested
 from ident.diagnosis.unfitted import unranked, unsearched, with_missing_inputs, with_oscillations
@@ -87,7 +87,8 @@ class Diagnoser:
         steps = in_time(selection.ladder) or selection.known_ladder()
         findings = challenged(selection, steps, suspects, self.stages, pairs, elsewhere)
         catalogue = self._with_follow_up(report(self.fit, self.models, selection, steps, findings))
-        story = _Story(catalogue, findings, (*self._windows(catalogue), *delays, *alternative_sentences(elsewhere)))
+        windows = (*self._windows(catalogue), *_forgiven(selection))
+        story = _Story(catalogue, findings, (*windows, *delays, *alternative_sentences(elsewhere)))
         terms = DiscoveryResult()
         if is_searched(selection, self.stages, self.budget):
             self.budget.publish_verdict(self._told(story, INCOMPLETE, still_searching=True))
@@ -211,6 +212,12 @@ class Diagnoser:
         """Over what the errors are, where these are not the windows of the fit."""
         same = diagnosis.horizon == self.models.horizon
         return () if same else tuple(horizon_sentence(self.models.horizon, diagnosis.horizon))
+
+
+def _forgiven(selection: Selection) -> Iterator[str]:
+    """What windows forgive of the last model, where it is fitted over windows and there is time to ask."""
+    if selection.models.horizon is not None and (free := in_time(lambda: selection.fitted.free_run)):
+        yield from free_run_sentence(free)
 
 
 @dataclass(frozen=True)

@@ -14,8 +14,10 @@ from ident.diagnosis.compared_records import ComparedRecords
 from ident.diagnosis.criteria import CRITERIA
 from ident.diagnosis.cross_validation import OutOfFold, out_of_fold
 from ident.diagnosis.evidence.comparison import Residuals
+from ident.diagnosis.evidence.free_run import FreeRun, adds_up
 from ident.diagnosis.parameter_estimate import ParameterEstimate
 from ident.fit.fitness import Local
+from ident.fit.normal_matrices import NormalMatrices
 from ident.fit.result import Combination, TransducerOffset
 from ident.fit.simulated_fitness import SimulatedFitness
 from ident.fit.slow_answer import slow_lag
@@ -23,6 +25,7 @@ from ident.fit.space import Space
 from ident.fit.summary import told_offsets
 from ident.fit.transducer import Offset, offset_at, offsets_that_count
 from ident.fit.uncertainty import DETERMINED, Covariance, covariance
+from ident.noise.effective_sample_size import independent_samples
 from ident.run import Run, over_runs
 from ident.time_budget import in_time
 from ident.unstable import UNSTABLE
@@ -60,6 +63,35 @@ class FittedModel:
         every = range(len(self.fitness.runs))
         fitted = self._residuals(self._left_of(self.point, every))
         return Residuals(fitted.residuals, self.records.bands, fitted.levels)
+
+    @cached_property
+    def free_run(self) -> FreeRun:
+        """The free run of the runs that it is fitted to over windows."""
+        return self.free_run_of(self.fitness.runs)
+
+    def free_run_of(self, runs: Sequence[Run]) -> FreeRun:
+        """The free run of any runs of the matrix, begun as their windows are, and what is expected of it."""
+        own = self.fitness if tuple(runs) == self.fitness.runs else self.fitness.fresh(tuple(runs))
+        whole = own.whole()
+        found = whole.exact(self.point).runs
+        if not all(np.isfinite(of.error) for of in found):
+            return FreeRun(np.inf, 0.0)
+        outputs = whole.outputs(self.point)
+        expected = [
+            self._expected(run, run.measured - outputs[run.id], of) for run, of in zip(whole.runs, found, strict=True)
+        ]
+        power = [of.error**2 + of.offset**2 for of in found]
+        return FreeRun(float(over_runs(power, whole.runs)), float(over_runs(expected, whole.runs)))
+
+    def _expected(self, run: Run, residual: Array, found: NormalMatrices) -> float:
+        """The power that disturbances as at the ends of the windows, and errors of the parameters, add up to."""
+        anchoring, p = self.fitness.anchoring(run), len(self.point)
+        ends = anchoring(residual)[anchoring.window - 1 :: anchoring.window]
+        lasting = len(ends) / max(independent_samples(ends), 1.0)  # windows that a disturbance lasts for
+        own = lasting * float(np.mean(ends**2)) / run.power * run.length
+        shared = found.gram[:p, :p] + found.length * np.outer(found.means[:p], found.means[:p])
+        of_parameters = float(np.sum(self._known.seen * shared)) / found.total
+        return adds_up(own, run.length / anchoring.window, anchoring.memory > 0) + of_parameters
 
     def _left_of(self, point: Array, numbers: Sequence[int]) -> list[Array]:
         """What the model at a point leaves of some runs, means and all."""

@@ -5,6 +5,7 @@ What the answers mean, and by which numbers, stands in :mod:`ident.diagnosis.evi
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import partial
 
 import numpy as np
@@ -18,8 +19,11 @@ from ident.diagnosis.screening import gain_by_chance
 
 
 def evidence(before: FittedModel, after: FittedModel) -> Evidence:
-    """What speaks for the second model against the first."""
-    return compare(before.residuals_held_out, after.residuals_held_out)
+    """What speaks for the second model against the first; of models over windows also their free runs."""
+    found = compare(before.residuals_held_out, after.residuals_held_out)
+    if before.fitness.horizon is None:
+        return found
+    return replace(found, by_free_run=lambda: (before.free_run, after.free_run))
 
 
 def improves(models: CandidateModels, less: FittedModel, more: FittedModel) -> bool:

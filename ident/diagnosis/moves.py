@@ -134,7 +134,13 @@ class Moves:
                 selection = known
                 continue
             if best is None or best.refit is None:
-                break
+                together = self._with_companion(selection, ranking)
+                if together is None:
+                    break
+                selection, returned = self._backward(together, together.added[-1])
+                if returned:
+                    break
+                continue
             if without := self._without_its_effect(selection, best.refit):
                 selection = without
                 continue
@@ -177,6 +183,21 @@ class Moves:
         """The selection with a refit whose last effect has other shapes free, and the models that have these free."""
         self.models = with_shapes_of(self.models, refit, refit.effects[-1])
         return self.step(replace(selection, models=self.models, rungs=Ladder(self.models)), refit)
+
+    def _with_companion(self, selection: Selection, ranking: Sequence[Candidate]) -> Selection | None:
+        """Add an effect that by itself drives the free run away with the first other that keeps it where it belongs.
+
+        Over windows the first alone improves the model, and perhaps only that; the free run asks for both.
+        """
+        driving = [c.refit for c in ranking if c.drives_away and c.refit is not None]
+        if len(selection.added) + 2 > self.most:
+            return None
+        for alone in driving[: CRITERIA.selection.companions]:
+            refits = (c.refit for c in self._rank(alone, thorough=False) if c.refit is not None)
+            both = next((refit for refit in refits if improves(self.models, selection.fitted, refit)), None)
+            if both is not None:
+                return self.step(selection, both)
+        return None
 
     def _without_its_effect(self, selection: Selection, refit: FittedModel) -> Selection | None:
         """Where the model does as well without what was added, that only led to a better optimum: the model there."""

@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Hashable, Iterator, Mapping, Sequence
+from math import sqrt
 from types import MappingProxyType
 from typing import Any
 
 from ident.diagnosis.candidate import Candidate
 from ident.diagnosis.criteria import CRITERIA
 from ident.diagnosis.discovery.proposal import Proposal
-from ident.diagnosis.evidence.comparison import HALVES, Evidence, generalises, losing_part, matters
+from ident.diagnosis.evidence.comparison import HALVES, Evidence, generalises, losing_part, matters, runs_freely
 from ident.diagnosis.evidence.criteria import EVIDENCE_CRITERIA
+from ident.diagnosis.evidence.free_run import FreeRun, drifts
 from ident.diagnosis.evidence.probability import is_improbable
 from ident.diagnosis.result import Explanation, Suspect
 from ident.diagnosis.total_delay import TotalDelay
@@ -51,6 +53,8 @@ def _reasons(
         yield message("why.would_show", looks=effect.looks)
     elif not generalises(found):
         yield _loses(losing_part(found))
+    elif not improves and not runs_freely(found):
+        yield _drifts(found)
     elif not improves:
         yield message("why.chance")
         yield message("why.would_show", looks=effect.looks)
@@ -63,6 +67,13 @@ def _reasons(
 def _loses(part: Hashable) -> Message:
     """Where the error rises: on a half of the records, or on one condition of the test."""
     return message("why.half", part=part) if part in HALVES else message("why.condition")
+
+
+def _drifts(found: Evidence) -> Message:
+    """That the free run drifts away with an effect that is better over windows."""
+    assert found.free_runs is not None
+    before, after = found.free_runs
+    return message("why.free_run", before=sqrt(before.power), after=sqrt(after.power), expected=sqrt(after.expected))
 
 
 def evidence_figures(found: Evidence | None, effect: Effect, improves: bool) -> dict[str, Any]:
@@ -244,6 +255,12 @@ def horizon_sentence(fitted: float | None, horizon: float | None) -> Iterator[st
         yield str(message("horizon.runs", fitted=fitted or 0.0))
     else:
         yield str(message("horizon.windows", horizon=horizon, fitted=fitted or 0.0))
+
+
+def free_run_sentence(free: FreeRun) -> Iterator[str]:
+    """What windows forgive: that a free run drifts farther than they explain."""
+    if drifts(free):
+        yield str(message("free_run", error=sqrt(free.power), expected=sqrt(free.expected)))
 
 
 def delay_sentence(late: TotalDelay, described: Callable[[str], str] = title, without: Sequence[str] = ()) -> str:

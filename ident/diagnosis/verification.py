@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ident.diagnosis.criteria import CRITERIA, TINY
+from ident.diagnosis.evidence.free_run import FreeRun, drives_away
 from ident.noise.effective_sample_size import independent_samples
 from ident.plain import WHERE_KNOWN
 from ident.run import Run, over_runs
@@ -31,7 +32,8 @@ class Contradiction:
     """An effect with which the verify error rises, from and to which, and by how many of its standard errors.
 
     `after` and `deviations` are None where the model is `unstable` on these verify runs with it, and was not without.
-    `instead_of` are the effects that the model has which it rises from, where that has others.
+    `instead_of` are the effects that the model has which it rises from, where that has others. Of a `free_run` the
+    errors are those with its mean, where windows do not rise.
     """
 
     effect: str
@@ -40,12 +42,15 @@ class Contradiction:
     deviations: float | None
     instead_of: tuple[str, ...] = ()
     unstable: tuple[str, ...] = field(default=(), metadata=WHERE_KNOWN)
+    free_run: bool = field(default=False, metadata=WHERE_KNOWN)
 
     def message(self, named: str) -> Message:
         """What speaks against what is `named`."""
         of = message("effect.in_place", named=named, others=self.instead_of) if self.instead_of else named
         if self.after is None:
             return message("contradicted.unstable", named=of, runs=self.unstable, before=self.before)
+        if self.free_run:
+            return message("contradicted.free_run", named=of, before=self.before, after=self.after)
         if self.deviations is None:
             return message("contradicted.rises", named=of, before=self.before, after=self.after)
         return message(
@@ -57,7 +62,8 @@ class Contradiction:
 class VerifyChange:
     """The error on runs to verify without an effect and with it, and the standard error of the difference.
 
-    `after` is None where the model is `unstable` on these runs with the effect, and was not without.
+    `after` is None where the model is `unstable` on these runs with the effect, and was not without. Of a `free_run`
+    that is driven away they are the errors with its mean, and that it is more than chance has been asked.
     """
 
     effect: str
@@ -65,11 +71,16 @@ class VerifyChange:
     after: float | None
     std_error: float = 0.0
     unstable: tuple[str, ...] = ()
+    free_run: bool = False
 
     def contradiction(self) -> Contradiction:
         """That the runs to verify speak against the effect, with the number of standard errors."""
-        rise = None if self.after is None else (self.after - self.before) / max(self.std_error, TINY)
-        return Contradiction(self.effect, self.before, self.after, rise, unstable=self.unstable)
+        if self.after is None or self.free_run:
+            return Contradiction(
+                self.effect, self.before, self.after, None, unstable=self.unstable, free_run=self.free_run
+            )
+        rise = (self.after - self.before) / max(self.std_error, TINY)
+        return Contradiction(self.effect, self.before, self.after, rise)
 
 
 def verify_change(
@@ -104,6 +115,19 @@ def verify_change(
     change = over_runs(drawn["after"], runs) - over_runs(drawn["before"], runs)
     first, last = (float(over_runs(whole[name], runs)) for name in ("before", "after"))
     return VerifyChange(effect, first, last, float(np.std(change)))
+
+
+def with_free_run(over_windows: VerifyChange, before: FreeRun, after: FreeRun) -> VerifyChange:
+    """The change over windows; or that of the free run, where it is driven away and no window speaks for the effect.
+
+    An effect that windows confirm may act where the record drifts for another reason.
+    """
+    gain = over_windows.before - (np.inf if over_windows.after is None else over_windows.after)
+    confirmed = gain > CRITERIA.verification.deviations * over_windows.std_error
+    if confirmed or not drives_away(before, after):
+        return over_windows
+    power = before.power, after.power
+    return VerifyChange(over_windows.effect, float(np.sqrt(power[0])), float(np.sqrt(power[1])), free_run=True)
 
 
 def _unstable(runs: Sequence[Run], left: Sequence[Array]) -> tuple[str, ...]:

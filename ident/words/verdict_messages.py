@@ -147,6 +147,10 @@ VERDICT: Mapping[str, str] = {
     "contradicted.rises_by":
         "With {named} the error on validation data rises from {before:error} to {after:error} ({deviations:.1f} "
         "standard errors): either it only imitates something else, or the machine was different in these runs.",
+    "contradicted.free_run":
+        "With {named} the error of the free run of the validation data rises from {before:error} to {after:error}, "
+        "more than the windows explain: either it only imitates something else, or the machine was different in "
+        "these runs.",
     "contradicted.unstable":
         "With {named} the model is {runs:unstable}; without, the error on validation data is {before:error}. "
         "Either it only imitates something else, or the machine was different in these runs.",
@@ -167,6 +171,9 @@ VERDICT: Mapping[str, str] = {
     "horizon.runs":
         "These errors are over whole runs. The fit used windows of {fitted:.3g} s, in which the missing effect "
         "accumulates little error.",
+    "free_run":
+        "The free run of the estimation data leaves {error:error}. Disturbances like those over the windows, and "
+        "errors of the parameters, would add up to {expected:error}: over windows something that acts hardly shows.",
     "horizon.windows":
         "These errors are over windows of {horizon:.3g} s. The fit used windows of {fitted:.3g} s, in which the "
         "missing effect accumulates little error.",
@@ -208,6 +215,10 @@ WHY: Mapping[str, str] = {
     "why.condition":
         "The error rises under one condition of the tests. An effect that only part of the data support is not "
         "added.",
+    "why.free_run":
+        "The windows begin where the record was measured. The error of the free run rises from {before:error} to "
+        "{after:error}, where disturbances and errors of the parameters would add up to {expected:error}. An effect "
+        "that drives the free run away is not added.",
     "why.chance": "That is no more than the best of all effects gains by chance.",
     "why.shows": "It shows as: {looks}.",
     "why.would_show": "It would show as: {looks}.",

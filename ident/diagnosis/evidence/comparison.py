@@ -43,6 +43,7 @@ from ident.diagnosis.evidence.blocks import BlockMean, block_mean, block_ratio
 from ident.diagnosis.evidence.criteria import EVIDENCE_CRITERIA, EvidenceCriteria
 from ident.diagnosis.evidence.disturbance import Disturbance
 from ident.diagnosis.evidence.energy_bands import EnergyBands, Record
+from ident.diagnosis.evidence.free_run import FreeRun, drives_away
 from ident.noise.autoregression import prediction_errors
 from ident.noise.effective_sample_size import independent_samples
 
@@ -65,6 +66,8 @@ class Evidence:
     The means of the runs, less what they have in common, are judged by themselves: `level` is their root mean square
     before, `levels_apart` that of what lies between the two models, over the outputs' deviations; `level_difference`
     and `level_share` are of their squares, a run a block.
+
+    Of a machine that is fitted over windows `by_free_run` works out the free runs of both models; None of others.
     """
 
     gain: float
@@ -83,11 +86,17 @@ class Evidence:
     levels_apart: float = 0.0
     level_difference: BlockMean = NO_DIFFERENCE
     level_share: BlockMean = NO_DIFFERENCE
+    by_free_run: Callable[[], tuple[FreeRun, FreeRun]] | None = None
 
     @cached_property
     def parts(self) -> Mapping[Hashable, BlockMean]:
         """The differences on each condition and each half, worked out where they decide."""
         return self.by_part()
+
+    @cached_property
+    def free_runs(self) -> tuple[FreeRun, FreeRun] | None:
+        """The free runs without and with the effect, worked out where they decide."""
+        return self.by_free_run() if self.by_free_run else None
 
     @property
     def explainable(self) -> float:
@@ -232,19 +241,24 @@ def losing_part(evidence: Evidence, criteria: EvidenceCriteria = EVIDENCE_CRITER
 def worth_adding(
     evidence: Evidence, bar: Callable[[], float] = lambda: float("inf"), criteria: EvidenceCriteria = EVIDENCE_CRITERIA
 ) -> bool:  # fmt: skip
-    """The rule by which an effect is added: the second model improves on the first, and generalises.
+    """The rule by which an effect is added: the second model improves on the first, generalises, and runs freely.
 
     The selection asks it through :mod:`ident.diagnosis.model_comparison`, whose `improves` is this rule. Without a
     `bar` the second model has to gain half of all that can be gained.
     """
-    return improves(evidence, bar, criteria) and generalises(evidence, criteria)
+    return improves(evidence, bar, criteria) and generalises(evidence, criteria) and runs_freely(evidence, criteria)
 
 
 def better(evidence: Evidence, criteria: EvidenceCriteria = EVIDENCE_CRITERIA) -> bool:
     """Whether the second of two models with as many parameters is more likely, beyond what the data leave open."""
     differences = (evidence.difference, evidence.level_difference)
     gains = evidence.gain >= 0 and any(of.above(0.0, criteria) for of in differences)
-    return gains and not indistinguishable(evidence, criteria)
+    return gains and not indistinguishable(evidence, criteria) and runs_freely(evidence, criteria)
+
+
+def runs_freely(evidence: Evidence, criteria: EvidenceCriteria = EVIDENCE_CRITERIA) -> bool:
+    """Whether the second model, better over windows, does not drive the free run away beyond its uncertainty."""
+    return evidence.free_runs is None or not drives_away(*evidence.free_runs, criteria)
 
 
 def indistinguishable(evidence: Evidence, criteria: EvidenceCriteria = EVIDENCE_CRITERIA) -> bool:
