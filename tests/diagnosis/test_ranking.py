@@ -30,7 +30,11 @@ def refit(**left: float) -> Any:
     error = float(np.mean([np.std(r) for r in series]))
     held_out = SimpleNamespace(score=error, error=error)
     return SimpleNamespace(
-        held_out=held_out, error=error, effects=(), residuals_held_out=Residuals(tuple(series), BANDS)
+        fitness=SimpleNamespace(horizon=None),
+        held_out=held_out,
+        error=error,
+        effects=(),
+        residuals_held_out=Residuals(tuple(series), BANDS),
     )
 
 

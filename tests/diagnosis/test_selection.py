@@ -30,6 +30,7 @@ class Judgement:
     refit: Any
     improves: bool
     base: Any = None
+    drives_away: bool = False
 
     @property
     def score(self):
