@@ -86,6 +86,10 @@ class Chain:
         """The chain with these effects instead of its own: one object each time, which keeps what it worked out."""
         return _with_effects(self, effects)
 
+    def showing(self, channel: str, quantity: str) -> Chain:
+        """The chain whose channel shows another quantity: one object each time, which keeps what it worked out."""
+        return _showing(self, channel, quantity)
+
     @cached_property
     def _core(self) -> frozenset[str]:
         return frozenset(equation.target for stage in self.stages for equation in stage.equations)
@@ -354,6 +358,11 @@ class Chain:
 @lru_cache(maxsize=1024)
 def _with_effects(chain: Chain, effects: tuple[Effect, ...]) -> Chain:
     return replace(chain, effects=effects)
+
+
+@lru_cache(maxsize=256)
+def _showing(chain: Chain, channel: str, quantity: str) -> Chain:
+    return replace(chain, outputs={**chain.outputs, channel: quantity})
 
 
 def integrates(chain: Chain, runs: Iterable[Run], actuator: Actuator) -> bool:

@@ -14,7 +14,7 @@ step.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -30,8 +30,8 @@ from ident.fit.products import without
 Array = NDArray[np.float64]
 Indices = NDArray[np.intp]
 Mask = NDArray[np.bool_]
-Simulate = Callable[[Array, Sequence[int]], Sequence[Array]]
-"""What a model at a point of the unit cube leaves of the runs with these numbers, (n,) each, means and all."""
+Simulate = Callable[[Sequence[Array], Sequence[int]], Iterable[Sequence[Array]]]
+"""What a model at each point of the unit cube leaves of the runs with these numbers, (n,) each, means and all."""
 
 
 @dataclass(frozen=True)
@@ -99,7 +99,6 @@ def out_of_fold(
     folds = [fold_of_blocks(number, len(run.blocks), len(here.runs)) for number, run in enumerate(here.runs)]
     of_samples = [of[np.arange(n) * len(of) // n] for of, n in zip(folds, lengths, strict=True)]
     found, means = [np.full(length, np.nan) for length in lengths], np.zeros(len(lengths))
-    whole: Sequence[Array] = []
 
     def error(residuals: Sequence[Array], fold: int) -> float:
         """That of the other folds: eq. (17) of the used samples, averaged over the runs that have some."""
@@ -108,28 +107,57 @@ def out_of_fold(
         sizes = [np.sqrt(run.total / run.length) for run, of in zip(here.runs, used, strict=True) if of.any()]
         return float(np.mean([np.sqrt(np.mean(part**2)) / size for part, size in zip(parts, sizes, strict=True)]))
 
-    for fold in range(max(int(of.max()) for of in folds) + 1):
-        left_out = [number for number, of in enumerate(folds) if np.any(of == fold)]
-        step = _step(point, here, [_projected(run, of != fold) for run, of in zip(here.runs, folds, strict=True)])
-        residuals: list[Array] = []
-        if not len(step) or np.abs(step).max() <= CRITERIA.cross_validation.max_step:
-            residuals = list(simulate(point + step, left_out))
-        if not residuals or not all(np.all(np.isfinite(r)) for r in residuals):
-            whole = whole or simulate(point, range(len(folds)))
-            best, least = whole, error(whole, fold)
-            step = np.clip(step, -CRITERIA.cross_validation.longest_step, CRITERIA.cross_validation.longest_step)
-            for share in CRITERIA.cross_validation.step_shares:
-                tried = simulate(point + share * step, range(len(folds)))
-                with np.errstate(over="ignore", invalid="ignore"):
-                    if error(tried, fold) < least:
-                        best = tried
-                        break
-            residuals = [best[number] for number in left_out]
-        for number, residual in zip(left_out, residuals, strict=True):
+    count = max(int(of.max()) for of in folds) + 1
+    held = [[number for number, of in enumerate(folds) if np.any(of == fold)] for fold in range(count)]
+    steps = [
+        _step(point, here, [_projected(run, of != fold) for run, of in zip(here.runs, folds, strict=True)])
+        for fold in range(count)
+    ]
+    outside = _of_short_steps(point, steps, held, simulate)
+    outside |= _of_long_steps(
+        point, {fold: steps[fold] for fold in range(count) if fold not in outside}, simulate, error, held
+    )
+    for fold, numbers in enumerate(held):
+        for number, residual in zip(numbers, outside[fold], strict=True):
             inside, mean = of_samples[number] == fold, float(residual.mean())
             found[number][inside] = residual[inside] - mean
             means[number] += mean * float(inside.mean())
     return [residual + mean for residual, mean in zip(found, means, strict=True)]
+
+
+def _of_short_steps(
+    point: Array, steps: Sequence[Array], held: Sequence[Sequence[int]], simulate: Simulate
+) -> dict[int, Sequence[Array]]:
+    """By its number what each fold leaves of its runs where one linearisation is trusted, and its model is stable."""
+    short: dict[tuple[int, ...], list[int]] = {}
+    for fold, step in enumerate(steps):
+        if not len(step) or np.abs(step).max() <= CRITERIA.cross_validation.max_step:
+            short.setdefault(tuple(held[fold]), []).append(fold)
+    found: dict[int, Sequence[Array]] = {}
+    for numbers, of in short.items():
+        found |= zip(of, simulate([point + steps[fold] for fold in of], numbers), strict=True)
+    return {fold: of_runs for fold, of_runs in found.items() if all(np.all(np.isfinite(r)) for r in of_runs)}
+
+
+def _of_long_steps(
+    point: Array, steps: Mapping[int, Array], simulate: Simulate, error: Callable[[Sequence[Array], int], float],
+    held: Sequence[Sequence[int]],
+) -> dict[int, Sequence[Array]]:  # fmt: skip
+    """The same of steps that are shortened until the other folds are explained better than by the fit of all data."""
+    if not steps:
+        return {}
+    longest, everything = CRITERIA.cross_validation.longest_step, range(1 + max(max(of) for of in held))
+    (whole,) = simulate([point], everything)
+    found: dict[int, Sequence[Array]] = {fold: [whole[number] for number in held[fold]] for fold in steps}
+    least, pending = {fold: error(whole, fold) for fold in steps}, list(steps)
+    for share in CRITERIA.cross_validation.step_shares:
+        points = [point + share * np.clip(steps[fold], -longest, longest) for fold in pending]
+        for fold, tried in zip(list(pending), simulate(points, everything), strict=True):
+            with np.errstate(over="ignore", invalid="ignore"):
+                if error(tried, fold) < least[fold]:
+                    found[fold] = [tried[number] for number in held[fold]]
+                    pending.remove(fold)
+    return found
 
 
 def fold_of_blocks(number: int, blocks: int, runs: int) -> Indices:

@@ -61,7 +61,7 @@ class FittedModel:
     def residuals_fitted(self) -> Residuals:
         """What it leaves of the runs with nothing left out: to compare models of as many parameters, at once."""
         every = range(len(self.fitness.runs))
-        fitted = self._residuals(self._left_of(self.point, every))
+        fitted = self._residuals(next(self._left_of([self.point], every)))
         return Residuals(fitted.residuals, self.records.bands, fitted.levels)
 
     @cached_property
@@ -93,11 +93,11 @@ class FittedModel:
         of_parameters = float(np.sum(self._known.seen * shared)) / found.total
         return adds_up(own, run.length / anchoring.window, anchoring.memory > 0) + of_parameters
 
-    def _left_of(self, point: Array, numbers: Sequence[int]) -> list[Array]:
-        """What the model at a point leaves of some runs, means and all."""
+    def _left_of(self, points: Sequence[Array], numbers: Sequence[int]) -> Iterator[list[Array]]:
+        """What the model at each point leaves of some runs, means and all."""
         runs = tuple(self.fitness.runs[number] for number in numbers)
-        outputs = self.fitness.part(runs).outputs(point)
-        return [run.measured - outputs[run.id] for run in runs]
+        for outputs in self.fitness.part(runs).outputs_of_points(points):
+            yield [run.measured - outputs[run.id] for run in runs]
 
     def _seen(self, number: int, residual: Array) -> Array:
         """A residual of a run as the loss sees it: less its mean or the offset of its transducer, or over windows."""

@@ -45,7 +45,7 @@ def fastest(
         stacked = {name: np.array([entry[name] for entry in known])[:, None] for name in known[0]}
         modes = fastest_mode(chain, stacked | {name: value[None] for name, value in values.items()}, output, motion)
         modes = np.concatenate([found, modes / np.array([[run.sample_rate] for run in alike])])
-        found = np.take_along_axis(modes, np.abs(modes).argmax(axis=0)[None], axis=0)
+        found = modes[np.abs(modes).argmax(axis=0), np.arange(modes.shape[1])][None]
     return np.asarray(found[0])
 
 

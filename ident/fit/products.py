@@ -97,7 +97,22 @@ def shares_of(inner: Array, columns: Array, totals: Array) -> Array:
         return np.where(shown[:, :, None], columns / np.maximum(inner, 1e-300), 0.0)
     size = np.where(shown, np.sqrt(np.maximum(power, 1e-300)), np.inf)
     outer = size[:, :, None] * size[:, None, :]
-    return np.asarray((np.linalg.pinv(inner / outer, rcond=_BLIND, hermitian=True) / outer) @ columns)
+    return np.asarray((_inverse(inner / outer) / outer) @ columns)
+
+
+def _inverse(symmetric: Array) -> Array:
+    """The pseudo-inverse of symmetric matrices (runs, k, k), without directions that do the same as others.
+
+    What `numpy.linalg.pinv` works out, in half of its time for the few rows that there are.
+    """
+    values, vectors = np.linalg.eigh(symmetric)
+    size = np.abs(values)
+    order, runs = np.argsort(size)[:, ::-1], np.arange(len(values))[:, None]
+    size, signs = size[runs, order], np.sign(values)[runs, order]
+    rows = vectors.transpose(0, 2, 1)[runs, order]
+    sound = size > _BLIND * size[:, :1]
+    inverse = np.where(sound, 1.0 / np.where(sound, size, 1.0), 0.0)
+    return np.asarray((rows * signs[:, :, None]).transpose(0, 2, 1) @ (inverse[:, :, None] * rows))
 
 
 def without(remove: Array, gram: Array) -> Array:

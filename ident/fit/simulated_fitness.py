@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Self
 
@@ -142,6 +142,11 @@ class SimulatedFitness(SimulatedRuns):
     def outputs(self, point: Array) -> dict[str, Array]:
         """The model's output of each run, with the first state that fits best."""
         return self.outputs_at({name: float(value[0]) for name, value in self.space.values(point[None]).items()})
+
+    def outputs_of_points(self, points: Sequence[Array]) -> Iterator[dict[str, Array]]:
+        """The same at several points, each from the first states that are known here."""
+        values = (self.space.values(point[None]) for point in points)
+        return self.outputs_at_each([{name: float(value[0]) for name, value in one.items()} for one in values])
 
     @cached_property
     def _strides(self) -> Array:

@@ -7,7 +7,7 @@ moved begins where it was measured. Were it free, what hangs on the position cou
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from itertools import zip_longest
 from typing import Self
@@ -32,7 +32,8 @@ from ident.presets import Preset
 from ident.run import MOTIONS, Run
 from ident.simulation.equilibrium import equilibrium
 from ident.simulation.inputs import closed
-from ident.simulation.simulate import Simulation
+from ident.simulation.kernel import WIDE
+from ident.simulation.simulate import Simulation, side_by_side
 from ident.simulation.steps import Modes, steps_at_jumps, steps_at_passages, steps_at_reversals, steps_needed
 
 Array = NDArray[np.float64]
@@ -89,6 +90,40 @@ class SimulatedRuns:
         todo = list(self.together(1))
         found = zip(todo, each(of_runs, todo), strict=True)
         return {run.id: y for runs, outputs in found for run, y in zip(runs, outputs, strict=True)}
+
+    def outputs_at_each(self, points: Sequence[Mapping[str, float]]) -> Iterator[dict[str, Array]]:
+        """The same at several values, each from the first states that are known here.
+
+        A simulation takes as long for one vector as for a few: as many are simulated at once as fill its lanes.
+        """
+        at_once = max(1, WIDE // len(self.runs))
+        for begin in range(0, len(points), at_once):
+            few = points[begin : begin + at_once]
+            alone = [replace(self, starts=dict(self.starts)) for _ in few]
+            settled = each(lambda one: (one[0], *one[0].settle(one[1])), zip(alone, few, strict=True))
+            found: list[dict[str, Array]] = [{} for _ in few]
+            for numbers in self._alike([(vector, steps) for _, vector, steps in settled]):
+                for run, outputs in self._simulated_together([settled[i] for i in numbers]):
+                    for i, output in zip(numbers, outputs, strict=True):
+                        found[i][run.id] = output
+            yield from found
+
+    def _alike(self, settled: Sequence[tuple[Mapping[str, Array], int]]) -> Iterable[list[int]]:
+        """The numbers of those that one simulation may hold: with as many steps and, in its code, the same powers."""
+        kinds: dict[tuple[float, ...], list[int]] = {}
+        for number, (vector, steps) in enumerate(settled):
+            powers = (vector[name].item() for name in self.chain.exponents if name in vector)
+            kinds.setdefault((steps, *powers), []).append(number)
+        return kinds.values()
+
+    def _simulated_together(
+        self, settled: Sequence[tuple[SimulatedRuns, Mapping[str, Array], int]]
+    ) -> Iterator[tuple[Run, Array]]:  # fmt: skip
+        """Each run with the outputs (v, n) of what was settled, side by side."""
+        for runs in self.together(len(settled)):
+            joint = side_by_side([of.simulation(runs, vector, steps) for of, vector, steps in settled])
+            outputs = np.concatenate([rows for rows, _, _ in joint.outputs()])
+            yield from ((run, outputs[:, number].T) for number, run in enumerate(runs))
 
     def settle(self, values: Mapping[str, float]) -> tuple[dict[str, Array], int]:
         """Find the first states of runs that start moving; the values as a vector of one, and the steps a sample.
@@ -304,8 +339,10 @@ class SimulatedRuns:
         guessed to go about the middle, where stops and play lie as far to either side: a linear model does not tell.
         """
         model = linear_model(self.preset.core, values, run, self.matrix.actuator)
+        vector = {name: np.array([value]) for name, value in values.items()}
+        steps = int(self.steps(vector).max())
         self.sizes = np.maximum(self.sizes, model.sizes(self.band)[0] * run.drive)
-        self.sizes_of_effects = np.maximum(self.sizes_of_effects, self._sizes_of_effects(run, values))
+        self.sizes_of_effects = np.maximum(self.sizes_of_effects, self._sizes_of_effects(run, vector, steps))
         guesses = [first_state(run, model), *(() if self.preset.is_linear else model.standing_at(run.measured[0]))]
         start = np.zeros((1, len(guesses), len(self.chain.begun)))
         start[..., [self.chain.states.index(name) for name in self.preset.core.states]] = guesses
@@ -317,7 +354,6 @@ class SimulatedRuns:
         if len(guesses) == 1:
             return list(start[0])
         vectors = {name: np.repeat(value, len(guesses)) for name, value in values.items()}
-        steps = int(self.steps(vectors).max())
         with np.errstate(over="ignore", invalid="ignore"):
             outputs = [rows[:, 0] for rows, _, _ in self.simulation((run,), vectors, steps, start).outputs()]
             power = np.mean((run.measured[:, None] - np.concatenate(outputs)) ** 2, axis=0)
@@ -328,14 +364,13 @@ class SimulatedRuns:
         """What effects begin with in addition to the states of the core."""
         return [name for name in self.chain.begun if name not in self.preset.core.states]
 
-    def _sizes_of_effects(self, run: Run, values: Mapping[str, float]) -> Array:
+    def _sizes_of_effects(self, run: Run, vector: Mapping[str, Array], steps: int) -> Array:
         """The largest value that each of them takes in a run that begins with none, (m,): in a unit of its own."""
-        vector, found = {name: np.array([value]) for name, value in values.items()}, np.zeros(len(self._of_effects))
-        steps, nothing = int(self.steps(vector).max()), np.zeros((1, 1, len(self.chain.begun)))
+        found, nothing = np.zeros(len(self._of_effects)), np.zeros((1, 1, len(self.chain.begun)))
         with np.errstate(over="ignore", invalid="ignore"):
             for i, name in enumerate(self._of_effects):
-                shown = replace(self.chain, outputs={**self.chain.outputs, run.output: name})
-                simulation = replace(self.simulation((run,), vector, steps, nothing), chain=shown)
+                simulation = self.simulation((run,), vector, steps, nothing)
+                simulation = replace(simulation, chain=self.chain.showing(run.output, name))
                 found[i] = max(float(np.abs(rows).max()) for rows, _, _ in simulation.outputs())
         return np.where(np.isfinite(found), found, 0.0)
 

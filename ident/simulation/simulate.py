@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -67,8 +67,8 @@ class Simulation:
     @cached_property
     def shape(self) -> tuple[int, int]:
         """(runs, vectors)."""
-        wide = np.broadcast_shapes((len(self.runs), 1), *(np.shape(value) for value in self.values.values()))
-        return int(wide[0]), int(wide[1])
+        wide = [(1, 1, *np.shape(value))[-2:] for value in self.values.values()]
+        return max(len(self.runs), *(runs for runs, _ in wide)), max(vectors for _, vectors in wide)
 
     def outputs(self, length: int = 4096) -> Iterator[tuple[Array, int, int]]:
         """The outputs in blocks of at most `length` samples: ((samples, runs, vectors), first, last)."""
@@ -224,6 +224,8 @@ def _whole(delay: Array) -> NDArray[np.int64]:
 
 
 def _filled(values: Array, lanes: int) -> Array:
+    if len(values) == lanes:
+        return values
     return np.concatenate([values, np.full(lanes - len(values), values[-1])])
 
 
@@ -238,6 +240,13 @@ def _begun_late(command: _Input, held: Array) -> Array:
     return np.array(
         [np.where(drawn & (whole == 1), front, before), np.where(drawn & (whole == 1), last, record[begin])]
     )
+
+
+def side_by_side(parts: Sequence[Simulation]) -> Simulation:
+    """Simulations of the same runs, with as many steps, as one: lanes that one vector would leave empty are filled."""
+    names, begun = parts[0].values, [part.start for part in parts if part.start is not None]
+    wide = {name: np.hstack([np.broadcast_to(part.values[name], part.shape) for part in parts]) for name in names}
+    return replace(parts[0], values=wide, start=np.concatenate(begun, axis=1) if begun else None)
 
 
 def responses(

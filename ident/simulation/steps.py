@@ -106,7 +106,9 @@ def _side_by_side(points: Sequence[Sequence[Any]], values: Mapping[str, Any]) ->
 def _fastest(jacobian: Array) -> Modes:
     """The eigenvalue of each of a batch that is largest."""
     found = np.linalg.eigvals(np.where(np.isfinite(jacobian), jacobian, 0.0)).astype(np.complex128)
-    return np.asarray(np.take_along_axis(found, np.abs(found).argmax(axis=-1)[..., None], axis=-1)[..., 0])
+    modes = found.reshape(-1, found.shape[-1])
+    largest = modes[np.arange(len(modes)), np.abs(modes).argmax(axis=-1)]
+    return np.asarray(largest.reshape(found.shape[:-1]))
 
 
 def steps_needed(

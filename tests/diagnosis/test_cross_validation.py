@@ -43,10 +43,10 @@ def objective(data, point: np.ndarray) -> Local:
 
 
 def left_of(data):
-    """What the line at a point leaves of some runs, means and all."""
+    """What the line at each point leaves of some runs, means and all."""
 
-    def simulate(point: np.ndarray, numbers) -> list[np.ndarray]:
-        return [data[number][0].measured - data[number][1] @ (point - 0.5) for number in numbers]
+    def simulate(points, numbers) -> list[list[np.ndarray]]:
+        return [[data[i][0].measured - data[i][1] @ (point - 0.5) for i in numbers] for point in points]
 
     return simulate
 
@@ -110,12 +110,12 @@ def test_where_a_model_without_a_fold_is_unstable_that_of_all_data_stands_in(rng
     point, here = fitted(data)
     simulate = left_of(data)
 
-    def unstable(at: np.ndarray, numbers) -> list[np.ndarray]:
-        known = simulate(at, numbers)
-        return known if np.array_equal(at, point) else [np.full(N, np.inf) for _ in known]
+    def unstable(points, numbers) -> list[list[np.ndarray]]:
+        known = zip(points, simulate(points, numbers), strict=True)
+        return [left if np.array_equal(at, point) else [np.full(N, np.inf) for _ in left] for at, left in known]
 
     found = out_of_fold(point, here, unstable, less_mean, [N] * 4)
-    assert np.array(found) == pytest.approx(np.array(simulate(point, range(4))))
+    assert np.array(found) == pytest.approx(np.array(simulate([point], range(4))[0]))
 
 
 @pytest.mark.parametrize("reach", [1.0, 0.2])
@@ -126,15 +126,16 @@ def test_a_step_that_is_too_long_is_shortened(rng, reach):
     point = np.add(best, [0.05, -0.05])
     here, simulate, tried = objective(data, point), left_of(data), []
 
-    def astray(at: np.ndarray, numbers) -> list[np.ndarray]:
-        tried.append(at)
-        gone = float((at - point) @ (best - point) / np.sum((best - point) ** 2))
-        return [r if gone < 1.1 * reach else 9.0 * r for r in simulate(at, numbers)]
+    def astray(points, numbers) -> list[list[np.ndarray]]:
+        tried.extend(points)
+        gone = [float((at - point) @ (best - point) / np.sum((best - point) ** 2)) for at in points]
+        known = zip(gone, simulate(points, numbers), strict=True)
+        return [[r if far < 1.1 * reach else 9.0 * r for r in left] for far, left in known]
 
     found = out_of_fold(point, here, astray, less_mean, [N] * 4)
     ends = np.array([(at - point) @ (best - point) / np.sum((best - point) ** 2) for at in tried])
     assert ends.max() == pytest.approx(1.0, abs=0.05)
-    expected = simulate(point + reach * (best - point), range(4))
+    (expected,) = simulate([point + reach * (best - point)], range(4))
     assert [np.std(r) for r in found] == pytest.approx([np.std(r) for r in expected], rel=0.05)
 
 

@@ -20,7 +20,7 @@ from ident.simulation.kernel.source import constant
 from ident.simulation.kernel.writer import Writer
 
 
-@lru_cache(maxsize=64)
+@lru_cache(maxsize=256)
 def kernel(
     chain: Chain, output: str, plain: frozenset[tuple[str, float]] = frozenset(), beside: tuple[str, ...] = (),
     recorded: bool = False,
