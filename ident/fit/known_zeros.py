@@ -13,7 +13,8 @@ from __future__ import annotations
 from collections.abc import Collection, Sequence
 from dataclasses import replace
 
-from ident.fit.transducer import RECOGNISED, Optimal, is_large, offsets, rest_of
+from ident.fit.normal_matrices import RECOGNISED
+from ident.fit.transducer import Optimal, is_large, offsets, rest_of
 from ident.matrix import Matrix
 from ident.run import Run
 
