@@ -178,6 +178,7 @@ class RiseView(BaseModel):
     The last two are null where the model is unstable on runs to verify with the effect: on those in `unstable`.
     `instead_of` are effects that the model has which it rises from, and that are not in this one. Of a `free_run` the
     errors are those with its mean, of a machine that is fitted over windows, and there are no standard errors.
+    Where the mean counts in the fit the errors `with_mean` are what rises, from the first to the second.
     """
 
     effect: str
@@ -187,6 +188,7 @@ class RiseView(BaseModel):
     unstable: list[str] = Field(default_factory=list)
     instead_of: list[str] = Field(default_factory=list)
     free_run: bool = False
+    with_mean: list[float] = Field(default_factory=list)
 
 
 class TermView(BaseModel):

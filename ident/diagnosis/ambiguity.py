@@ -4,24 +4,21 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from functools import partial
-
-import numpy as np
-from numpy.typing import NDArray
+from itertools import pairwise
 
 from ident.diagnosis.alternative_structures import AlternativeModel, alternative_explanations
 from ident.diagnosis.budget import SearchBudget
 from ident.diagnosis.criteria import CRITERIA
-from ident.diagnosis.fitted_model import FittedModel
 from ident.diagnosis.ladder import Rungs
+from ident.diagnosis.model_comparison import verified_change
 from ident.diagnosis.result import Explanation, Suspect
 from ident.diagnosis.selection import Selection
 from ident.diagnosis.sentences import delay_sentence
 from ident.diagnosis.stages import LAGS, NOISE, OTHERS, VERIFY, Stages
 from ident.diagnosis.total_delay import lag_ambiguities, total_delay
 from ident.diagnosis.verdict import Findings
-from ident.diagnosis.verification import VerifyChange, verify_change, with_free_run
+from ident.diagnosis.verification import VerifyChange
 from ident.progress import Progress
-from ident.run import Run
 from ident.time_budget import in_time
 
 Names = tuple[str, ...]
@@ -36,7 +33,7 @@ def challenged(
     residual = in_time(lambda: models.residual(fitted))
     if residual is None:
         stages.miss(NOISE)
-    verify = in_time(lambda: tuple(_verify_changes(selection, steps)))
+    verify = in_time(lambda: tuple(_verify_changes(steps)))
     if verify is None:
         stages.miss(VERIFY)
     return Findings(
@@ -52,26 +49,12 @@ def challenged(
     )
 
 
-def _verify_changes(selection: Selection, steps: Rungs) -> Iterator[VerifyChange]:
-    """How the error on verify runs changes with each effect of the ladder."""
-    models = selection.models
-    runs = models.matrix.of_use("verify")
-    if not runs:
-        return
-    before: list[NDArray[np.float64]] | None = None
-    less: FittedModel | None = None
-    for added, refit in steps:
-        if not refit.stable:
-            continue  # a rung of the ladder that no search stood on
-        after = refit.residuals(runs)
-        if added and before and less and (change := verify_change(added, runs, before, after)):
-            yield change if models.horizon is None else _freely(change, runs, less, refit)
-        before, less = after, refit
-
-
-def _freely(change: VerifyChange, runs: Sequence[Run], less: FittedModel, more: FittedModel) -> VerifyChange:
-    """The change over windows, with what the free runs say."""
-    return with_free_run(change, less.free_run_of(runs), more.free_run_of(runs))
+def _verify_changes(steps: Rungs) -> Iterator[VerifyChange]:
+    """How the error on verify runs changes with each effect of the ladder, but for rungs that no search stood on."""
+    stable = [(added, refit) for added, refit in steps if refit.stable]
+    for (_, less), (added, more) in pairwise(stable):
+        if added and (change := verified_change(added, less, more)):
+            yield change
 
 
 def other_machines(

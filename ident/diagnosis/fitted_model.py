@@ -244,10 +244,24 @@ class FittedModel:
         held_out, verify = in_time(lambda: self.held_out.error), in_time(lambda: self.on_verify)
         return {"fit": self.error, "held_out": held_out, "verify": verify}
 
-    def residuals(self, runs: Sequence[Run]) -> list[Array]:
-        """What it leaves of any runs of the matrix, (n,) each, less its mean or over windows."""
-        outputs = self.fitness.fresh(tuple(runs)).outputs(self.point)
-        return [self.fitness.left(run, outputs[run.id]) for run in runs]
+    @cached_property
+    def on_verify_runs(self) -> tuple[list[Array], Array | None]:
+        """What it leaves of the runs to verify as eq. (17) sees it, (n,) each, and their means that count, (runs,).
+
+        The means are less the offset of their transducer, and zero of a run whose mean does not count. None where none
+        does, or the model is fitted over windows.
+        """
+        runs = self.fitness.matrix.of_use("verify")
+        outputs = self.fitness.fresh(runs).outputs(self.point)
+        residuals = [self.fitness.left(run, outputs[run.id]) for run in runs]
+        if self.fitness.horizon is not None or not any(run.mean_counts for run in runs):
+            return residuals, None
+        return residuals, np.array([self._counted_mean(run, outputs[run.id]) for run in runs])
+
+    def _counted_mean(self, run: Run, output: Array) -> float:
+        with np.errstate(over="ignore", invalid="ignore"):
+            mean = float(np.mean(run.measured - output)) - offset_at(run, self._offsets)
+        return mean if run.mean_counts else 0.0
 
     @cached_property
     def _known(self) -> Covariance:

@@ -16,6 +16,7 @@ from ident.diagnosis.evidence.comparison import Evidence, compare
 from ident.diagnosis.evidence.criteria import EVIDENCE_CRITERIA, EvidenceCriteria
 from ident.diagnosis.fitted_model import FittedModel
 from ident.diagnosis.screening import gain_by_chance
+from ident.diagnosis.verification import VerifyChange, verify_change, with_free_run
 
 
 def evidence(before: FittedModel, after: FittedModel) -> Evidence:
@@ -57,6 +58,19 @@ def indistinguishable(first: FittedModel, second: FittedModel) -> bool:
     return first is second or (
         _is_finite(first) and _is_finite(second) and comparison.indistinguishable(evidence(first, second))
     )
+
+
+def verified_change(effect: str, less: FittedModel, more: FittedModel) -> VerifyChange | None:
+    """What the runs to verify say of what an `effect` adds; None without any, or where the first model is unstable."""
+    runs = less.fitness.matrix.of_use("verify")
+    if not runs:
+        return None
+    (before, without), (after, having) = less.on_verify_runs, more.on_verify_runs
+    means = None if without is None or having is None else (without, having)
+    change = verify_change(effect, runs, before, after, means)
+    if change is None or more.fitness.horizon is None:
+        return change
+    return with_free_run(change, less.free_run_of(runs), more.free_run_of(runs))
 
 
 def bar(models: CandidateModels, base: FittedModel) -> float:

@@ -83,7 +83,7 @@ def is_noise(residual: Residual, criteria: Criteria = CRITERIA) -> bool:
 
 def contradicts(change: VerifyChange, criteria: Criteria = CRITERIA) -> bool:
     """Whether runs to verify speak against an effect: the error rises beyond chance, or the model is unstable there."""
-    return change.after is None or change.after - change.before > criteria.verification.deviations * change.std_error
+    return change.rise > criteria.verification.deviations * change.std_error
 
 
 def contradiction(change: VerifyChange | None) -> Contradiction | None:

@@ -33,7 +33,8 @@ class Contradiction:
 
     `after` and `deviations` are None where the model is `unstable` on these verify runs with it, and was not without.
     `instead_of` are the effects that the model has which it rises from, where that has others. Of a `free_run` the
-    errors are those with its mean, where windows do not rise.
+    errors are those with its mean, where windows do not rise. Where the mean counts the errors `with_mean` are what
+    rises, from the first to the second; `before` and `after` are those that tables show.
     """
 
     effect: str
@@ -43,6 +44,7 @@ class Contradiction:
     instead_of: tuple[str, ...] = ()
     unstable: tuple[str, ...] = field(default=(), metadata=WHERE_KNOWN)
     free_run: bool = field(default=False, metadata=WHERE_KNOWN)
+    with_mean: tuple[float, ...] = field(default=(), metadata=WHERE_KNOWN)
 
     def message(self, named: str) -> Message:
         """What speaks against what is `named`."""
@@ -51,6 +53,12 @@ class Contradiction:
             return message("contradicted.unstable", named=of, runs=self.unstable, before=self.before)
         if self.free_run:
             return message("contradicted.free_run", named=of, before=self.before, after=self.after)
+        if self.with_mean and self.after <= self.before:
+            first, last = self.with_mean
+            return message(
+                "contradicted.mean", named=of, first=first, last=last, deviations=self.deviations, before=self.before,
+                after=self.after,
+            )  # fmt: skip
         if self.deviations is None:
             return message("contradicted.rises", named=of, before=self.before, after=self.after)
         return message(
@@ -62,6 +70,8 @@ class Contradiction:
 class VerifyChange:
     """The error on runs to verify without an effect and with it, and the standard error of the difference.
 
+    Where the mean counts that of the errors `with_mean` is meant, which decide: they are what was fitted. The others
+    are those of eq. (17), that tables show.
     `after` is None where the model is `unstable` on these runs with the effect, and was not without. Of a `free_run`
     that is driven away they are the errors with its mean, and that it is more than chance has been asked.
     """
@@ -72,49 +82,72 @@ class VerifyChange:
     std_error: float = 0.0
     unstable: tuple[str, ...] = ()
     free_run: bool = False
+    with_mean: tuple[float, float] | None = None
+
+    @property
+    def rise(self) -> float:
+        """By how much the error that was fitted rises; infinite where the model is unstable with the effect."""
+        first, last = self.with_mean or (self.before, np.inf if self.after is None else self.after)
+        return last - first
 
     def contradiction(self) -> Contradiction:
         """That the runs to verify speak against the effect, with the number of standard errors."""
-        if self.after is None or self.free_run:
-            return Contradiction(
-                self.effect, self.before, self.after, None, unstable=self.unstable, free_run=self.free_run
-            )
-        rise = (self.after - self.before) / max(self.std_error, TINY)
-        return Contradiction(self.effect, self.before, self.after, rise)
+        told = self.after is not None and not self.free_run
+        deviations = self.rise / max(self.std_error, TINY) if told else None
+        return Contradiction(
+            self.effect, self.before, self.after, deviations, (), self.unstable, self.free_run, self.with_mean or ()
+        )
 
 
 def verify_change(
-    effect: str, runs: Sequence[Run], before: Sequence[Array], after: Sequence[Array]
-) -> VerifyChange | None:
-    """How the error of eq. (17) over `runs` changes with an effect; None where the model is unstable without it.
+    effect: str, runs: Sequence[Run], before: Sequence[Array], after: Sequence[Array],
+    means: tuple[Array, Array] | None = None,
+) -> VerifyChange | None:  # fmt: skip
+    """How the error over `runs` changes with an effect; None where the model is unstable without it.
 
     `before` and `after` are the residuals of each run without the effect and with it, (n,), less their mean or over
-    windows. The standard error is that of the difference, by a bootstrap over chunks of ten correlation times (Künsch
-    1989), at least four a run.
+    windows; `means` are those that count in what was fitted, (runs,) each: the errors with them then decide. The
+    standard error is that of the difference, by a bootstrap over chunks of ten correlation times (Künsch 1989), at
+    least four a run.
     """
     if _unstable(runs, before):
         return None
     if unstable := _unstable(runs, after):
         sizes = [float(np.std(r) / np.std(run.measured)) for run, r in zip(runs, before, strict=True)]
         return VerifyChange(effect, float(over_runs(sizes, runs)), None, unstable=unstable)
-    random = np.random.default_rng(0)
-    drawn = {
-        "before": np.empty((len(runs), CRITERIA.verification.resamples)),
-        "after": np.empty((len(runs), CRITERIA.verification.resamples)),
-    }
-    whole = {"before": np.empty(len(runs)), "after": np.empty(len(runs))}
-    for i, (run, old, new) in enumerate(zip(runs, before, after, strict=True)):
-        chunks = _chunks(old)
-        picked = random.integers(len(chunks), size=(CRITERIA.verification.resamples, len(chunks)))
-        size = float(np.std(run.measured))
-        for name, residual in (("before", old), ("after", new)):
+    counted = before, after
+    if means is not None:
+        counted = _raised(before, means[0]), _raised(after, means[1])
+    with_mean = _error(runs, counted[0]), _error(runs, counted[1])
+    std_error = _error_of_difference(runs, *counted)
+    if means is None:
+        return VerifyChange(effect, *with_mean, std_error)
+    return VerifyChange(effect, _error(runs, before), _error(runs, after), std_error, with_mean=with_mean)
+
+
+def _raised(residuals: Sequence[Array], means: Array) -> list[Array]:
+    return [residual + mean for residual, mean in zip(residuals, means, strict=True)]
+
+
+def _error(runs: Sequence[Run], residuals: Sequence[Array]) -> float:
+    """The root mean square of residuals over the deviations of the outputs, averaged over runs."""
+    sizes = [float(np.std(run.measured)) for run in runs]
+    return float(over_runs([np.sqrt(np.mean(r**2)) / size for r, size in zip(residuals, sizes, strict=True)], runs))
+
+
+def _error_of_difference(runs: Sequence[Run], before: Sequence[Array], after: Sequence[Array]) -> float:
+    """The standard error of the difference of two errors, by a bootstrap over chunks of each run."""
+    random, resamples = np.random.default_rng(0), CRITERIA.verification.resamples
+    drawn = np.empty((2, len(runs), resamples))
+    for i, (run, *residuals) in enumerate(zip(runs, before, after, strict=True)):
+        chunks = _chunks(residuals[0])
+        picked = random.integers(len(chunks), size=(resamples, len(chunks)))
+        for model, residual in enumerate(residuals):
             sums = np.array([np.sum(residual[chunk] ** 2) for chunk in chunks])
             counts = np.array([chunk.stop - chunk.start for chunk in chunks])
-            drawn[name][i] = np.sqrt(sums[picked].sum(axis=1) / counts[picked].sum(axis=1)) / size
-            whole[name][i] = np.sqrt(np.mean(residual**2)) / size
-    change = over_runs(drawn["after"], runs) - over_runs(drawn["before"], runs)
-    first, last = (float(over_runs(whole[name], runs)) for name in ("before", "after"))
-    return VerifyChange(effect, first, last, float(np.std(change)))
+            power = sums[picked].sum(axis=1) / counts[picked].sum(axis=1)
+            drawn[model, i] = np.sqrt(power) / float(np.std(run.measured))
+    return float(np.std(over_runs(drawn[1], runs) - over_runs(drawn[0], runs)))
 
 
 def with_free_run(over_windows: VerifyChange, before: FreeRun, after: FreeRun) -> VerifyChange:
@@ -122,8 +155,7 @@ def with_free_run(over_windows: VerifyChange, before: FreeRun, after: FreeRun) -
 
     An effect that windows confirm may act where the record drifts for another reason.
     """
-    gain = over_windows.before - (np.inf if over_windows.after is None else over_windows.after)
-    confirmed = gain > CRITERIA.verification.deviations * over_windows.std_error
+    confirmed = -over_windows.rise > CRITERIA.verification.deviations * over_windows.std_error
     if confirmed or not drives_away(before, after):
         return over_windows
     power = before.power, after.power

@@ -151,6 +151,10 @@ VERDICT: Mapping[str, str] = {
         "With {named} the error of the free run of the validation data rises from {before:error} to {after:error}, "
         "more than the windows explain: either it only imitates something else, or the machine was different in "
         "these runs.",
+    "contradicted.mean":
+        "With {named} the error with its mean on validation data rises from {first:error} to {last:error} "
+        "({deviations:.1f} standard errors; without the mean it falls from {before:error} to {after:error}): either it "
+        "only imitates something else, or the machine was different in these runs.",
     "contradicted.unstable":
         "With {named} the model is {runs:unstable}; without, the error on validation data is {before:error}. "
         "Either it only imitates something else, or the machine was different in these runs.",

@@ -54,7 +54,7 @@ def _of_both_searches(
     models: CandidateModels, selection: Selection, alone: DiscoveryResult, budget: SearchBudget
 ) -> DiscoveryResult:
     """The terms `alone`, or those in addition to the selected effects: the smaller error, or the simpler model."""
-    alone = alone.instead(selection.fitted, selection.added, models.matrix.of_use("verify"))
+    alone = alone.instead(selection.fitted, selection.added)
     if not alone.complete or models.is_noise(alone.error_with_terms(selection.base.error)):
         return alone
     further = _search(selection, selection.fitted, budget)

@@ -7,9 +7,8 @@ from dataclasses import dataclass, replace
 
 from ident.diagnosis.discovery.proposal import Errors, Proposal
 from ident.diagnosis.fitted_model import FittedModel
+from ident.diagnosis.model_comparison import verified_change
 from ident.diagnosis.verdict import contradiction
-from ident.diagnosis.verification import verify_change
-from ident.run import Run
 from ident.words.message import message, said
 
 
@@ -94,17 +93,13 @@ class DiscoveryResult:
             return ()
         return tuple(name for name in named if name not in last.beside)
 
-    def instead(self, other: FittedModel, named: Sequence[str], runs: Sequence[Run]) -> DiscoveryResult:
+    def instead(self, other: FittedModel, named: Sequence[str]) -> DiscoveryResult:
         """The same, said to stand instead of what is `named`; where runs to verify speak for that `other`, so it is."""
         if not self.found or self.refit is None:
             return self
         *terms, last = (replace(one, instead_of=tuple(named)) for one in self.found)
         name = str(last.effect["name"])
-        against = (
-            contradiction(verify_change(name, runs, other.residuals(runs), self.refit.residuals(runs)))
-            if runs
-            else None
-        )
+        against = contradiction(verified_change(name, other, self.refit))
         if against is not None:
             last = replace(last, contradicted=replace(against, instead_of=tuple(named)))
         return replace(self, found=(*terms, last))

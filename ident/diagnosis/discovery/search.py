@@ -37,10 +37,10 @@ from ident.diagnosis.discovery.term_to_effect import (
 )
 from ident.diagnosis.evidence.comparison import generalises, matters
 from ident.diagnosis.fitted_model import FittedModel
-from ident.diagnosis.model_comparison import evidence, improves
+from ident.diagnosis.model_comparison import evidence, improves, verified_change
 from ident.diagnosis.tie_breaking import stable_minimum, stable_ranking
 from ident.diagnosis.verdict import contradiction
-from ident.diagnosis.verification import Contradiction, verify_change
+from ident.diagnosis.verification import Contradiction
 from ident.equations.mathml import mathml
 from ident.errors import TimeIsUp, Unusable
 from ident.fit.levenberg_marquardt import Way
@@ -211,12 +211,7 @@ class TermSearch:
 
     def _contradiction(self, name: str, before: FittedModel) -> Contradiction | None:
         """Whether runs to verify speak against the latest term."""
-        runs = self.models.matrix.of_use("verify")
-        return (
-            contradiction(verify_change(name, runs, before.residuals(runs), self.base.residuals(runs)))
-            if runs
-            else None
-        )
+        return contradiction(verified_change(name, before, self.base))
 
     def _proposal(
         self, candidate: TermCandidate, seen: CandidateTerms, name: str, gained: float, bar: float, hypothesis: bool

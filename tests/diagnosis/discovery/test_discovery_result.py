@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
+from types import SimpleNamespace
 from typing import Any, cast
 
 import numpy as np
@@ -19,20 +20,28 @@ from ident.run import Run
 TIMES = np.arange(2000) / 1000.0
 
 
-@dataclass
-class Leaving:
-    """A model that leaves noise of so large a share of the displacement."""
-
-    share: float
-
-    def residuals(self, runs: tuple[Run, ...]) -> list[np.ndarray]:
-        random = np.random.default_rng(1)
-        return [self.share * np.std(run.measured) * random.standard_normal(len(run.measured)) for run in runs]
-
-
 def verify() -> tuple[Run, ...]:
     wave = 1e-3 * np.sin(2 * np.pi * 5 * TIMES)
     return tuple(Run(f"v{n}", "", 1000.0, {"command": wave, "displacement": wave}, use="verify") for n in range(2))
+
+
+@dataclass
+class Leaving:
+    """A model that leaves noise of so large a share of the displacement on runs to verify."""
+
+    share: float
+    runs: tuple[Run, ...] = field(default_factory=verify)
+
+    @property
+    def fitness(self) -> SimpleNamespace:
+        return SimpleNamespace(horizon=None, matrix=SimpleNamespace(of_use=lambda _use: self.runs))
+
+    @property
+    def on_verify_runs(self) -> tuple[list[np.ndarray], None]:
+        random = np.random.default_rng(1)
+        return [
+            self.share * np.std(run.measured) * random.standard_normal(len(run.measured)) for run in self.runs
+        ], None
 
 
 def found(share: float) -> DiscoveryResult:
@@ -46,7 +55,7 @@ def found(share: float) -> DiscoveryResult:
 
 
 def test_a_verify_error_above_the_catalogues_is_said_first_with_both() -> None:
-    told = found(0.26).instead(cast(FittedModel, Leaving(0.16)), ("play", "dead_zone"), verify())
+    told = found(0.26).instead(cast(FittedModel, Leaving(0.16)), ("play", "dead_zone"))
     against = told.found[-1].contradicted
     assert against is not None
     assert against.instead_of == ("play", "dead_zone")
@@ -60,14 +69,14 @@ def test_a_verify_error_above_the_catalogues_is_said_first_with_both() -> None:
 
 @pytest.mark.parametrize("share", [0.155, 0.10])
 def test_one_that_is_no_worse_only_says_what_it_stands_instead_of(share: float) -> None:
-    told = found(share).instead(cast(FittedModel, Leaving(0.16)), ("play",), verify())
+    told = found(share).instead(cast(FittedModel, Leaving(0.16)), ("play",))
     assert told.found[-1].contradicted is None
     assert told.found[-1].instead_of == ("play",)
     assert proposed_text(told.found).startswith("In place of play, the search proposes: ")
 
 
 def test_without_runs_to_verify_nothing_is_known() -> None:
-    assert found(0.26).instead(cast(FittedModel, Leaving(0.16)), ("play",), ()).found[-1].contradicted is None
+    assert found(0.26).instead(cast(FittedModel, Leaving(0.16, ())), ("play",)).found[-1].contradicted is None
 
 
 def refused(equation: str, nats: float, *beside: str, fit: float = 0.3, verify: float | None = 0.4) -> DiscoveryResult:
