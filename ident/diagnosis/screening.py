@@ -129,8 +129,8 @@ def _values_without(models: CandidateModels, base: FittedModel, fitness: Simulat
     off = {symbol: value for symbol, value in models.off.items() if symbol not in base.values}
     held = {name: value for name, value in fitness.space.fixed.items() if name not in base.values}
     strengths = {symbol: 0.0 for symbol in map(models.strength, models.effects) if symbol in off}
-    known = {**off, **base.values, **held, **strengths}
-    return {name: value for name, value in known.items() if name in fitness.space.order}
+    values = {**off, **base.values, **held, **strengths}
+    return {name: value for name, value in values.items() if name in fitness.space.order}
 
 
 def _predicted(given: _Sensitivities, base: FittedModel, names: Sequence[str]) -> list[Prediction]:

@@ -75,8 +75,11 @@ OF_RECORDS = _of_files(
     "damping_asymmetry",
     "friction_behind_play",
     "degrading_hysteresis",
+    "elastic_coupling",
+    "elastic_load",
     "sensor_curve",
     "rectified_sensor",
+    "speed_sensor_lag",
 )
 """Those that only some records can show: what they read is measured, or what they need is there."""
 CATALOGUE = (*EFFECTS, *OF_RECORDS, *OF_BENCH)

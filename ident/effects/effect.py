@@ -61,7 +61,7 @@ class Effect:
     takes_over: tuple[str, ...] = ()
     """Symbols of a machine's springs, of which a part is this effect's at small motions: its strength over its way."""
     unless: str = ""
-    """A symbol of a machine that has the effect in its core already."""
+    """A symbol of a machine that no diagnosis names it of: one that has it in its core, or has no such part."""
     own: bool = False
     """Whether its bounds were stated for this machine by who wrote it; then they hold for a machine of any size."""
 

@@ -44,6 +44,11 @@ def one_sided_command(matrix: Matrix) -> bool:
     return all("command" in run.channels and one_sided(run.command) for run in matrix.runs)
 
 
+def speed_measured(matrix: Matrix) -> bool:
+    """Whether a speed was recorded of every run, by a sensor of its own."""
+    return all(run.output == "velocity" for run in matrix.runs)
+
+
 def rectified(matrix: Matrix) -> bool:
     """Whether a speed stays on one side of zero although its command does not."""
     speeds = all(run.output == "velocity" and "command" in run.channels for run in matrix.runs)

@@ -16,4 +16,6 @@ VALVE_SECOND_ORDER = Effect(
     shape=(Parameter("damping", "zeta", "1", 0.05, 2.0, 0.7, "damping ratio"),),
     looks="more phase lag towards the natural frequency, the same at every amplitude",
     source="Strano and Terzo, second-order valve; Merritt, Hydraulic Control Systems",
+    unless="Kt",
 )
+"""Not of a motor, which has no valve: what rings between its voltage and its motion is a spring between masses."""

@@ -74,6 +74,10 @@ class Fitness(Protocol):
         """The same for other runs, which know nothing of a search."""
         ...
 
+    def shown_on(self, runs: tuple[Run, ...], point: Array) -> Local:
+        """What the model at a point leaves of other runs."""
+        ...
+
 
 @dataclass(frozen=True)
 class Local:

@@ -202,6 +202,10 @@ class LinearFitness:
         """The same for other runs."""
         return replace(self, runs=runs, evaluations=0, unstable=0, _reduced=[])
 
+    def shown_on(self, runs: tuple[Run, ...], point: Array) -> Local:
+        """What the model at a point leaves of other runs."""
+        return self.fresh(runs).exact(point, sensitivities=False)
+
     def _observed(self, run: Run) -> tuple[tuple[int, ...], Pattern]:
         """The states that a run's output depends on under its conditions, and the pattern of the model of those."""
         off = zeros(run, self.matrix.actuator)

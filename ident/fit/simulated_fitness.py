@@ -123,6 +123,12 @@ class SimulatedFitness(SimulatedRuns):
         """The same for other runs, which know nothing of this search."""
         return replace(self, runs=runs, starts=dict(self.known), evaluations=0, unstable=0)
 
+    def shown_on(self, runs: tuple[Run, ...], point: Array) -> Local:
+        """What the model at a point leaves of other runs, each begun where of all guesses least is left of it."""
+        fresh = self.fresh(runs)
+        fresh.settle({name: float(value[0]) for name, value in self.space.values(point[None]).items()})
+        return fresh.exact(point, sensitivities=False)
+
     def part(self, runs: tuple[Run, ...]) -> SimulatedFitness:
         """The same for some of its runs, from the first states in which the search ended."""
         return replace(self, runs=runs, starts=dict(self.starts), evaluations=0, unstable=0)

@@ -351,13 +351,33 @@ class SimulatedRuns:
                 start[..., self.chain.states.index(state)] = (
                     begins_about_middle(run.channels["velocity"]) / run.sample_rate
                 )
-        if len(guesses) == 1:
+        start = self._with_followers(start, run, values)
+        if start.shape[1] == 1:
             return list(start[0])
-        vectors = {name: np.repeat(value, len(guesses)) for name, value in values.items()}
+        vectors = {name: np.repeat(value, start.shape[1]) for name, value in values.items()}
         with np.errstate(over="ignore", invalid="ignore"):
             outputs = [rows[:, 0] for rows, _, _ in self.simulation((run,), vectors, steps, start).outputs()]
             power = np.mean((run.measured[:, None] - np.concatenate(outputs)) ** 2, axis=0)
         return list(start[0, np.argsort(np.where(np.isfinite(power), power, np.inf), kind="stable")])
+
+    def _with_followers(self, start: Array, run: Run, values: Mapping[str, float]) -> Array:
+        """Guesses (1, g, n) with, behind them, the same with states of effects where they have followed the machine.
+
+        A mass behind a spring moves along with the drive: where small signals z' = A z hold, those of the effects are
+        z_e = −A_ee⁺ A_ec z_c of the core's. None is added where they have nothing to follow.
+        """
+        own = [self.chain.states.index(name) for name in self._of_effects if name in self.chain.states]
+        core = [self.chain.states.index(name) for name in self.preset.core.states]
+        if not own:
+            return start
+        symbols = {**values, **conditions(run, self.matrix.actuator)}
+        A = self.chain.linearise({name: symbols[name] for name in self.chain.symbols}, run.output).A
+        follows = -np.linalg.pinv(A[np.ix_(own, own)]) @ A[np.ix_(own, core)]
+        if not np.all(np.isfinite(follows)) or not follows.any():
+            return start
+        along = start.copy()
+        along[..., own] = along[..., core] @ follows.T
+        return np.concatenate([start, along], axis=1)
 
     @cached_property
     def _of_effects(self) -> list[str]:

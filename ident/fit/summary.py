@@ -61,7 +61,7 @@ def summarise(
     space, matrix, preset = objective.space, objective.matrix, objective.preset
     values = {name: float(found[0]) for name, found in space.values(point[None]).items()}
     verify_runs = matrix.of_use("verify")
-    verify = objective.fresh(verify_runs).exact(point, sensitivities=False).runs if verify_runs else ()
+    verify = objective.shown_on(verify_runs, point).runs if verify_runs else ()
     fit_runs = matrix.of_use("fit")
     found = covariance(here, point, optimum.as_good)
     window = _window(over_windows, point, found, optimum.left_out)

@@ -17,8 +17,10 @@ CHOICES: Mapping[str, tuple[str, ...]] = {
     "spool": ("rigid",),
     "flow": ("none", "linear", "square_root", "to_speed"),
     "pressure": ("none", "compressible"),
-    "load": ("none", "mass_spring_damper", "prescribed_motion", "measured_force"),
-}
+    "load": (
+        "none", "mass_spring_damper", "two_masses", "two_masses_at_load", "prescribed_motion", "measured_force",
+    ),
+}  # fmt: skip
 """What a place may be; the first is what it is where nothing is said."""
 SHOWN = ("displacement", "velocity", "force", "load_pressure")
 GAINS = {"P": "Kp", "I": "KI", "D": "KD"}
@@ -89,7 +91,7 @@ def _usual(places: Mapping[str, str]) -> str:
     """What is recorded where nobody says it: what the loop compares, else where the load is, else its force."""
     if places["controller"] != "none":
         return places["of"]
-    moved = places["load"] in ("mass_spring_damper", "measured_force") or places["flow"] == "to_speed"
+    moved = places["load"] not in ("none", "prescribed_motion") or places["flow"] == "to_speed"
     return "displacement" if moved else "force"
 
 

@@ -35,6 +35,8 @@ from ident.stages import (
     SPEED_INSIDE,
     SQUARE_ROOT_FLOW,
     TORQUE,
+    TWO_MASSES,
+    TWO_MASSES_AT_LOAD,
     Scale,
     Stage,
     transducer,
@@ -43,12 +45,18 @@ from ident.stages import (
 _CONTROLLERS = {"none": OPENED_BY_COMMAND, "p": PROPORTIONAL, "pi": PI, "pid": PID, "cascade": SPEED_INSIDE}
 _VALVES = {"none": INSTANT_VALVE, "first": FIRST_ORDER_VALVE, "second": SECOND_ORDER_VALVE}
 _FLOWS = {"linear": LINEAR_FLOW, "square_root": SQUARE_ROOT_FLOW, "to_speed": FLOW_TO_SPEED}
-_LOADS = {"mass_spring_damper": MASS_SPRING_DAMPER, "measured_force": MEASURED_LOAD}
+_LOADS = {
+    "mass_spring_damper": MASS_SPRING_DAMPER, "measured_force": MEASURED_LOAD, "two_masses": TWO_MASSES,
+    "two_masses_at_load": TWO_MASSES_AT_LOAD,
+}  # fmt: skip
+_COUPLED = ("two_masses", "two_masses_at_load")
+"""Loads of two masses with a spring between them."""
 _WORDS = {
     "p": "proportional", "pi": "PI", "pid": "PID", "cascade": "cascaded", "first": "first-order valve",
     "second": "second-order valve", "linear": "linear flow", "square_root": "turbulent flow",
     "to_speed": "flow to speed", "compressible": "compressible oil", "mass_spring_damper": "mass, spring, damper",
     "prescribed_motion": "prescribed motion", "measured_force": "measured load",
+    "two_masses": "two masses, recorded at the drive", "two_masses_at_load": "two masses, recorded at the load",
 }  # fmt: skip
 
 
@@ -139,7 +147,7 @@ def _given(of: Description) -> dict[str, str]:
     given = {"load_pressure": "P"} if of.hydraulic else {}
     if of["load"] != "none" or of["flow"] == "to_speed":
         given |= {"displacement": "X", "velocity": "vy"}
-    if of["flow"] != "to_speed" and of["load"] != "measured_force":
+    if of["flow"] != "to_speed" and of["load"] not in ("measured_force", *_COUPLED):
         given |= {"force": "F"}
     return given
 
@@ -238,7 +246,8 @@ def _share_force(of: Description) -> tuple[str, ...]:
     if _force_known(of) and _motion_known(of):
         return ()
     oil = ("Ka", "Cl", "Z0") if _force_known(of) else ("Ka", "Cl")
-    return ("m0", "c0", *(oil if of.hydraulic else ("Kt",)))
+    joint = ("m1", "kj", "cj") if of["load"] in _COUPLED else ()
+    return ("m0", "c0", *joint, *(oil if of.hydraulic else ("Kt",)))
 
 
 def _title(of: Description) -> str:

@@ -13,6 +13,7 @@ from ident.stages.sensor import IDEAL_SENSOR, transducer
 from ident.stages.specimen import MOVED_SPECIMEN
 from ident.stages.spool import RIGID_SPOOL
 from ident.stages.stage import PLACES, Quantity, Stage
+from ident.stages.two_masses import TWO_MASSES, TWO_MASSES_AT_LOAD
 from ident.stages.valve import FIRST_ORDER_VALVE, INSTANT_VALVE, SECOND_ORDER_VALVE
 
 __all__ = [
@@ -47,6 +48,8 @@ __all__ = [
     "TABLE_ON_GUIDES",
     "TIGHT_CYLINDER",
     "TORQUE",
+    "TWO_MASSES",
+    "TWO_MASSES_AT_LOAD",
     "TWO_SIDED_FLOW",
     "UPPER_LEVEL",
     "Quantity",

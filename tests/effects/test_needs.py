@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 import pytest
@@ -21,6 +22,7 @@ from ident.matrix import Actuator, Matrix
 from ident.presets import preset
 from ident.run import Run
 from ident.simulation.simulate import responses
+from tests.reference.coupled_masses import Coupled
 
 RATE, SECONDS = 100.0, 8.0
 GAIN, TAU = 0.8, 0.4
@@ -82,6 +84,22 @@ def counted(share: float) -> np.ndarray:
     """The speed of a motor that a command drives, some of it without its sign."""
     speed = solved(lambda t, s: [(at(FORCE, t) - DAMPING * s[0]) / MASS], 1)[0]
     return speed + share * (np.abs(speed) - speed)
+
+
+def counted_late(constant: float) -> np.ndarray:
+    """The speed of the same motor behind a filter."""
+    if not constant:
+        return counted(0.0)
+    return solved(lambda t, s: [(at(FORCE, t) - DAMPING * s[0]) / MASS, (s[0] - s[1]) / constant], 2)[1]
+
+
+def behind_a_spring(seen: int, factor: float, omega: float = 5.0, ratio: float = 0.1) -> np.ndarray:
+    """The speed of a drive (0), or of its load (1): 0.4 of the mass is behind a spring, ω its frequency alone."""
+    if not factor:
+        return counted(0.0)
+    load = 0.4 * factor * MASS
+    parts = Coupled(MASS - load, load, load * omega**2, between=2.0 * ratio * omega * load, of_drive=DAMPING)
+    return parts.moved(lambda t: at(FORCE, t), T)[seen]
 
 
 def moved() -> np.ndarray:
@@ -173,6 +191,14 @@ CASES = {
         lambda k: mass(lambda _t, x, _v: 30.0 * k * np.sin(x - 0.5)), {}),
     "rectified_sensor": Case(
         "motor", {"rectified_sensor.share": 0.8}, lambda k: counted(0.8 * k), {}, output="velocity"),
+    "speed_sensor_lag": Case(
+        "motor", {"speed_sensor_lag.time_constant": 0.1}, lambda k: counted_late(0.1 * k), {}, output="velocity"),
+    **{
+        name: Case(
+            "motor", {f"{name}.share": 0.4, f"{name}.frequency": 5.0, f"{name}.damping": 0.1},
+            partial(behind_a_spring, seen), {}, output="velocity")
+        for seen, name in enumerate(("elastic_load", "elastic_coupling"))
+    },
 }  # fmt: skip
 
 
@@ -231,6 +257,7 @@ def candidates(model: str, units: dict[str, str], **channels: np.ndarray) -> set
 def test_an_effect_is_looked_for_only_where_the_record_could_show_it():
     """What nobody recorded, or what stays about zero, adds no candidate: others become no less probable by it."""
     of_records, about_zero = {one.name for one in OF_RECORDS}, np.sin(T)
+    springs = {"elastic_coupling", "elastic_load"}
     metres = {"command": "m", "displacement": "m"}
     assert not of_records & candidates("first_order", metres, command=about_zero, displacement=about_zero)
     level = {"speed_asymmetry", "overflow", "sensor_curve"}
@@ -242,20 +269,23 @@ def test_an_effect_is_looked_for_only_where_the_record_could_show_it():
     }  # its own outflow has one
     driven = {"command": "N", "displacement": "m", "vertical_load": "N", "load_pressure": "Pa"}
     recorded = {"command": FORCE, "displacement": about_zero}
-    assert not of_records & candidates("drive", driven, **recorded)
+    assert of_records & candidates("drive", driven, **recorded) == springs
     found = candidates("drive", driven, vertical_load=SQUEEZE, load_pressure=SQUEEZE, **recorded)
-    assert of_records & found == {"normal_force_friction", "pressure_friction"}
+    assert of_records & found - springs == {"normal_force_friction", "pressure_friction"}
     answers = Run("r", "", RATE, {"velocity": SPEED, "force": FORCE, "load_pressure": SQUEEZE}, {}, output="force")
     moves = CandidateModels.of(Matrix(Actuator("A"), (answers,)), Settings(model="specimen")).effects
     assert {"pressure_friction", "pressure_force", "degrading_hysteresis"} <= set(moves)
     several = Matrix(Actuator("A"), (answers, replace(answers, id="s")))
     assert "degrading_hysteresis" not in CandidateModels.of(several, Settings(model="specimen")).effects
     speed, volts = np.cos(T), {"command": "V", "velocity": "rad/s"}
-    assert not of_records & candidates("motor", volts, command=FORCE, velocity=speed)
-    assert of_records & candidates("motor", volts, command=FORCE, velocity=np.abs(speed)) == {"rectified_sensor"}
+    motor = {"speed_sensor_lag", *springs}
+    assert of_records & candidates("motor", volts, command=FORCE, velocity=speed) == motor
+    rectified = candidates("motor", volts, command=FORCE, velocity=np.abs(speed))
+    assert of_records & rectified == {*motor, "rectified_sensor"}
+    assert not springs & candidates("open_valve", volts, command=FORCE, velocity=speed)  # the oil is its spring
     assert "rectified_sensor" not in candidates("motor", volts, command=LEVEL, velocity=np.abs(speed))
     turning = {"command": "N*m", "displacement": "rad"}
-    assert of_records & candidates("drive", turning, **recorded) == {"arm_gravity"}
+    assert of_records & candidates("drive", turning, **recorded) - springs == {"arm_gravity"}
 
 
 @pytest.mark.parametrize(("below", "is_one_sided"), [(0.9 * ONE_SIDED, True), (1.1 * ONE_SIDED, False)])

@@ -12,16 +12,16 @@ from ident.fit.settings import Settings
 from ident.presets import PRESETS, preset
 
 TAKEN = {
-    "qian2014": 50,
-    "first_order": 18,
-    "two_tanks": 19,
-    "drive": 25,
-    "open_valve": 47,
-    "motor": 34,
+    "qian2014": 53,
+    "first_order": 19,
+    "two_tanks": 20,
+    "drive": 28,
+    "open_valve": 50,
+    "motor": 37,
     "specimen": 17,
-    "force_loop": 50,
+    "force_loop": 53,
     "kononykhin": 8,
-    "strano": 47,
+    "strano": 48,
 }
 LOOPS = {
     "qian2014": {"v", "y"}, "first_order": set(), "drive": set(), "open_valve": {"v"}, "motor": set(),

@@ -1,0 +1,27 @@
+"""A second mass behind a spring, from which effects are made: what it does to a drive is the same wherever one looks.
+
+Of the moving mass m₀ a share μ hangs behind a spring with a damper, ω its frequency where the drive stands still:
+
+    x₁'' = ω² (x − x₁) + 2 ζ ω (x' − x₁'),   (1 − μ) m₀ x'' = D − R − f − S − μ m₀ x₁''.
+
+Its own quantities are xj = x − x₁ and vj = x₁'.
+"""
+
+from ident.parameter import Parameter
+
+SHARE = Parameter("share", "mu", "1", 0.0, 0.98, 0.0, "share of the moving mass that is behind the spring")
+SHAPE = (
+    Parameter(
+        "frequency", "wj", "1/s", 1.0, 1e3, 30.0, "frequency of the mass behind the spring, the drive at rest, rad/s",
+        searched=True,
+    ),
+    Parameter("damping", "zeta", "1", 0.01, 1.0, 0.1, "damping ratio of this motion"),
+)  # fmt: skip
+TEXTS = (
+    "xj' = v - vj",
+    "vj' = wj**2 * xj + 2 * zeta * wj * (v - vj)",
+    "G = mu * m0 * (wj**2 * xj + 2 * zeta * wj * (v - vj))",
+    "a = where(mu > 0, (D - R - f - S - G) / ((1 - mu) * m0 + mL), a)",
+    "M = M - mu * m0",
+)
+UNITS = {"a": "m/s^2", "M": "kg"}
