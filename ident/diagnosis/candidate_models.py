@@ -23,6 +23,7 @@ from ident.errors import Unusable
 from ident.fit.given import of_model
 from ident.fit.known_zeros import with_known_zeros
 from ident.fit.levenberg_marquardt import Way
+from ident.fit.recent_moments import RecentMoments
 from ident.fit.reduction import excited_band
 from ident.fit.settings import Settings
 from ident.fit.simulated_fitness import SimulatedFitness, shortened
@@ -75,6 +76,7 @@ class CandidateModels:
     _known: dict[tuple[tuple[str, ...], int], SimulatedFitness] = field(default_factory=dict)
     _records: dict[int, tuple[Run, ...]] = field(default_factory=dict)
     _compared: dict[int, ComparedRecords] = field(default_factory=dict)
+    _recent: RecentMoments = field(default_factory=RecentMoments, repr=False)
     bars: dict[tuple[str, ...], float] = field(default_factory=dict)
     contradicted: frozenset[str] = frozenset()
 
@@ -242,8 +244,9 @@ class CandidateModels:
             space = search_space(model, self.matrix, given, self.band)
             runs = self._shortened(samples) if samples else self.runs
             self._known[key] = SimulatedFitness(
-                model, self.matrix, runs, self.band, space, horizon=self.horizon, memory=self.memory, trusting=True
-            )
+                model, self.matrix, runs, self.band, space, horizon=self.horizon, memory=self.memory, trusting=True,
+                recent=self._recent,
+            )  # fmt: skip
         known = self._known[key]
         return known.fresh(known.runs)  # no search goes on from the first states in which another one ended
 

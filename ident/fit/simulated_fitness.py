@@ -13,6 +13,8 @@ from ident.cached import cached_property
 from ident.effects.effect import Effect
 from ident.fit.fitness import STEP, Local, Steps, Worth, local
 from ident.fit.levenberg_marquardt import Way, levenberg_marquardt
+from ident.fit.normal_matrices import NormalMatrices
+from ident.fit.recent_moments import RecentMoments
 from ident.fit.simulated_runs import SimulatedRuns
 from ident.fit.space import Space
 from ident.parallel import each
@@ -29,12 +31,13 @@ class SimulatedFitness(SimulatedRuns):
     `evaluations` counts parameter vectors, `unstable` those that were unstable at some run. A search that is `trusting`
     believes what better first states promise where that is worse than what it has. To follow them there is most of what
     a step that fails costs, and mostly in vain; not of a machine in saturation, though, where a search begins anywhere.
-    `known` are first states that every fresh copy begins with.
+    `known` are first states that every fresh copy begins with; `recent` keeps what was simulated a short while ago.
     """
 
     space: Space
     trusting: bool = field(default=False, kw_only=True)
     known: Mapping[str, Array] = field(default_factory=dict, kw_only=True)
+    recent: RecentMoments | None = field(default=None, kw_only=True, repr=False)
     evaluations: int = 0
     unstable: int = 0
 
@@ -111,13 +114,23 @@ class SimulatedFitness(SimulatedRuns):
         self.begin({name: float(value[0]) for name, value in values.items()})
         with_means = self.horizon is None and len({run.output for run in self.runs}) == 1
         with np.errstate(over="ignore", invalid="ignore"):
-            found = self.settled(values, strides, steps)
+            found = self._moments(values, strides, steps)
             promised = local([found[run.id] for run in self.runs], with_means)
             if not (p and any(run.promises for run in promised.runs) and worth(promised)):
                 return promised
             self.settled({name: value[:1] for name, value in values.items()}, np.empty(0), steps)
-            found = {run: moments.as_begun() for run, moments in self.settled(values, strides, steps).items()}
+            found = {run: moments.as_begun() for run, moments in self._moments(values, strides, steps).items()}
         return local([found[run.id] for run in self.runs], with_means)
+
+    def _moments(self, values: Mapping[str, Array], strides: Array, steps: int) -> dict[str, NormalMatrices]:
+        """The matrices of every run by its id from the first states that are known; without sensitivities settled."""
+        if self.recent is None or not len(strides):
+            return self.settled(values, strides, steps)
+        moving = [run for run in self.runs if run.begins == "moving"]
+        begun = [self.start(run).tobytes() for run in moving] + ([self._reach.tobytes()] if moving else [])
+        of = (self.chain, self.runs, self.horizon, self.memory, self.absolute, steps, *values)
+        asked = (*of, *(value.tobytes() for value in values.values()), strides.tobytes(), *begun)
+        return self.recent.of(asked, lambda: self.settled(values, strides, steps))
 
     def fresh(self, runs: tuple[Run, ...]) -> SimulatedFitness:
         """The same for other runs, which know nothing of this search."""
