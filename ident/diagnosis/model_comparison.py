@@ -22,7 +22,7 @@ from ident.diagnosis.verification import VerifyChange, verify_change, with_free_
 def evidence(before: FittedModel, after: FittedModel) -> Evidence:
     """What speaks for the second model against the first; of models over windows also their free runs."""
     found = compare(before.residuals_held_out, after.residuals_held_out)
-    if before.fitness.horizon is None:
+    if before.fitness.horizon is None or after.fitness.horizon is None:
         return found
     return replace(found, by_free_run=lambda: (before.free_run, after.free_run))
 

@@ -204,7 +204,8 @@ def test_one_that_leaves_as_little_of_windows_has_to_be_as_likely(left, taken):
 
     def model(machine: str, parameters: int, more: float) -> SimpleNamespace:
         residuals = Residuals((noise + more * shape,), bands)
-        best = SimpleNamespace(held_out=SimpleNamespace(error=0.03), residuals_held_out=residuals)
+        no_windows = SimpleNamespace(horizon=None)
+        best = SimpleNamespace(held_out=SimpleNamespace(error=0.03), residuals_held_out=residuals, fitness=no_windows)
         return SimpleNamespace(
             machine=machine, parameters=parameters, error=0.03, best=best, with_effect=best, at_bound=False
         )
