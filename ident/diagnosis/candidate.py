@@ -54,8 +54,9 @@ class Candidate:
             return replace(self, refit=refit, evidence=None, improves=True, drives_away=False)
         found, criteria = evidence(base, refit), OF_SHOWN if models.is_shown(self.effect) else EVIDENCE_CRITERIA
         improves = is_improvement(models, base, found, criteria)
-        over_windows = replace(found, by_free_run=None)
-        away = not improves and not runs_freely(found) and is_improvement(models, base, over_windows, criteria)
+        away = not (improves or runs_freely(found)) and is_improvement(
+            models, base, replace(found, by_free_run=None), criteria
+        )
         return replace(self, refit=refit, evidence=found, improves=improves, drives_away=away)
 
 

@@ -23,7 +23,6 @@ ELSEWHERE = {
     ("label_checks.py", 1.4826): "the deviation of a normal distribution over its median deviation (Hampel 1974)",
     ("label_checks.py", 1e3): "milliseconds of a second",
     ("sentences.py", 100): "per cent of a share",
-    ("tables.py", 4): "digits of a strength in a table",
     ("discovery/term_library.py", 3): "the power of a cube, in the unit of its term",
 }
 """Numbers that decide nothing, each with the reason why it stands where it is."""

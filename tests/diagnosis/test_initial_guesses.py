@@ -53,7 +53,7 @@ def test_the_lines_of_what_does_not_pulsate_are_the_same_at_every_sample_rate():
 
 def test_a_stop_that_gives_way_lies_before_the_end_of_the_way():
     """Where the way ends nothing tells of a stop; without a record of the way its range is tried."""
-    space: Any = SimpleNamespace(bounds=lambda _: {"g": (0.0, 1000.0)}, names=(), scale_free=True)
+    space: Any = SimpleNamespace(reach=lambda *_: (0.0, 1000.0), names=(), fixed={}, scale_free=True)
     models: Any = SimpleNamespace(effects={"end_stop": END_STOP}, strength=lambda _: "g")
     x = 0.02 * np.sin(np.arange(100.0))
     run = Run("run", "", 100.0, {"displacement": x})
