@@ -101,7 +101,7 @@ class Space:
         return {axis.name: (axis.lower * scales[axis.name], axis.upper * scales[axis.name]) for axis in self.axes}
 
     def reach(self, name: str, values: Mapping[str, float]) -> tuple[float, float]:
-        """Between what a parameter may lie, SI: its bounds, or of one that is held twice its value."""
+        """Lower and upper bound of a parameter, SI; both are its value where that is held."""
         return (self.fixed[name],) * 2 if name in self.fixed else self.bounds(values)[name]
 
 
