@@ -95,6 +95,15 @@ class ProgressView(BaseModel):
     verdict: str = ""
 
 
+class TimeLeftView(BaseModel):
+    """How many seconds a job has left, as `jobs` that have ended tell; as likely as not between `lower` and `upper`."""
+
+    seconds: float
+    lower: float
+    upper: float
+    jobs: int
+
+
 class JobSettings(SettingsView):
     """What a job was asked for: the fit, and of a diagnosis what to add at most, its time, and a search made anew.
 
@@ -125,7 +134,8 @@ class JobView(BaseModel):
     """A queued, running or ended job; `parent` is the fit that it starts from, `problem` says why it failed.
 
     `fit`, `diagnosis`, `hybrid_simulation` and `plan` are the ids of what it made. `matrix` and `serial` are "" where
-    a job needs no runs and is about no actuator: a plan without a fit.
+    a job needs no runs and is about no actuator: a plan without a fit. `elapsed` are the seconds since its work began,
+    until now or until it ended; `time_left` is null where it does not run, and before ended jobs of its kind tell it.
     """
 
     id: str
@@ -142,7 +152,10 @@ class JobView(BaseModel):
     plan: str | None = None
     problem: JobProblem | None
     created_at: str
+    began_at: str | None = None
     ended_at: str | None
+    elapsed: float | None = None
+    time_left: TimeLeftView | None = None
 
 
 class JobPage(BaseModel):

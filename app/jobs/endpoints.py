@@ -17,7 +17,8 @@ from app.jobs import service
 from schemas.fit import JobPage, JobView
 
 router = APIRouter(prefix="/jobs", tags=["jobs"], responses=COMMON)
-_LOOK, _HEARTBEAT = 0.2, 15.0  # s
+_LOOK = 0.2  # s
+_HEARTBEAT = 10.0  # s after which a job that has nothing new is sent again, with the time that it has left
 _ENDED = ("succeeded", "failed", "cancelled")
 
 
@@ -61,14 +62,12 @@ async def follow_job(
 async def _stream(here: Context, job: str, seen: int) -> AsyncIterator[str]:
     quiet = 0.0
     while True:
-        now, sequence = await run_in_threadpool(service.with_sequence, here, job)
-        if sequence > seen:
-            seen, quiet = sequence, 0.0
-            yield f"id: {sequence}\ndata: {now.model_dump_json()}\n\n"
-        if now.state in _ENDED:
+        state, sequence = await run_in_threadpool(service.state, here, job)
+        if sequence > seen or quiet >= _HEARTBEAT:
+            now = await run_in_threadpool(service.get, here, job)
+            state, seen, quiet = now.state, max(sequence, seen), 0.0
+            yield f"id: {seen}\ndata: {now.model_dump_json()}\n\n"
+        if state in _ENDED:
             return
         await asyncio.sleep(_LOOK)
         quiet += _LOOK
-        if quiet >= _HEARTBEAT:
-            quiet = 0.0
-            yield ": still here\n\n"

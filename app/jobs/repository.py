@@ -104,6 +104,7 @@ def take(session: Session, job_id: str, worker: str) -> int | None:
     """Make a job that has not ended this worker's; the number of its turn."""
     one = update(JobRow).where(JobRow.id == job_id, JobRow.state.not_in(ENDED))
     turn = {"state": "running", "worker": worker, "fence": JobRow.fence + 1, "sequence": JobRow.sequence + 1}
+    turn |= {"began_at": now(), "course": []}
     return session.scalar(one.values(turn).returning(JobRow.fence))
 
 
@@ -138,6 +139,20 @@ def end(session: Session, row: JobRow, state: str, problem: dict[str, Any] | Non
     more = {"jobs": TallyRow.jobs + 1, "seconds": TallyRow.seconds + one.excluded.seconds}
     session.execute(one.on_conflict_do_update(index_elements=["kind", "state"], set_=more))
     return True
+
+
+def state(session: Session, job_id: str) -> tuple[str, int] | None:
+    """The state of a job, and the number of changes that it has seen."""
+    found = session.execute(select(JobRow.state, JobRow.sequence).where(JobRow.id == job_id)).one_or_none()
+    return None if found is None else (found[0], found[1])
+
+
+def like(session: Session, row: JobRow, limit: int) -> Sequence[JobRow]:
+    """Jobs of its kind that succeeded in one turn, the newest; of a recheck also the job that made the fit."""
+    query = select(JobRow).where(JobRow.kind == row.kind, JobRow.state == "succeeded", JobRow.fence == 1)
+    found = session.scalars(query.order_by(JobRow.ended_at.desc()).limit(limit)).all()
+    made_by = session.get(JobRow, row.parent) if row.kind == "recheck" and row.parent is not None else None
+    return found if made_by is None else (*found, made_by)
 
 
 def last_diagnosing(session: Session, fit: str) -> JobRow | None:

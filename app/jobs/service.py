@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import logging
 from collections.abc import Sequence
+from dataclasses import asdict
 from typing import Any
 
 from sqlalchemy.exc import IntegrityError
@@ -13,11 +14,13 @@ from app.access.noting import about
 from app.context import Context
 from app.errors import Failure, missing
 from app.jobs import repository
+from app.jobs.history import elapsed, left
+from app.jobs.time_left import TimeLeft
 from app.matrices.removed import check_there
 from app.paging import cursor, keys_of
 from app.tables import JobRow
 from app.webhooks.outbox import announce
-from schemas.fit import JobPage, JobProblem, JobSettings, JobView, ProgressView
+from schemas.fit import JobPage, JobProblem, JobSettings, JobView, ProgressView, TimeLeftView
 from schemas.webhooks import EndedJob, JobEnded
 
 _log = logging.getLogger("servoident.jobs")
@@ -68,16 +71,20 @@ def resume(context: Context) -> None:
 
 def get(context: Context, job_id: str) -> JobView:
     """A job by id; raises Failure 404."""
-    return with_sequence(context, job_id)[0]
-
-
-def with_sequence(context: Context, job_id: str) -> tuple[JobView, int]:
-    """A job and the number of changes it has seen; raises Failure 404."""
     with context.sessions() as session:
         found = repository.with_serial(session, job_id)
+        if found is None:
+            raise missing("job", job_id)
+        return view(*found, left(session, found[0]))
+
+
+def state(context: Context, job_id: str) -> tuple[str, int]:
+    """The state of a job, and the number of changes that it has seen; raises Failure 404."""
+    with context.sessions() as session:
+        found = repository.state(session, job_id)
     if found is None:
         raise missing("job", job_id)
-    return view(*found), found[0].sequence
+    return found
 
 
 def listed(
@@ -88,8 +95,9 @@ def listed(
     wanted = {"state": state, "serial": serial, "matrix": matrix}
     with context.sessions() as session:
         found = repository.page(session, keys_of(after, 2), limit, **wanted, of_fits=of_fits)
+        items = [view(row, of, left(session, row)) for row, of in found]
     following = cursor(found[-1][0].created_at, found[-1][0].id) if len(found) == limit else None
-    return JobPage(items=[view(*each) for each in found], next=following)
+    return JobPage(items=items, next=following)
 
 
 def open_of_actuators(context: Context, serials: Sequence[str]) -> dict[str, JobView]:
@@ -134,7 +142,7 @@ def conclude(context: Context, job_id: str) -> JobView:
     return get(context, job_id)
 
 
-def view(row: JobRow, serial: str) -> JobView:
+def view(row: JobRow, serial: str, time_left: TimeLeft | None = None) -> JobView:
     """A job as it is sent."""
     diagnosis = row.kind == "diagnosis"
     # The catalogue's verdict is stored before terms are searched for: whatever becomes of these.
@@ -149,5 +157,6 @@ def view(row: JobRow, serial: str) -> JobView:
         hybrid_simulation=row.id if made and row.kind == "hybrid simulation" else None,
         plan=row.id if made and row.kind == "plan" else None,
         problem=None if row.problem is None else JobProblem(**row.problem),
-        created_at=row.created_at, ended_at=row.ended_at,
+        created_at=row.created_at, began_at=row.began_at, ended_at=row.ended_at, elapsed=elapsed(row),
+        time_left=None if time_left is None else TimeLeftView(**asdict(time_left)),
     )  # fmt: skip

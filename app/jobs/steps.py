@@ -5,6 +5,7 @@ from __future__ import annotations
 import logging
 import secrets
 import threading
+import time
 from contextlib import suppress
 from dataclasses import asdict
 from typing import Any
@@ -13,6 +14,7 @@ from sqlalchemy.orm import Session, sessionmaker
 
 from app.errors import is_full
 from app.jobs import at_work, repository
+from app.jobs.course import Course
 from app.jobs.lease import AWAY, Lease, Superseded, patiently
 from app.jobs.service import end
 from app.jobs.work import Kind, MadeSoFar, State, Task, Work
@@ -64,6 +66,7 @@ class Run(Work):
         self.runs, self.lease, self.kind = runs, lease, kind
         self._turn = secrets.token_hex(8)
         self._task: Task | None = None
+        self._course, self._began = Course(), time.monotonic()
 
     def told(self) -> dict[str, Any]:
         """What a line of the log says of it."""
@@ -167,8 +170,9 @@ class Run(Work):
         if isinstance(progress, MadeSoFar):
             patiently(lambda: self._keep(progress.made), self.runs.stopping, _PATIENCE)
             return
+        self._course = self._course.with_report(progress, time.monotonic() - self._began)
         with suppress(*AWAY):  # progress can wait
-            if self._note({"progress": asdict(progress)}):
+            if self._note({"progress": asdict(progress), "course": self._course.stored()}):
                 raise TimeIsUp
 
     def _keep(self, made: State) -> None:

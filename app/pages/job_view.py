@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
+from ident.words.duration import duration, time_left_said
 from ident.words.sentence import sentence
 from ident.words.titles import title
 from schemas.fit import JobProblem, JobView
@@ -36,6 +37,8 @@ class JobPageView:
     problem: str
     facts: tuple[tuple[str, str], ...]
     made: str
+    elapsed: str
+    left: str
 
 
 def job_page(job: JobView) -> JobPageView:
@@ -59,7 +62,17 @@ def job_page(job: JobView) -> JobPageView:
         problem=_problem(job.problem),
         facts=settings_facts(job.settings.model_dump()),
         made=job.created_at,
+        elapsed="" if job.elapsed is None else duration(job.elapsed),
+        left=_left(job),
     )
+
+
+def _left(job: JobView) -> str:
+    """The time that a running job has left, in words; "" where it does not run."""
+    if job.state != "running":
+        return ""
+    left = job.time_left
+    return "not known yet" if left is None else time_left_said(left.seconds, left.lower, left.upper)
 
 
 def _at(job: JobView) -> str:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from sqlalchemy import Boolean, Float, ForeignKey, Integer, String, Text
+from sqlalchemy import Boolean, Float, ForeignKey, Index, Integer, String, Text
 from sqlalchemy.orm import Mapped, mapped_column
 
 from app.tables.base import Base, now
@@ -15,10 +15,12 @@ class JobRow(Base):
 
     `who` asked for it. It is to stop where it is told to `cancel`, and keeps what it found where it is told to
     `conclude`. `worker` has it under way, by the turn `fence`: see `app/jobs/lease.py`.
-    `sequence` counts the changes of its state, for readers of its events.
+    `sequence` counts the changes of its state, for readers of its events. The work of its last turn began at
+    `began_at` and took the `course` of app/jobs/course.py.
     """
 
     __tablename__ = "jobs"
+    __table_args__ = (Index("ix_jobs_kind_ended", "kind", "state", "ended_at"),)
     id: Mapped[str] = mapped_column(String(64), primary_key=True)
     kind: Mapped[str] = mapped_column(String(20), default="fit")
     state: Mapped[str] = mapped_column(String(20), default="queued", index=True)
@@ -33,7 +35,9 @@ class JobRow(Base):
     problem: Mapped[dict[str, Any] | None]
     worker: Mapped[str | None] = mapped_column(String(200), index=True)
     fence: Mapped[int] = mapped_column(Integer, default=0)
+    course: Mapped[list[Any]] = mapped_column(default=list, server_default="[]")
     created_at: Mapped[str] = mapped_column(String(40), default=now, index=True)
+    began_at: Mapped[str | None] = mapped_column(String(40))
     ended_at: Mapped[str | None] = mapped_column(String(40))
 
 

@@ -13,6 +13,7 @@ from sqlalchemy import event
 from app.context import Context
 from app.database import connect, migrate, sessions
 from app.diagnoses import service as diagnoses
+from app.jobs import repository
 from app.jobs import service as jobs
 from app.pages import service as pages
 from app.processes import Here
@@ -134,6 +135,15 @@ def test_the_diagnosis_of_a_fit_is_found_by_index(context: Context) -> None:
         with context.engine.connect() as connection:
             plan = [row[-1] for row in connection.exec_driver_sql(f"EXPLAIN QUERY PLAN {statement}", parameters)]
         assert any(index in step for step in plan), plan
+
+
+def test_the_ended_jobs_that_tell_of_one_that_runs_are_found_by_index(context: Context) -> None:
+    with context.sessions() as session:
+        row = JobRow(id="now", kind="fit", state="running", settings={}, progress={})
+        (statement, parameters), *_ = sent(context, lambda: list(repository.like(session, row, 50)))
+        plan = [row[-1] for row in session.connection().exec_driver_sql(f"EXPLAIN QUERY PLAN {statement}", parameters)]
+    assert any("ix_jobs_kind_ended" in step for step in plan), plan
+    assert not any("TEMP B-TREE" in step for step in plan), plan
 
 
 def test_the_migrations_make_the_tables_that_the_program_uses(context: Context) -> None:

@@ -8,6 +8,7 @@ import re
 import pytest
 from playwright.sync_api import Error, expect
 
+from ident.words.duration import duration, time_left_said
 from ident.words.engineering import power_of, scaled_unit
 from tests.app.access.table import PAGES
 from tests.app.access.test_audit import RAW
@@ -98,12 +99,30 @@ def test_a_running_fit_is_told_to_everybody(page, site, running, screenshots):
     page.goto(f"{site.address}/fits/{running}")
     expect(page.locator("[data-step]")).to_contain_text("of 10000", timeout=60_000)
     expect(page.get_by_role("progressbar", name="Progress of the fit")).to_be_visible()
+    expect(page.locator("[data-elapsed]")).to_have_text(re.compile(r"\d+ s$"))
+    expect(page.locator("[data-left]")).to_have_text(re.compile(r"^(not known yet|about \d.*)$"))
     everywhere(page, screenshots, "running")
+    page.goto(f"{site.address}/jobs")
+    row = page.get_by_role("row").filter(has_text=running[:12])
+    expect(row).to_contain_text(re.compile(r"not known yet|about \d"))
+    everywhere(page, screenshots, "jobs-running")
+
+
+def test_a_script_says_durations_as_the_service_does(page, site):
+    page.goto(site.address)
+    at = page.locator("script[src*='/static/']").first.get_attribute("src").rpartition("/")[0]
+    seconds = [0.4, 7.6, 23, 47, 59.9, 60, 94, 131, 1000, 3600, 5000, 8430]
+    said = page.evaluate(
+        f"async (all) => {{ const words = await import('{at}/words.js');"
+        " return all.map((s) => [words.duration(s), words.timeLeft({ seconds: s, lower: s / 2, upper: 2 * s })]); }",
+        seconds,
+    )
+    assert said == [[duration(s), time_left_said(s, s / 2, 2 * s)] for s in seconds]
 
 
 def test_the_title_of_the_tab_tells_how_far_a_job_is_and_how_it_ended(page, site, running):
     page.goto(f"{site.address}/fits/{running}")
-    expect(page).to_have_title(re.compile(r"^\d+ % · "))
+    expect(page).to_have_title(re.compile(r"^(\d+ %|\d.* left) · "))
     page.get_by_role("button", name="Cancel").click()
     expect(page).to_have_title(re.compile(r"^cancelled · "), timeout=60_000)
     page.keyboard.press("Tab")

@@ -1,7 +1,7 @@
-// A running job, live: stage, generation and best error as the service sends them, and a way to stop it.
+// A running job, live: stage, generation, best error and time left as the service sends them, and a way to stop it.
 
 import { guarded, send } from "./api.js";
-import { errorWords } from "./words.js";
+import { duration, errorWords, rounded, timeLeft } from "./words.js";
 
 const ENDED = ["succeeded", "failed", "cancelled"];
 const title = document.title;
@@ -25,7 +25,6 @@ function follow(live) {
       bar.value = progress.done;
       step.textContent = `${progress.done} of ${progress.total}`;
       step.closest("span").hidden = progress.total < 2;
-      if (progress.total > 1) document.title = `${Math.floor((100 * progress.done) / progress.total)} % · ${title}`;
     }
     if (typeof progress.error === "number" && progress.error > 0) {
       error.textContent = errorWords(progress.error);
@@ -41,6 +40,26 @@ function follow(live) {
     }
   }
 
+  // The clock goes on between two events, which come at least every 10 s.
+  let heard = null;
+
+  function tick() {
+    if (!heard) return;
+    const since = (performance.now() - heard.at) / 1000;
+    say(live.querySelector("[data-elapsed]"), duration(heard.elapsed + since));
+    const left = heard.left && Object.fromEntries(Object.entries(heard.left).map(([name, s]) => [name, s - since]));
+    say(live.querySelector("[data-left]"), left ? timeLeft(left) : "not known yet");
+    const far = left ? `${duration(rounded(left.seconds))} left` : bar.max > 1 && `${Math.floor(100 * bar.position)} %`;
+    if (far) document.title = `${far} · ${title}`;
+  }
+
+  function clock({ state: now, elapsed, time_left: left }) {
+    if (now === "running" && elapsed !== null) heard = { at: performance.now(), elapsed, left };
+    tick();
+  }
+
+  const ticking = setInterval(tick, 1000);
+
   // Each event is the job as it is now.
   const events = new EventSource(live.dataset.events);
 
@@ -51,7 +70,9 @@ function follow(live) {
       state.className = `state ${job.state}`;
     }
     report(job.progress);
+    clock(job);
     if (!ENDED.includes(job.state)) return;
+    clearInterval(ticking);
     events.close();
     sessionStorage.setItem("ended", job.state);
     location.reload();
@@ -68,6 +89,11 @@ function follow(live) {
     );
   stops(live.querySelector("[data-cancel]"), () => send("DELETE", live.dataset.job));
   stops(live.querySelector("[data-conclude]"), () => send("POST", `${live.dataset.job}/conclude`));
+}
+
+function say(place, text) {
+  place.textContent = text;
+  place.closest("span").hidden = false;
 }
 
 function list(paragraph, effects) {

@@ -159,6 +159,8 @@ def test_a_job_that_is_to_stop_ends_at_its_next_report(runs, makers):
     turn = runs.take(job)
     assert turn.finish({})["outcome"] is None
     assert recorded(makers).progress["stage"] == "half"
+    assert [stage[0] for stage in recorded(makers).course] == ["half"]
+    assert recorded(makers).began_at is not None
     with makers.begin() as session:
         repository.change(session, job, cancel=True)
     assert turn.finish({})["outcome"] == "cancelled"
