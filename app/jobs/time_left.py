@@ -2,8 +2,8 @@
 
 Each ended job says: this one is where I was at the time t of my T seconds, and has taken r times as long to come here;
 so r (T − t) are left. Of the stage that is under way r is its own, where it counts its steps. The estimate is the
-median of what they say, where jobs that were asked the same, and took about as long to come here, count most. Where they
-disagree, or are few, it leans to what is known of any work of unknown length: as long again as it has taken (Gott,
+median of what they say, where jobs that were asked the same, and took about as long to come here, count most. Where
+they disagree, or are few, it leans to what is known of any work of unknown length: as long again as it has taken (Gott,
 Nature 363, 1993, p. 315).
 """
 
