@@ -101,7 +101,7 @@ def test_no_page_of_the_printed_report_is_half_empty(base, picture, monkeypatch)
 
     def pictured(source, **options):
         for content_of in compile_pdf(source, **{**options, "format": "png", "ppi": 30.0}):
-            filled.append(_filled(content_of))
+            filled.append(inked(content_of))
         return b"%PDF-"
 
     monkeypatch.setattr(typst, "compile", pictured)
@@ -111,11 +111,12 @@ def test_no_page_of_the_printed_report_is_half_empty(base, picture, monkeypatch)
     assert min(filled[:-1]) > LEAST, [round(one, 2) for one in filled]
 
 
-def _filled(content_of: bytes) -> float:
+def inked(content_of: bytes) -> float:
+    """How far down the page the last line with ink is, above the foot."""
     grey = np.asarray(Image.open(io.BytesIO(content_of)).convert("L"))
     body = grey[: round(0.93 * len(grey))]
-    inked = np.flatnonzero((body < 200).any(axis=1))
-    return float(inked[-1] / len(body))
+    lines = np.flatnonzero((body < 200).any(axis=1))
+    return float(lines[-1] / len(body))
 
 
 def test_a_test_states_the_conditions_of_its_set(base):
