@@ -102,6 +102,7 @@ def test_a_running_fit_is_told_to_everybody(page, site, running, screenshots):
     expect(page.locator("[data-elapsed]")).to_have_text(re.compile(r"\d+ s$"))
     expect(page.locator("[data-left]")).to_have_text(re.compile(r"^(not known yet|about \d.*)$"))
     everywhere(page, screenshots, "running")
+    on_a_phone(page, screenshots, "running")
     page.goto(f"{site.address}/jobs")
     row = page.get_by_role("row").filter(has_text=running[:12])
     expect(row).to_contain_text(re.compile(r"not known yet|about \d"))
