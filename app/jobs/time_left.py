@@ -4,7 +4,7 @@ Each ended job says: this one is where I was at the time t of my T seconds, and 
 so r (T − t) are left. Of the stage that is under way r is its own, where it counts its steps. The estimate is the
 median of what they say, where jobs that were asked the same, and took about as long to come here, count most. Where
 they disagree, or are few, it leans to what is known of any work of unknown length: as long again as it has taken (Gott,
-Nature 363, 1993, p. 315).
+Nature 363, 1993, p. 315), and at least as long as the steps that are counted.
 """
 
 from __future__ import annotations
@@ -36,10 +36,11 @@ class TimeLeft:
 
 @dataclass(frozen=True)
 class _Said:
-    """What an ended job says: ln of the seconds left, and what that counts."""
+    """What an ended job says: ln of the seconds left, what that counts, and the seconds left of a stage that counts."""
 
     left: float
     weight: float
+    rest: float
 
 
 def time_left(now: Course, ended: Sequence[Course]) -> TimeLeft | None:
@@ -54,7 +55,8 @@ def time_left(now: Course, ended: Sequence[Course]) -> TimeLeft | None:
     low, middle, high = (_quantile(said, share) for share in (0.16, 0.5, 0.84))
     spread = math.hypot((high - low) / 2, _OWN) * math.sqrt(1 + 1 / independent)
     trust = spread**-2 / (spread**-2 + _UNKNOWN**-2)
-    left = math.exp(trust * middle + (1 - trust) * math.log(now.seconds))
+    again = max(now.seconds, min(one.rest for one in said))
+    left = math.exp(trust * middle + (1 - trust) * math.log(again))
     factor, most = math.exp(0.67 * spread * math.sqrt(trust)), math.inf
     if now.limit is not None:
         most = max(now.limit - now.seconds, _INSTANT)
@@ -74,8 +76,10 @@ def _told(now: Course, past: Course) -> Iterator[_Said]:
     within = _ratio(heard - mine.began, times * (then - stage.began)) if share else pace
     end = past.stages[found + 1].began if found + 1 < len(past.stages) else past.seconds
     rest, silent = within * times * (end - then), now.seconds - heard
-    left = max(rest - silent, _LEAST * max(rest, silent)) + pace * (past.seconds - end)
-    yield _Said(math.log(max(left, _INSTANT / 4)), _weight(now, past, pace, found))
+    rest = max(rest - silent, _LEAST * max(rest, silent))
+    left = rest + pace * (past.seconds - end)
+    of_count = rest if share and stage.counts else 0.0
+    yield _Said(math.log(max(left, _INSTANT / 4)), _weight(now, past, pace, found), of_count)
 
 
 def _ratio(mine: float, theirs: float) -> float:
