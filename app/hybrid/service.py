@@ -127,7 +127,8 @@ def listed(context: Context, fit: str | None, after: str | None, limit: int) -> 
 def view(row: HybridRow) -> HybridView:
     """A hybrid simulation as it is sent."""
     held = row.result
-    names = [*FIGURES, *(name for name in ("map", "feedforward") if held.get(name))]
+    kept = any(one is not None and one["ended"] is None for one in (held["result"], held["without"]))
+    names = [*(FIGURES if kept else FIGURES[:1]), *(name for name in ("map", "feedforward") if held.get(name))]
     names += ["acceleration"] if held["result"].get("acceleration") else []
     names += ["delay-map"] if held["result"].get("delay_map") else []
     return HybridView(

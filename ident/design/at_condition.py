@@ -12,6 +12,7 @@ from ident.rig.conditions import CONDITIONS, PREFIX, Condition
 from ident.statistics import Change
 from ident.statistics.dependence import Dependence
 from ident.units.quantity import quantity
+from ident.words.engineering import printed_unit
 from ident.words.message import message
 from ident.words.nearest import did_you_mean
 
@@ -66,7 +67,7 @@ class AtCondition:
             elif law.name != "constant":
                 moved[name] = _moved(estimate, law.change(here, self.value))
                 said.append(str(message("moved.by", name=name, law=law.name, before=estimate.value,
-                                        after=moved[name].value, unit=estimate.unit)))  # fmt: skip
+                                        after=moved[name].value, unit=printed_unit(estimate.unit))))  # fmt: skip
         text = [message("moved.from", there=self.condition.said(self.value), here=self.condition.said(here),
                         of=self.of, sets=self._known, what="; ".join(said) or "nothing moves")]  # fmt: skip
         text += [message("moved.kept", names=kept)] if kept else []

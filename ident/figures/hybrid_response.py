@@ -75,4 +75,7 @@ def _drawn(of: Simulated, look: Look, _: Options) -> Chart:
     return hybrid_response(of.runs, look)
 
 
-HYBRID_RESPONSE = Drawing("response", "Reference to measured displacement", Simulated, _drawn)
+HYBRID_RESPONSE = Drawing(
+    "response", "Reference to measured displacement", Simulated, _drawn,
+    there=lambda of: any(one.scores is not None for one in of.runs.values()),
+)  # fmt: skip

@@ -17,6 +17,7 @@ from ident.figures.render import Chart, Panel, Row, datasets
 from ident.figures.subjects import Simulated
 from ident.figures.thin import Real, significant
 from ident.hybrid.rig import HybridResult
+from ident.words.percent import percent_in_print
 
 REFERENCE = "reference: the whole structure"
 _BINS, _NEAR = 350, 1.0  # stretches of the whole record; s shown near the peak
@@ -61,9 +62,9 @@ def told(shown: Mapping[str, HybridResult]) -> list[str]:
         if found is None:
             lines.append(f"{name}: unstable, ran away after {one.ended:.3g} s")
             continue
-        left = f"{words.percent(found.reference_rms)} off the reference"
+        left = f"{percent_in_print(found.reference_rms)} off the reference"
         late = f"{round(1e3 * found.delay, 2) + 0.0:.2f} ms late"  # never a minus before nothing
-        follows = f"{words.percent(found.tracking_rms)} off what was asked for, {late}"
+        follows = f"{percent_in_print(found.tracking_rms)} off what was asked for, {late}"
         said = ", ".join((left, follows) if one.stable else (left, follows, "unstable"))
         lines += [f"{name}: {said}"] if len(name) + len(said) < _LINE else [f"{name}:", said]
     return lines

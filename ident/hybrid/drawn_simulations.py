@@ -79,7 +79,9 @@ class DrawnSimulations:
 
 
 def _listed(quantities: Mapping[str, Interval]) -> str:
-    return "; ".join(f"{name} {_said(one)}" for name, one in quantities.items() if one.lower is not None)
+    return "; ".join(
+        f"{name.replace('_', ' ')} {_said(one)}" for name, one in quantities.items() if one.lower is not None
+    )
 
 
 def _said(one: Interval) -> str:

@@ -22,6 +22,7 @@ HALF_POWER = 10 ** (-3 / 20)
 """Of |G(0)|: where |G| falls below it the band ends."""
 _POINTS, _STEPS = 500, 1000  # of a response over frequency, and of one over time
 _BEYOND = (0.05, 2.0)  # of the slowest and of the fastest pole: a response is looked at between
+_NOTHING = float(np.finfo(float).tiny)  # of |L|: what rounding makes 0 has a logarithm
 _SPAN = 8.0  # time constants of the slowest pole: a step is followed so long
 
 
@@ -51,7 +52,7 @@ def loop_figure(
 
 def phase_margins(L: NDArray[np.complex128]) -> Array:
     """The least 180° + arg L where |L| crosses 1, of L (b, f) → (b,)."""
-    size, turned = np.log(np.abs(L)), np.degrees(np.unwrap(np.angle(L), axis=-1))
+    size, turned = np.log(np.maximum(np.abs(L), _NOTHING)), np.degrees(np.unwrap(np.angle(L), axis=-1))
     turned -= 360.0 * np.round(turned[:, :1] / 360.0)  # at its beginning a loop turns by less than half a turn
     at = _between(size, turned)
     return np.asarray(np.min(np.abs(180.0 + at), axis=-1, initial=np.inf, where=np.isfinite(at)))

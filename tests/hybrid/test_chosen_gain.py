@@ -10,6 +10,7 @@ from ident.fit.result import FitResult
 from ident.fit.settings import Settings
 from ident.hybrid.changed_machine import Change, changed_machine
 from ident.hybrid.chosen_gain import GainTarget, choose_gain
+from ident.hybrid.loop_figures import phase_margins
 from ident.workflows import identify
 from tests.acceptance.matrices import NOISE, as_matrix
 from tests.reference import qian_reference
@@ -87,3 +88,8 @@ def test_what_is_out_of_reach_is_said_with_the_nearest():
     assert "nearest" in chosen.text
     with pytest.raises(Unusable, match="phase_margin"):
         GainTarget("phase_marign", 50.0)
+
+
+def test_a_loop_that_rounding_takes_to_nothing_has_its_margin():
+    """L falls to 0 at the highest frequency: the phase margin is that of its crossing, without a warning."""
+    assert phase_margins(np.array([[-2j, -0.5j, 0j]])) == pytest.approx([90.0])

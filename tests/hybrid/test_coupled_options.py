@@ -66,7 +66,7 @@ def test_two_joined_actuators_over_a_spread_are_those_of_a_brute_force(full):
         assert apart(found.parts["left"]["tracking_rms"], np.array(scores)[:, 0]) < 0.5
     said = list(found.sentences())
     assert f"of {draws} draws of the machines are stable" in said[0]
-    assert said[2].startswith("Actuator right: tracking_rms")
+    assert said[2].startswith("Actuator right: tracking rms")
 
 
 @pytest.mark.parametrize("joined", [False, True], ids=["apart", "joined"])

@@ -7,10 +7,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from ident.figures import look, render
+from ident.figures import drawings, look, render
 from ident.figures.hybrid_response import hybrid_response, rows
 from ident.figures.hybrid_time import hybrid_time
 from ident.figures.share_map import share_map_chart
+from ident.figures.subjects import Simulated
 from ident.hybrid.linear_plant import linear_plant
 from ident.hybrid.rig import simulate_hybrid
 from ident.hybrid.share_map import share_map
@@ -33,6 +34,10 @@ def test_figures_are_drawn_also_of_what_ran_away(theme):
         text = render(chart, "svg").decode()
         assert "ran away" in text
         assert "NaN" not in text
+    case, alone = LOOSE, {"it": shown["mostly physical"]}
+    assert [set(drawings(Simulated(of, case))) for of in (shown, alone)] == [
+        {"displacement", "response"}, {"displacement"},
+    ]  # fmt: skip
     found = share_map(FIT, LOOSE, masses=[0.0, 0.5], stiffnesses=[0.0, 0.9])
     assert "unstable" in render(share_map_chart(found, LOOSE, "none", look(theme)), "svg").decode()
 
