@@ -102,10 +102,13 @@ def simulated(work: Any, effect: Effect) -> None:
     """Look at the bounds of an effect's strength, and simulate the middle of the search space."""
     searched = work if isinstance(work, bench_identification.BenchIdentification) else work.objective
     middle = np.full((1, len(searched.space.axes)), 0.5)
-    bounds = searched.space.bounds({name: float(v[0]) for name, v in searched.space.values(middle).items()})
-    lower, upper = bounds[effect.added[0].in_equations]
-    assert -np.inf < lower <= 0.0 <= upper < np.inf
-    assert lower < upper
+    values = {name: float(v[0]) for name, v in searched.space.values(middle).items()}
+    lower, upper = searched.space.reach(effect.added[0].in_equations, values)
+    if effect.whole:
+        assert lower == upper == effect.strength.upper
+    else:
+        assert -np.inf < lower <= 0.0 <= upper < np.inf
+        assert lower < upper
     assert 0.0 < searched.errors(middle)[0] <= UNSTABLE
 
 
