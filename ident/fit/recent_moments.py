@@ -12,28 +12,28 @@ from threading import Lock
 
 from ident.fit.normal_matrices import NormalMatrices
 
-Moments = Mapping[str, NormalMatrices]
+Moments = tuple[int, Mapping[str, NormalMatrices]]
 _MOST = 512  # runs: of fourteen columns 25 MB, and as many refits as a ranking of one record has on trial
 
 
 class RecentMoments:
-    """The moments of runs by all that they follow from, those that were asked for last."""
+    """The steps a sample and the moments of runs by all that they follow from, those that were asked for last."""
 
     def __init__(self) -> None:
         self._lock, self._kept, self._runs = Lock(), OrderedDict[Hashable, Moments](), 0
 
-    def of(self, asked: Hashable, found: Callable[[], Moments]) -> dict[str, NormalMatrices]:
+    def of(self, asked: Hashable, found: Callable[[], Moments]) -> Moments:
         """What is kept of what is asked for, or else is `found` now."""
         with self._lock:
             known = self._kept.get(asked)
             if known is not None:
                 self._kept.move_to_end(asked)
-                return dict(known)
+                return known
         made = found()
         with self._lock:
             if asked not in self._kept:
-                self._kept[asked] = dict(made)
-                self._runs += len(made)
+                self._kept[asked] = made
+                self._runs += len(made[1])
             while self._runs > _MOST:
-                self._runs -= len(self._kept.popitem(last=False)[1])
-        return dict(made)
+                self._runs -= len(self._kept.popitem(last=False)[1][1])
+        return made

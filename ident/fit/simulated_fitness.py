@@ -110,27 +110,35 @@ class SimulatedFitness(SimulatedRuns):
         cloud = np.concatenate([point[None], moved])
         values = self.space.values(cloud)
         self.evaluations += len(cloud)
-        steps = int(self.steps(values).max())
         self.begin({name: float(value[0]) for name, value in values.items()})
         with_means = self.horizon is None and len({run.output for run in self.runs}) == 1
         with np.errstate(over="ignore", invalid="ignore"):
-            found = self._moments(values, strides, steps)
+            steps, found = self._moments(values, strides)
             promised = local([found[run.id] for run in self.runs], with_means)
             if not (p and any(run.promises for run in promised.runs) and worth(promised)):
                 return promised
             self.settled({name: value[:1] for name, value in values.items()}, np.empty(0), steps)
-            found = {run: moments.as_begun() for run, moments in self._moments(values, strides, steps).items()}
+            found = {run: moments.as_begun() for run, moments in self._moments(values, strides)[1].items()}
         return local([found[run.id] for run in self.runs], with_means)
 
-    def _moments(self, values: Mapping[str, Array], strides: Array, steps: int) -> dict[str, NormalMatrices]:
-        """The matrices of every run by its id from the first states that are known; without sensitivities settled."""
+    def _moments(self, values: Mapping[str, Array], strides: Array) -> tuple[int, Mapping[str, NormalMatrices]]:
+        """The steps a sample, and the matrices of every run by its id from the first states that are known.
+
+        Without sensitivities the first states are settled.
+        """
+
+        def simulated() -> tuple[int, dict[str, NormalMatrices]]:
+            steps = int(self.steps(values).max())
+            return steps, self.settled(values, strides, steps)
+
         if self.recent is None or not len(strides):
-            return self.settled(values, strides, steps)
+            return simulated()
         moving = [run for run in self.runs if run.begins == "moving"]
         begun = [self.start(run).tobytes() for run in moving] + ([self._reach.tobytes()] if moving else [])
-        of = (self.chain, self.runs, self.horizon, self.memory, self.absolute, steps, *values)
-        asked = (*of, *(value.tobytes() for value in values.values()), strides.tobytes(), *begun)
-        return self.recent.of(asked, lambda: self.settled(values, strides, steps))
+        of = (self.chain, self.runs, self.horizon, self.memory, self.absolute, *values)
+        return self.recent.of(
+            (*of, *(value.tobytes() for value in values.values()), strides.tobytes(), *begun), simulated
+        )
 
     def fresh(self, runs: tuple[Run, ...]) -> SimulatedFitness:
         """The same for other runs, which know nothing of this search."""

@@ -92,10 +92,10 @@ def test_only_so_many_are_kept(monkeypatch):
     monkeypatch.setattr(recent_moments, "_MOST", 4)
     kept, made = RecentMoments(), []
 
-    def found(asked: str) -> dict[str, str]:
+    def found(asked: str) -> tuple[int, dict[str, str]]:
         made.append(asked)
-        return {"one": asked, "two": asked}
+        return 1, {"one": asked, "two": asked}
 
     for asked in ("a", "b", "a", "c", "a", "b"):
-        assert kept.of(asked, lambda asked=asked: found(asked)) == {"one": asked, "two": asked}
+        assert kept.of(asked, lambda asked=asked: found(asked)) == (1, {"one": asked, "two": asked})
     assert made == ["a", "b", "c", "b"]
