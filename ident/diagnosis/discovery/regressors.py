@@ -15,6 +15,7 @@ from ident.diagnosis.discovery.term import Term
 from ident.residuals.decimation import Response
 
 Array = NDArray[np.float64]
+_AT_ONCE = 32  # columns: what leads from a term to its lines stays near the core
 
 
 @dataclass(frozen=True)
@@ -51,9 +52,14 @@ class Regressors:
 
         `path` leads from there to the output. Where small signals are not stable an answer grows without end.
         """
-        samples = np.column_stack([term.samples(self.record.signals, self.record.rate) for term in terms])
-        found, sound = _within(path.to(samples)[:, :, 0], self.record, self.band)
+        parts = [self._answers(terms[k : k + _AT_ONCE], path) for k in range(0, len(terms), _AT_ONCE)]
+        found, sound = np.hstack([rows for rows, _ in parts]), np.concatenate([finite for _, finite in parts])
         return np.asarray((found - self.basis @ (self.basis.T @ found)) / self.size), sound
+
+    def _answers(self, terms: Sequence[Term], path: Response) -> tuple[Array, NDArray[np.bool_]]:
+        """The same with what is free in the run, in the unit of the output."""
+        samples = np.column_stack([term.samples(self.record.signals, self.record.rate) for term in terms])
+        return _within(path.to(samples)[:, :, 0], self.record, self.band)
 
 
 def blocks(terms: Sequence[Term]) -> list[list[int]]:
