@@ -33,7 +33,9 @@ def gone(stages: dict[str, tuple[int, float]], until: float = float("inf"), pace
 @pytest.mark.parametrize("share", [0.2, 0.5, 0.8])
 @pytest.mark.parametrize("pace", [0.5, 1.0, 6.0])
 @pytest.mark.parametrize("stages", [PLAN, FIT])
-def test_a_job_that_goes_as_others_went_is_known_at_any_pace(stages, pace, share):
+def test_a_job_that_goes_as_others_went_is_known_at_any_pace(
+    stages: dict[str, tuple[int, float]], pace: float, share: float
+) -> None:
     whole = pace * sum(seconds for _, seconds in stages.values())
     found = time_left(gone(stages, share * whole, pace), [gone(stages)] * 20)
     assert found is not None
@@ -42,7 +44,7 @@ def test_a_job_that_goes_as_others_went_is_known_at_any_pace(stages, pace, share
     assert found.jobs == 20
 
 
-def test_a_stage_counts_by_its_moments_not_by_its_steps():
+def test_a_stage_counts_by_its_moments_not_by_its_steps() -> None:
     """Of ten steps the last takes as long as the nine before it: at the ninth half is over."""
     uneven = {"first": (9, 10.0), "last": (1, 10.0)}
     one = Course()
@@ -54,7 +56,7 @@ def test_a_stage_counts_by_its_moments_not_by_its_steps():
     assert found.seconds == pytest.approx(sum(seconds for _, seconds in uneven.values()) / 2, rel=0.1)
 
 
-def test_a_stage_of_more_steps_takes_as_much_longer():
+def test_a_stage_of_more_steps_takes_as_much_longer() -> None:
     now = gone({"plan": (400, 400.0)}, 4.0)
     for jobs in (1, 20):
         found = time_left(now, [gone({"plan": (10, 10.0)})] * jobs)
@@ -62,7 +64,7 @@ def test_a_stage_of_more_steps_takes_as_much_longer():
         assert found.seconds == pytest.approx(396, rel=0.1)
 
 
-def test_those_that_were_asked_the_same_count_most_and_few_or_unlike_jobs_leave_it_open():
+def test_those_that_were_asked_the_same_count_most_and_few_or_unlike_jobs_leave_it_open() -> None:
     half, longest = 40.0, 200.0  # s
     now = gone(FIT, 20.0, matrix="a")
     long = {**FIT, "windows": (5, 400.0)}
@@ -78,13 +80,13 @@ def test_those_that_were_asked_the_same_count_most_and_few_or_unlike_jobs_leave_
     assert one.upper / one.lower > 1.2 * many.upper / many.lower
 
 
-def test_nothing_is_said_where_no_ended_job_came_to_the_stage():
+def test_nothing_is_said_where_no_ended_job_came_to_the_stage() -> None:
     assert time_left(gone(PLAN, 10.0), []) is None
     assert time_left(gone(PLAN, 10.0), [gone(FIT)]) is None
     assert time_left(Course(), [gone(PLAN)]) is None
 
 
-def test_a_limit_of_time_is_not_exceeded_and_a_job_that_was_cut_tells_nothing():
+def test_a_limit_of_time_is_not_exceeded_and_a_job_that_was_cut_tells_nothing() -> None:
     now = replace(gone(FIT, 20.0), limit=26.0)
     found = time_left(now, [gone(FIT)] * 5)
     assert found is not None
@@ -92,7 +94,7 @@ def test_a_limit_of_time_is_not_exceeded_and_a_job_that_was_cut_tells_nothing():
     assert time_left(gone(FIT, 20.0), [replace(gone(FIT), limit=30.0)]) is None
 
 
-def test_a_course_is_stored_in_a_few_numbers_and_read_back():
+def test_a_course_is_stored_in_a_few_numbers_and_read_back() -> None:
     course = gone(FIT, matrix="a")
     assert read(course.stored()) == course.stages
     assert len(course.stages) == 3
