@@ -7,6 +7,7 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import NDArray
 
+from ident.effects.ringing import rings
 from ident.matrix import Matrix
 
 Need = Callable[[Matrix], bool]
@@ -42,6 +43,11 @@ def one_sided_position(matrix: Matrix) -> bool:
 def one_sided_command(matrix: Matrix) -> bool:
     """Whether the command stays on one side of zero: what drives then pushes and lets go, and never pulls."""
     return all("command" in run.channels and one_sided(run.command) for run in matrix.runs)
+
+
+def resonant(matrix: Matrix) -> bool:
+    """Whether a run that is fitted answers its command with a damped oscillation."""
+    return any("command" in run.channels and rings(run.command, run.measured) for run in matrix.of_use("fit"))
 
 
 def speed_measured(matrix: Matrix) -> bool:

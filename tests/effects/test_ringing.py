@@ -1,0 +1,47 @@
+"""A record rings where a mass behind a spring answers, not where a lag does; there springs are looked for."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from ident.diagnosis.candidate_models import CandidateModels
+from ident.effects.ringing import rings
+from ident.fit.settings import Settings
+from ident.matrix import Actuator, Matrix
+from ident.run import Run
+from tests.presets.test_two_masses import SEEN, matrix
+
+
+@pytest.mark.parametrize("seed", range(4))
+@pytest.mark.parametrize("seen", [0, 1])
+def test_drive_and_load_ring_at_any_rate_of_sampling(seed, seen):
+    """As they were recorded, and from sixteen samples between each two, with noise of their own."""
+    run = matrix(seed, seen).runs[0]
+    assert rings(run.command, run.measured)
+    t, fine = np.arange(run.length), np.arange(16 * (run.length - 1)) / 16
+    noise = 0.005 * run.measured.std() * np.random.default_rng(seed).standard_normal(len(fine))
+    assert rings(np.interp(fine, t, run.command), np.interp(fine, t, run.measured) + noise)
+
+
+@pytest.mark.parametrize("seed", range(6))
+@pytest.mark.parametrize("constant", [2.0, 10.0, 50.0])
+def test_a_lag_does_not_ring(seed, constant):
+    rng = np.random.default_rng([535, seed])
+    u, y = np.repeat(rng.uniform(-3.0, 3.0, 250), 8), np.zeros(2000)
+    for k in range(1, len(y)):
+        y[k] = y[k - 1] + (u[k - 1] - y[k - 1]) * -np.expm1(-1.0 / constant)
+    assert not rings(u, y + 0.01 * y.std() * rng.standard_normal(len(y)))
+
+
+def test_a_spring_is_looked_for_where_a_record_rings_and_no_oil_is_one():
+    run = matrix(0, 0).runs[0]
+    still = Run("still", "", run.sample_rate, {"command": run.command, "velocity": np.cumsum(run.command) / 100.0},
+                run.units, output="velocity")  # fmt: skip
+
+    def springs(model: str, one: Run) -> set[str]:
+        return set(SEEN) & set(CandidateModels.of(Matrix(Actuator("A"), (one,)), Settings(model=model)).effects)
+
+    assert springs("motor", run) == set(SEEN)
+    assert not springs("motor", still)
+    assert not springs("open_valve", run)
