@@ -79,6 +79,9 @@ class Discovery:
     block: int = 128
     """[terms] Whose responses are worked out together. Why: those to all at once are large.
     Test: discovery/test_search.py::test_the_regression_is_that_of_all_terms_and_runs_at_once"""
+    columns_at_once: int = 32
+    """[terms] Whose samples lead to the output at once. Why: they stay in the memory near the core.
+    Test: discovery/test_regressors.py::test_a_column_is_to_the_bit_what_it_is_alone"""
     band: float = 1.3
     """[of the command's band] That is looked at. Why: above it there is noise alone."""
     diverged: float = 1e60

@@ -15,7 +15,6 @@ from ident.diagnosis.discovery.term import Term
 from ident.residuals.decimation import Response
 
 Array = NDArray[np.float64]
-_AT_ONCE = 32  # columns: what leads from a term to its lines stays near the core
 
 
 @dataclass(frozen=True)
@@ -52,7 +51,8 @@ class Regressors:
 
         `path` leads from there to the output. Where small signals are not stable an answer grows without end.
         """
-        parts = [self._answers(terms[k : k + _AT_ONCE], path) for k in range(0, len(terms), _AT_ONCE)]
+        step = CRITERIA.discovery.columns_at_once
+        parts = [self._answers(terms[k : k + step], path) for k in range(0, len(terms), step)]
         found, sound = np.hstack([rows for rows, _ in parts]), np.concatenate([finite for _, finite in parts])
         return np.asarray((found - self.basis @ (self.basis.T @ found)) / self.size), sound
 
