@@ -20,6 +20,7 @@ from ident.chain.chain import Chain, integrates, linear_model
 from ident.chain.conditions import conditions
 from ident.effects.effect import Effect
 from ident.fit.anchoring import Anchoring
+from ident.fit.first_guesses import begins_about_middle, with_followers
 from ident.fit.modes import extreme, fastest, motion
 from ident.fit.normal_matrices import NormalMatrices, first_state, normal_matrices_of
 from ident.fit.products import add_block_products, add_products, completed
@@ -31,7 +32,6 @@ from ident.parameter import AtReversals
 from ident.presets import Preset
 from ident.run import MOTIONS, Run
 from ident.simulation.equilibrium import equilibrium
-from ident.simulation.inputs import closed
 from ident.simulation.kernel import WIDE
 from ident.simulation.simulate import Simulation, side_by_side
 from ident.simulation.steps import Modes, steps_at_jumps, steps_at_passages, steps_at_reversals, steps_needed
@@ -361,23 +361,14 @@ class SimulatedRuns:
         return list(start[0, np.argsort(np.where(np.isfinite(power), power, np.inf), kind="stable")])
 
     def _with_followers(self, start: Array, run: Run, values: Mapping[str, float]) -> Array:
-        """Guesses (1, g, n) with, behind them, the same with states of effects where they have followed the machine.
-
-        A mass behind a spring moves along with the drive: where small signals z' = A z hold, those of the effects are
-        z_e = −A_ee⁺ A_ec z_c of the core's. None is added where they have nothing to follow.
-        """
+        """Guesses (1, g, n) with, behind them, the same with states of effects where they have followed the machine."""
         own = [self.chain.states.index(name) for name in self._of_effects if name in self.chain.states]
         core = [self.chain.states.index(name) for name in self.preset.core.states]
         if not own:
             return start
         symbols = {**values, **conditions(run, self.matrix.actuator)}
         A = self.chain.linearise({name: symbols[name] for name in self.chain.symbols}, run.output).A
-        follows = -np.linalg.pinv(A[np.ix_(own, own)]) @ A[np.ix_(own, core)]
-        if not np.all(np.isfinite(follows)) or not follows.any():
-            return start
-        along = start.copy()
-        along[..., own] = along[..., core] @ follows.T
-        return np.concatenate([start, along], axis=1)
+        return with_followers(start, A, own, core)
 
     @cached_property
     def _of_effects(self) -> list[str]:
@@ -492,13 +483,6 @@ class SimulatedRuns:
     def _extreme(self) -> tuple[Run, ...]:
         """The runs of the whole matrix on which modes are fastest: whatever part of it is simulated has their steps."""
         return extreme(self.matrix.runs)
-
-
-def begins_about_middle(speed: Array) -> float:
-    """Where a motion of a speed (n,) per sample begins, whose way goes as far to either side."""
-    covered = 0.5 * (speed[1:] + speed[:-1]) + closed(speed)[:-1]
-    way = np.append(0.0, np.cumsum(covered))
-    return float(-0.5 * (way.max() + way.min()))
 
 
 def is_simulated(preset: Preset, matrix: Matrix) -> bool:

@@ -7,6 +7,7 @@ Thirty actuators of batch WARM have a damping c0 that follows the viscosity of a
 from __future__ import annotations
 
 import json
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -49,15 +50,19 @@ def sets(rng: np.random.Generator, count: int) -> list[dict[str, float]]:
 
 
 @pytest.fixture(scope="module")
-def warm(service: TestClient) -> TestClient:
-    """The service with these actuators, a set each in force; WARM-ALL with eight, the last in force."""
+def warm(service: TestClient) -> Iterator[TestClient]:
+    """The service with these actuators, a set each in force; WARM-ALL with eight, the last in force.
+
+    Afterwards no limit is left that holds for the actuators of other tests, too.
+    """
     rng = np.random.default_rng(580)
     with service.app.state.context.sessions.begin() as session:
         for number, values in enumerate(sets(rng, 30)):
             _kept(session, f"WARM-{number}", f"w-{number}", values)
         for number, values in enumerate(sets(rng, 8)):
             _kept(session, "WARM-ALL", f"all-{number}", values, ended=number < 7)
-    return service
+    yield service
+    assert service.put(f"{API}/limits/qian2014", json={"limits": {}}).status_code == 200
 
 
 def _kept(session: Any, serial: str, name: str, values: dict[str, float], ended: bool = False) -> None:

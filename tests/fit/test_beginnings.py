@@ -14,13 +14,14 @@ from scipy.integrate import solve_ivp
 
 from ident.beginning import beginning
 from ident.diagnosis.candidate_models import CandidateModels
+from ident.fit.first_guesses import begins_about_middle
 from ident.fit.identification import Identification, completed
 from ident.fit.normal_matrices import NormalMatrices
 from ident.fit.result import FitResult
 from ident.fit.settings import Settings
 from ident.fit.settling import Least, better
 from ident.fit.simulated_fitness import SimulatedFitness
-from ident.fit.simulated_runs import SimulatedRuns, begins_about_middle, every_run
+from ident.fit.simulated_runs import SimulatedRuns, every_run
 from ident.linear import LinearModel
 from ident.matrix import Actuator, Matrix
 from ident.run import Run

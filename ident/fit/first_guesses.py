@@ -1,0 +1,33 @@
+"""Where a machine that begins in motion is guessed to begin, beside what its linear model says."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ident.simulation.inputs import closed
+
+Array = NDArray[np.float64]
+
+
+def begins_about_middle(speed: Array) -> float:
+    """Where a motion of a speed (n,) per sample begins, whose way goes as far to either side."""
+    covered = 0.5 * (speed[1:] + speed[:-1]) + closed(speed)[:-1]
+    way = np.append(0.0, np.cumsum(covered))
+    return float(-0.5 * (way.max() + way.min()))
+
+
+def with_followers(start: Array, A: Array, own: Sequence[int], core: Sequence[int]) -> Array:
+    """Guesses (1, g, n) and, behind them, the same with states of effects where they have followed the core.
+
+    A mass behind a spring moves along with the drive: where small signals z' = A z hold, the states of the effects, at
+    the places `own`, are z_e = −A_ee⁺ A_ec z_c of those of the `core`. None is added where they have nothing to follow.
+    """
+    follows = -np.linalg.pinv(A[np.ix_(own, own)]) @ A[np.ix_(own, core)]
+    if not np.all(np.isfinite(follows)) or not follows.any():
+        return start
+    along = start.copy()
+    along[..., own] = along[..., core] @ follows.T
+    return np.concatenate([start, along], axis=1)
