@@ -12,9 +12,9 @@ from ident.errors import Unusable
 from ident.fit.result import Estimate, FitResult
 from ident.words.engineering import multiple, quantity
 from ident.words.error import ErrorOf
-from ident.words.number import fixed, trimmed
+from ident.words.number import trimmed
 from ident.words.percent import percent_in_print
-from ident.words.plus_minus import UNDETERMINED, decimals, determined
+from ident.words.plus_minus import determined, in_cells
 from ident.words.symbols import symbol
 from ident.words.titles import of_parameter
 from ident.words.uses import DATA
@@ -77,18 +77,19 @@ def parameter_rows(fit: FitResult) -> tuple[ParameterRow, ...]:
 
 
 def _parameter(name: str, entry: Estimate, undetermined: bool) -> ParameterRow:
-    size, unit = multiple(entry.value, entry.unit)
-    value = entry.value / size
-    error = None if entry.std_error is None else entry.std_error / size
-    places, known = decimals(value, error), determined(entry.value, entry.std_error)
+    value, std_error, unit = in_cells(entry.value, entry.std_error, entry.unit)
+    size, _ = multiple(entry.value, entry.unit)
+    known = determined(entry.value, entry.std_error)
     return ParameterRow(
         name=name,
         symbol=symbol(name, entry.symbol),
         meaning=of_parameter(name, entry.meaning),
         unit=unit,
-        value=fixed(value, places) if known else UNDETERMINED,
-        std_error=fixed(error, places),
-        relative=percent_in_print(error / abs(value), 2) if error is not None and value and known else "–",
+        value=value,
+        std_error=std_error,
+        relative="–"
+        if entry.std_error is None or not entry.value or not known
+        else percent_in_print(entry.std_error / abs(entry.value), 2),
         lower=trimmed(entry.lower / size),
         upper=trimmed(entry.upper / size),
         remark="; ".join(_remarks(entry, undetermined)),

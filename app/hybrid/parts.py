@@ -15,6 +15,7 @@ from app.hybrid.at_condition import moved_to
 from app.hybrid.before import earlier_parts, stated
 from app.hybrid.keeping import kept_controller, kept_text
 from app.hybrid.spread import kept, spread_of
+from ident.cached import cached_property
 from ident.fit.result import FitResult
 from ident.hybrid.acting import FEEDFORWARD, linear
 from ident.hybrid.controller import Controller, name_of
@@ -91,7 +92,7 @@ class Simulation:
     case: CoupledCase
     given: Sequence[Given]
 
-    @property
+    @cached_property
     def controllers(self) -> list[Controller]:
         """A controller for each part; a feedforward follows the reference of the case as it is. Raises Unusable."""
         ground = self.case.ground.samples(self.case.sample_rate)

@@ -1,4 +1,4 @@
-"""Where a machine that begins in motion is guessed to begin, beside what its linear model says."""
+"""Where a machine that begins in motion is guessed to begin, in addition to what its linear model says."""
 
 from __future__ import annotations
 

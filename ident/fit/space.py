@@ -178,7 +178,7 @@ def search_space(preset: Preset, matrix: Matrix, settings: Settings, band: float
 
 
 def _held(preset: Preset, typical: Mapping[str, float]) -> dict[str, float]:
-    """What of effects is held where nobody says otherwise: shapes, and the strength of what is there wholly."""
+    """What is held of effects where no bound or value is given: shapes, and the strength of what is there wholly."""
     whole = {effect.added[0].in_equations: effect.strength.upper for effect in preset.effects if effect.whole}
     return whole | {
         p.in_equations: p.relative * typical["L"] if p.relative and preset.search.relative_ways else p.value

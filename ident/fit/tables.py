@@ -6,11 +6,9 @@ from collections.abc import Iterator, Mapping
 
 from ident.fit.result import Estimate, FitResult
 from ident.preprocessing.told import told
-from ident.words.engineering import multiple
 from ident.words.error import error_said
-from ident.words.number import fixed
 from ident.words.percent import percent
-from ident.words.plus_minus import UNDETERMINED, decimals, determined, plus_minus
+from ident.words.plus_minus import in_cells, plus_minus
 from ident.words.shown import Listing, listings
 from ident.words.uses import DATA
 
@@ -47,11 +45,7 @@ def parameter_rows(parameters: Mapping[str, Estimate]) -> Iterator[tuple[str, ..
     """One row a parameter, in a readable multiple of its unit."""
     for name, estimate in parameters.items():
         remark = "fixed" if estimate.fixed else "at its bound" if estimate.at_bound else ""
-        size, unit = multiple(estimate.value, estimate.unit)
-        value, error = estimate.value / size, None if estimate.std_error is None else estimate.std_error / size
-        places = decimals(value, error)
-        known = determined(estimate.value, estimate.std_error)
-        yield name, fixed(value, places) if known else UNDETERMINED, fixed(error, places), unit, remark
+        yield name, *in_cells(estimate.value, estimate.std_error, estimate.unit), remark
 
 
 def error_rows(result: FitResult) -> Iterator[tuple[str, ...]]:

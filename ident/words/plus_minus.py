@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from ident.words.display import displayed
-from ident.words.engineering import power_of, quantity, scaled_unit, with_unit
+from ident.words.engineering import multiple, power_of, quantity, scaled_unit, with_unit
 from ident.words.number import fixed, places
 
 _MOST = 8  # decimals
@@ -42,6 +42,14 @@ def plus_minus(value: float, std_error: float | None, unit: str) -> str:
     text = f"{fixed(scaled, digits)} ± {fixed(error, digits)}"
     bracketed = scaled_unit(unit, power).startswith("10")
     return with_unit(f"({text})" if bracketed else text, unit, power)
+
+
+def in_cells(value: float, std_error: float | None, unit: str) -> tuple[str, str, str]:
+    """A value, its standard error and their unit as cells of a table: ("80.27", "0.18", "µm")."""
+    size, unit = multiple(value, unit)
+    scaled, error = value / size, None if std_error is None else std_error / size
+    digits = decimals(scaled, error)
+    return fixed(scaled, digits) if determined(value, std_error) else UNDETERMINED, fixed(error, digits), unit
 
 
 def plus_minus_si(value: float, std_error: float | None, unit: str, digits: int = 5) -> str:
