@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from weakref import WeakKeyDictionary
+
 from ident.chain.channels import means
 from ident.matrix import Actuator
 from ident.run import Run, Specimen
@@ -21,6 +23,9 @@ CONDITIONS = {
 NEVER = 1e12
 """Pa: a supply pressure that limits nothing."""
 
+_known: WeakKeyDictionary[Run, tuple[Actuator, dict[str, float]]] = WeakKeyDictionary()
+"""Of each run those that were asked for last: a fit asks for the same ones before each simulation."""
+
 
 def conditions(run: Run, actuator: Actuator) -> dict[str, float]:
     """The values of :data:`CONDITIONS` for a run, and the means of its channels.
@@ -28,6 +33,13 @@ def conditions(run: Run, actuator: Actuator) -> dict[str, float]:
     Without a stated area A = 1 m²: every parameter that is divided by A² in the model is then that ratio. Without a
     stated rated current 1, without a supply pressure, measured or stated, one that never limits.
     """
+    known = _known.get(run)
+    if known is None or known[0] is not actuator:
+        known = _known[run] = actuator, _conditions(run, actuator)
+    return dict(known[1])
+
+
+def _conditions(run: Run, actuator: Actuator) -> dict[str, float]:
     specimen = run.specimen or Specimen()
     area = 1.0 if actuator.piston_area is None else actuator.piston_area
     supply = _mean(run, "supply_pressure", "Pa") or actuator.supply_pressure or NEVER

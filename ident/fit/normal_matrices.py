@@ -132,7 +132,9 @@ class NormalMatrices:
         free = slice(p, len(total) - 2)
         level = np.zeros(len(total))
         level[-2] = 1.0
-        level[free] = -shares_of(total[None, free, free], total[None, free, -2, None], np.array([self.total]))[0, :, 0]
+        if len(self.release):
+            shares = shares_of(total[None, free, free], total[None, free, -2, None], np.array([self.total]))
+            level[free] = -shares[0, :, 0]
         return level
 
     @cached_property

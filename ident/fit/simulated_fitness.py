@@ -124,11 +124,12 @@ class SimulatedFitness(SimulatedRuns):
     def _moments(self, values: Mapping[str, Array], strides: Array) -> tuple[int, Mapping[str, NormalMatrices]]:
         """The steps a sample, and the matrices of every run by its id from the first states that are known.
 
-        Without sensitivities the first states are settled.
+        The steps are those of the first vector: the others are a hair's breadth away. Without sensitivities the first
+        states are settled.
         """
 
         def simulated() -> tuple[int, dict[str, NormalMatrices]]:
-            steps = int(self.steps(values).max())
+            steps = int(self.steps({name: value[:1] for name, value in values.items()}).max())
             return steps, self.settled(values, strides, steps)
 
         if self.recent is None or not len(strides):

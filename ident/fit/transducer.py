@@ -85,10 +85,11 @@ def with_means(runs: Sequence[NormalMatrices]) -> tuple[NormalMatrices, ...]:
     found = list(runs)
     for numbers in _by_transducer(runs, [run.counted for run in runs]).values():
         own = [runs[i] for i in numbers]
-        b, prior = offset_of(own), _Prior.of(own)
-        weights = [_weight(run, b) for run in own]
-        centre = np.average([run.means for run in own], axis=0, weights=weights)
-        centre *= 1.0 - prior.share(weights, own, b)
+        prior = _Prior.of(own)
+        b = _best(own, prior)
+        weights = np.array([_weight(run, b) for run in own])
+        centre = (np.array([run.means for run in own]) * weights[:, None]).sum(axis=0) / weights.sum()
+        centre *= 1.0 - prior.share(weights.tolist(), own, b)
         centre[-1] = b
         for i in numbers:
             found[i] = prior.on(runs[i].about(runs[i].means - centre), centre)
@@ -97,13 +98,17 @@ def with_means(runs: Sequence[NormalMatrices]) -> tuple[NormalMatrices, ...]:
 
 def offset_of(runs: Sequence[NormalMatrices]) -> float:
     """The offset b of the transducer of these runs, at the minimum of F: the mean of r̄, reweighted until it holds."""
-    means, prior = np.array([run.means[-1] for run in runs]), _Prior.of(runs)
-    b = float(np.median(means))
+    return _best(runs, _Prior.of(runs))
+
+
+def _best(runs: Sequence[NormalMatrices], prior: _Prior) -> float:
+    means = np.array([run.means[-1] for run in runs])
+    b, least = float(np.median(means)), _SETTLED * float(np.abs(means).max())
     for _ in range(_ROUNDS if len(runs) > 1 or prior.std_error < np.inf else 0):
-        weights = [_weight(run, b) for run in runs]
-        told = prior.share(weights, runs, b)
-        last, b = b, (1.0 - told) * float(np.average(means, weights=weights)) + told * prior.value
-        if abs(b - last) <= _SETTLED * float(np.abs(means).max()):
+        weights = np.array([_weight(run, b) for run in runs])
+        told = prior.share(weights.tolist(), runs, b)
+        last, b = b, (1.0 - told) * float((means * weights).sum() / weights.sum()) + told * prior.value
+        if abs(b - last) <= least:
             break
     return b
 
