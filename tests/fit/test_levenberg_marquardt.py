@@ -84,3 +84,26 @@ def test_a_valley_that_bends_is_followed_to_its_end():
     point, here = levenberg_marquardt(banana, np.array([0.2, 0.75]))
     assert 4.0 * point - 2.0 == pytest.approx([1.0, 1.0], abs=1e-3)
     assert here.error == pytest.approx(LEAST, rel=1e-6)
+
+
+@dataclass
+class Kinked:
+    """Squares about zero, of an axis, and above them a step up beyond half of the way that the slope at 1 promises."""
+
+    tried: list[float]
+
+    def __call__(self, point: Array) -> Here:
+        """The objective at a point, which is kept."""
+        x = float(point[0])
+        self.tried.append(x)
+        return Here(LEAST + 0.5 * x**2 + (1.0 if x < 0.5 else 0.0), np.array([x]), np.eye(1))
+
+
+def test_a_step_next_to_one_that_failed_is_not_tried():
+    """A little damping hardly shortens it: what differs enough is tried, and helps."""
+    kinked = Kinked([])
+    _, here = levenberg_marquardt(kinked, np.array([1.0]), Way(most=6))
+    _, whole, shorter = kinked.tried
+    assert whole == pytest.approx(0.0, abs=1e-3)
+    assert 0.5 < shorter < 0.9
+    assert here.error == LEAST + 0.5 * shorter**2
