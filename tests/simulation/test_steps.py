@@ -71,3 +71,16 @@ def test_what_rings_faster_than_the_samples_decays_as_fast_as_it_does(damping):
     assert -np.log(kept) == pytest.approx(-mode.real, rel=0.11, abs=1e-3)
     lag = steps_needed(preset("qian2014").chain, np.array([-12.0]), "linear", (), 0.1)
     assert steps >= lag[0]
+
+
+def test_of_a_jump_a_mode_that_only_follows_has_no_more_left_at_the_next_sample():
+    """What steps of a Runge-Kutta scheme leave of it against the exponential; one that is half as fast again decays."""
+    fast = np.geomspace(0.5, 50.0, 400)
+    steps = steps_needed(preset("qian2014").chain, -fast, "linear", (), 0.1)
+
+    def left(z: np.ndarray) -> np.ndarray:
+        return np.abs(1 - z + z**2 / 2 - z**3 / 6 + z**4 / 24)
+
+    assert np.all(np.abs(left(fast / steps) ** steps - np.exp(-fast)) < 0.0075)
+    assert np.all(left(1.5 * fast / steps) < 0.9)
+    assert np.all(steps[(fast > 18) & (fast < 27)] == 16)
