@@ -28,7 +28,7 @@ from ident.fit.reduction import excited_band
 from ident.fit.settings import Settings
 from ident.fit.simulated_fitness import SimulatedFitness, shortened
 from ident.fit.simulated_runs import SimulatedRuns
-from ident.fit.space import search_space
+from ident.fit.space import Space, search_space
 from ident.fit.wider_bounds import ROUNDS, wider_at
 from ident.matrix import Matrix
 from ident.noise.floor import Floors, noise_floors
@@ -62,7 +62,8 @@ class CandidateModels:
 
     `given` are what the user holds fixed or bounds; `left_out` the ids of runs that are not fitted; `horizon` (s) the
     length of the windows over which a machine that integrates is fitted, None for whole runs, `memory` (s) as there. Of
-    the runs that are `contradicted` no noise floor is known: a fitted model leaves less than what was told.
+    the runs that are `contradicted` no noise floor is known: a fitted model leaves less than what was told. What the
+    data do not determine stays where it is `resting`, at these places of its axes, until a model asks for another.
     """
 
     preset: Preset
@@ -79,6 +80,7 @@ class CandidateModels:
     _recent: RecentMoments = field(default_factory=RecentMoments, repr=False)
     bars: dict[tuple[str, ...], float] = field(default_factory=dict)
     contradicted: frozenset[str] = frozenset()
+    resting: Mapping[str, float] = field(default_factory=dict)
 
     @classmethod
     def of(
@@ -354,6 +356,7 @@ class CandidateModels:
         """
         fitness = self.fitness(effects, CRITERIA.estimation.global_samples)
         points = scipy.stats.qmc.Sobol(len(fitness.space.axes), rng=0).random(CRITERIA.estimation.global_points)
+        points = self._at_rest(fitness.space, points)
         best = points[np.argsort(fitness.errors(points), kind="stable")[: CRITERIA.estimation.global_starts]]
         starts = [{name: float(v[0]) for name, v in fitness.space.values(point[None]).items()} for point in best]
         return [
@@ -388,9 +391,12 @@ class CandidateModels:
         usual = {p.in_equations: p.value for p in fitness.preset.parameters}
         values = {**usual, **start, **fitness.space.fixed}
         fitness = self.reaching(effects, fitness, [values])
-        point = fitness.space.point(values)
-        way = way or (CRITERIA.estimation.trial if samples else CRITERIA.estimation.full)
+        point = self._at_rest(fitness.space, fitness.space.point(values))
+        free = way or (CRITERIA.estimation.trial if samples else CRITERIA.estimation.full)
+        way = replace(free, within=self._within(fitness.space)) if self.resting else free
         found = self._optimum(effects, fitness, point, way, samples)
+        if way is not free and found.asks_for(free, CRITERIA.ranking.promising):
+            way, found = free, self._optimum(effects, fitness, found.point, free, samples)
         for _ in range(ROUNDS):
             ended = [
                 self.strength(name) for name in effects if name in self.effects and self._asks_farther(found, name)
@@ -403,6 +409,15 @@ class CandidateModels:
                 break
             found = farther
         return found
+
+    def _at_rest(self, space: Space, points: Array) -> Array:
+        """Points (…, p) of the unit cube with what is resting where it rests."""
+        places = [self.resting.get(name, np.nan) for name in space.names]
+        return np.where(np.isnan(places), points, places)
+
+    def _within(self, space: Space) -> tuple[Array, Array]:
+        """The bounds of every axis, which what is resting does not leave."""
+        return self._at_rest(space, np.zeros(len(space.axes))), self._at_rest(space, np.ones(len(space.axes)))
 
     def _optimum(
         self, effects: tuple[str, ...], fitness: SimulatedFitness, start: Array, way: Way, samples: int
@@ -466,7 +481,7 @@ class CandidateModels:
         fitness = self.fitness(effects, CRITERIA.estimation.trial_samples)
         values = [{**self.off, **start, **fitness.space.fixed} for start in starts]
         fitness = self.reaching(effects, fitness, values)
-        errors = fitness.errors(np.array([fitness.space.point(one) for one in values]))
+        errors = fitness.errors(self._at_rest(fitness.space, np.array([fitness.space.point(one) for one in values])))
         start, _ = stable_minimum(list(zip(starts, errors.tolist(), strict=True)), lambda one: one[1])
         return self.refit(
             effects, start, CRITERIA.estimation.trial_samples, replace(CRITERIA.estimation.trial, aim=aim)

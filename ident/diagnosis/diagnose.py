@@ -127,7 +127,7 @@ class Diagnoser:
         preset = models.model(self.fit.effects)
         start = {preset.parameter(name).in_equations: value for name, value in self.fit.values.items()}
         base = models.best_optimum(models.converged(models.refit(tuple(self.fit.effects), start)))
-        base = rested(models, base)
+        models, base = rested(models, base)
         if not base.stable:
             raise Unusable("bad-fit", "the fitted model is unstable on a run", "fit", "fit the model to this matrix")
         if (models := models.doubting(base)).contradicted:

@@ -17,6 +17,7 @@ from ident.diagnosis.evidence.comparison import Residuals
 from ident.diagnosis.evidence.free_run import FreeRun, adds_up
 from ident.diagnosis.parameter_estimate import ParameterEstimate
 from ident.fit.fitness import Local
+from ident.fit.levenberg_marquardt import Way
 from ident.fit.normal_matrices import NormalMatrices
 from ident.fit.result import Combination, TransducerOffset
 from ident.fit.simulated_fitness import SimulatedFitness
@@ -128,6 +129,10 @@ class FittedModel:
     def stable(self) -> bool:
         """Whether the model is stable on every run."""
         return bool(np.isfinite(self.local.error))
+
+    def asks_for(self, way: Way, share: float) -> bool:
+        """Whether a further step, as free as a way lets it be, promises more than a share of the error."""
+        return self.stable and way.promised(self.point, self.local, self.space.spans) > share * self.local.error
 
     @property
     def finite(self) -> bool:

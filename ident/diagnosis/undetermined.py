@@ -2,7 +2,8 @@
 
 A mode that is over within a small part of a sample shows in no record. A search leaves it anywhere, often at a bound:
 there every simulation takes as many steps as there are, and the error is so flat that no later search, with an effect
-that changes what the data determine, leaves it again.
+that changes what the data determine, leaves it again. So it stays where it rests, also with effects: a step along what
+is flat would lead it astray again. Only a model with which another place promises a smaller error is free to move it.
 """
 
 from __future__ import annotations
@@ -17,17 +18,22 @@ from ident.diagnosis.fitted_model import FittedModel
 from ident.fit.uncertainty import DETERMINED
 
 
-def rested(models: CandidateModels, refit: FittedModel) -> FittedModel:
+def rested(models: CandidateModels, refit: FittedModel) -> tuple[CandidateModels, FittedModel]:
     """The refit with what the data do not determine where fewer steps follow it, as far as the error stays.
 
-    The other parameters are fitted again with it held there. What a user bounds or holds stays where it is.
+    The other parameters are fitted again with it held there, and the models hold it there, too. What a user bounds
+    or holds stays where it is.
     """
     if not refit.stable:
-        return refit
+        return models, refit
+    moved = []
     for number, axis in enumerate(refit.space.axes):
         if axis.logarithmic and axis.scale is not None and not _determined(refit, axis.name):
-            refit = _slowed(models, refit, number)
-    return refit
+            slowed = _slowed(models, refit, number)
+            moved += [number] if slowed is not refit else []
+            refit = slowed
+    places = {refit.space.names[number]: float(refit.point[number]) for number in moved}
+    return (replace(models, resting=places) if places else models), refit
 
 
 def _slowed(models: CandidateModels, refit: FittedModel, number: int) -> FittedModel:

@@ -69,6 +69,10 @@ class Way:
         """Whether what is missing is many times what the next step promises, and what the last ones `gained`."""
         return error - self.aim > _HOPE * max((promised, *gained))
 
+    def promised(self, point: Array, here: Shape, spans: Array | None = None) -> float:
+        """By how much the first step from a point lowers the error, were the model straight."""
+        return promise(here, _trial(point, here, _DAMPING, self, _spans(point, spans))[0])
+
     def leads_nowhere(self, point: Array, here: Shape, spans: Array | None = None) -> bool:
         """Whether from a point that steps have led to the next one promises nothing near what is missing.
 
