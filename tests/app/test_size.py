@@ -104,22 +104,31 @@ def every(session: Session, wanted: Wanted, limit: int) -> list[int]:
     return seen
 
 
-@pytest.mark.parametrize("case", CASES)
-def test_pages_have_every_set_once_and_the_newest_first(many: sessionmaker[Session], case: str) -> None:
-    """Whichever way it is found: as many as a plain look at every set finds, in the one order."""
-    wanted, _ = CASES[case]
+@pytest.fixture(scope="module")
+def every_value(many: sessionmaker[Session]) -> list[tuple[Any, ...]]:
+    """A plain look at every set: number, serial, batch, a parameter's name and value, approvals in force."""
     with many() as session:
-        seen = every(session, wanted, 499)
         rows = session.connection().exec_driver_sql(
             "SELECT s.number, s.serial, s.batch, v.name, v.value, (SELECT count(*) FROM approvals a WHERE "
             "a.number = s.number AND a.until IS NULL) FROM parameter_sets s JOIN set_values v ON v.number = s.number"
         )
-        right: dict[int, bool] = {}
-        for number, serial, batch, name, value, current in rows:
-            lower, upper = wanted.ranges.get(name, (value, value))
-            others = ((wanted.serial, serial), (wanted.batch, batch), (wanted.current, current > 0))
-            meets = lower <= value <= upper and all(asked in (None, there) for asked, there in others)
-            right[number] = right.get(number, True) and meets
+        return [tuple(row) for row in rows]
+
+
+@pytest.mark.parametrize("case", CASES)
+def test_pages_have_every_set_once_and_the_newest_first(
+    many: sessionmaker[Session], every_value: list[tuple[Any, ...]], case: str
+) -> None:
+    """Whichever way it is found: as many as a plain look at every set finds, in the one order."""
+    wanted, _ = CASES[case]
+    with many() as session:
+        seen = every(session, wanted, 499)
+    right: dict[int, bool] = {}
+    for number, serial, batch, name, value, current in every_value:
+        lower, upper = wanted.ranges.get(name, (value, value))
+        others = ((wanted.serial, serial), (wanted.batch, batch), (wanted.current, current > 0))
+        meets = lower <= value <= upper and all(asked in (None, there) for asked, there in others)
+        right[number] = right.get(number, True) and meets
     assert seen == sorted((number for number, meets in right.items() if meets), reverse=True)
 
 
