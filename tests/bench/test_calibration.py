@@ -1,8 +1,8 @@
 """Standard errors of the bench are as large as what is wrong: pass and fail at two standard errors rest on them.
 
 Actuators and records are the independent reference's. In the short form four actuators from 700 on, each with other
-converters, two with each gauge, on fewer records; with ``--full`` the 100 actuators from 800 on, on full sets, each with one of
-the eight in turn: an RMS of z over 100 sets is known to 7 %.
+converters, two with each gauge, on fewer records; with ``--full`` the 100 actuators from 800 on, on full sets, each
+with one of the eight instruments in turn: an RMS of z over 100 sets is known to 7 %.
 """
 
 from __future__ import annotations
