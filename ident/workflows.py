@@ -40,6 +40,7 @@ from ident.fit.result import FitResult
 from ident.fit.settings import Settings
 from ident.hybrid.kalman_identification import KalmanIdentification
 from ident.matrix import Matrix
+from ident.parallel import one_thread
 from ident.planning import plan as planning
 from ident.planning.plan import LEAST, Plan
 from ident.preprocessing import screen
@@ -112,6 +113,7 @@ def identification(matrix: Matrix, settings: Settings, report: Report = silent) 
     return served.by_method.get(settings.method, served.fitter)(matrix, settings, report)
 
 
+@one_thread()
 @stated_kinds
 def identify(
     matrix: Matrix, settings: Settings | None = None, report: Report = silent,
@@ -134,6 +136,7 @@ def identify(
     return replace(completed(identification(matrix, chosen, report)), matrix=matrix)
 
 
+@one_thread()
 @stated_kinds
 def compare(matrix: Matrix, fit: FitResult) -> Comparison:
     """Every run of the matrix against the fitted model. Raises Unusable where the fit is of another model's data."""
@@ -178,6 +181,7 @@ def figure(
     return figures.shown(figures.figure(name, study(matrix, fit), theme, share, **options))
 
 
+@one_thread()
 @stated_kinds
 def diagnose(
     matrix: Matrix, fit: FitResult | None = None, settings: Settings | None = None,
@@ -229,6 +233,7 @@ def propose(
     return diagnose(matrix, fit, settings, most=0, report=report, seconds=seconds, propose=True)
 
 
+@one_thread()
 @stated_kinds
 def next_run(found: Diagnosis, matrix: Matrix | None = None, seed: int = 0) -> Experiment:
     """The run that best tells apart what a diagnosis leaves in question; ``.command()`` is its signal.

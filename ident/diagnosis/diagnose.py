@@ -112,6 +112,7 @@ class Diagnoser:
 
     def _selected(self, models: CandidateModels) -> Selection:
         """The selection over these models, or over longer windows where with an effect these are more likely."""
+        self.budget.report_progress(Progress("preparing", 0, 1))
         moves = self._moves(models)
         longer = None
         with suppress(TimeIsUp):  # the search ends as it is told so again, with the first of what was found

@@ -21,6 +21,7 @@ from ident.parallel import each
 from ident.progress import Expected, Progress, Report
 
 Item = TypeVar("Item")
+_AGAIN = "starting again"  # from other strengths: the stage of a report
 
 Base = tuple[FittedModel, Sequence[str]]
 """A model, and the effects that could be added to it."""
@@ -60,43 +61,49 @@ def rank_each(
     models_of = [base for base, _ in bases]
     near = (_near(models, *of) for of in zip(models_of, predicted, strict=True))
     on_trial = [of[: CRITERIA.ranking.contenders] for of in predicted] if thorough else list(near)
-    finalists_at_least, done = CRITERIA.ranking.finalists if thorough else 2, 0
+    finalists_at_least = CRITERIA.ranking.finalists if thorough else 2
     targets = {base.effects: _target(models, base, incumbent) for base in models_of}
     below_incumbent = CRITERIA.ranking.found_again * models.trial_error(incumbent) if incumbent is not None else np.inf
 
     def trial(base: FittedModel, prediction: Prediction) -> Candidate:
-        nonlocal done
         aim = below_incumbent if _is_incumbent(base, prediction, incumbent) else targets[base.effects]
-        candidate = _tried(models, base, prediction, aim, strong)
-        done += 1
-        report(Progress("trying", done, sum(map(len, on_trial)) + finalists_at_least * len(bases)))
-        return candidate
+        return _tried(models, base, prediction, aim, strong)
 
-    trials = _in_turn(models, models_of, predicted, on_trial, trial)
+    trials = _in_turn(models, models_of, predicted, on_trial, _counted("trying", on_trial, trial, report))
     tried = [
         in_rank_order(models, _that_count(base, ones, incumbent, below_incumbent))
         for base, ones in zip(models_of, trials, strict=True)
     ]
     listener(_so_far(predicted[0], tried[0]))
     finalists = [_finalists(models, *of, finalists_at_least) for of in zip(models_of, tried, strict=True)]
-
-    def final(base: FittedModel, candidate: Candidate) -> Candidate:
-        nonlocal done
-        confirmed = _confirmed(models, base, candidate)
-        done += 1
-        report(Progress("confirming", done, sum(map(len, on_trial)) + sum(map(len, finalists))))
-        return confirmed
-
-    found = [in_rank_order(models, ones) for ones in _side_by_side(final, models_of, finalists)]
+    confirm = _counted("confirming", finalists, partial(_confirmed, models), report)
+    found = [in_rank_order(models, ones) for ones in _side_by_side(confirm, models_of, finalists)]
     listener(_so_far(predicted[0], tried[0], found[0]))
-    report(Progress("confirming", done, done + 1))
-    deeper = CRITERIA.ranking.multistart_finalists if thorough else 1
+    deeper = [ones[: CRITERIA.ranking.multistart_finalists if thorough else 1] for ones in found]
     multistart = partial(_multistart, models, targets if incumbent else {})
-    restarted = _side_by_side(multistart, models_of, [ones[:deeper] for ones in found])
+    restarted = _side_by_side(_counted(_AGAIN, deeper, multistart, report), models_of, deeper)
     return [
         _joined(models, base, of, stages, incumbent)
         for base, of, *stages in zip(models_of, predicted, tried, found, restarted, strict=True)
     ]
+
+
+def _counted(
+    stage: str, items: Sequence[Sequence[Item]], function: Callable[[FittedModel, Item], Candidate], report: Report
+) -> Callable[[FittedModel, Item], Candidate]:  # fmt: skip
+    """The function, which reports each item that it is through with, of those there are by then."""
+    done = 0
+
+    def counted(base: FittedModel, item: Item) -> Candidate:
+        nonlocal done
+        made = function(base, item)
+        done += 1
+        report(Progress(stage, done, sum(map(len, items))))
+        return made
+
+    if any(items):
+        report(Progress(stage, 0, sum(map(len, items))))
+    return counted
 
 
 def _that_count(
@@ -139,12 +146,15 @@ def _joined(
     return in_rank_order(models, [came.get(one.effect, Candidate(one)) for one in predicted])
 
 
-def deepened(models: CandidateModels, base: FittedModel, ranking: Sequence[Candidate]) -> list[Candidate]:
+def deepened(
+    models: CandidateModels, base: FittedModel, ranking: Sequence[Candidate], report: Report
+) -> list[Candidate]:  # fmt: skip
     """The ranking of a small matrix, once all its finalists are looked for elsewhere; as it is of a large one."""
     if not models.is_quick(base):
         return list(ranking)
     finalists, rest = ranking[: CRITERIA.ranking.finalists], ranking[CRITERIA.ranking.finalists :]
-    restarted = each(partial(_multistart, models, {}, base), finalists[CRITERIA.ranking.multistart_finalists :])
+    further = [finalists[CRITERIA.ranking.multistart_finalists :]]
+    (restarted,) = _side_by_side(_counted(_AGAIN, further, partial(_multistart, models, {}), report), [base], further)
     return in_rank_order(models, [*finalists[: CRITERIA.ranking.multistart_finalists], *restarted, *rest])
 
 

@@ -36,7 +36,9 @@ def rings(command: Array, output: Array) -> bool:
 def _has_pair(u: Array, y: Array) -> bool:
     u, y, n = u - u.mean(), y - y.mean(), len(y)
     past = [y[ORDER - i : n - i] for i in range(1, ORDER + 1)] + [u[ORDER - i : n - i] for i in range(ORDER + 1)]
-    found, *_ = np.linalg.lstsq(np.stack(past, axis=1), y[ORDER:], rcond=None)
+    samples = np.stack((*past, y[ORDER:]), axis=1)
+    triangle = np.asarray(np.linalg.qr(samples, mode="r"))  # of ten rows, as well conditioned as all samples
+    found, *_ = np.linalg.lstsq(triangle[:, :-1], triangle[:, -1], rcond=None)
     poles = np.log(np.roots(np.append(1.0, -found[:ORDER])).astype(np.complex128) + 1e-12)
     size = np.abs(poles)
     within = (poles.imag > 0) & (size > SLOWEST) & (size < FASTEST)

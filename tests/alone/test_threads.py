@@ -1,4 +1,4 @@
-"""The service and a worker hold linear algebra to one thread for their life, also between jobs and drawings."""
+"""The service, a worker and a fit hold linear algebra to one thread for their life, also between jobs and drawings."""
 
 from __future__ import annotations
 
@@ -9,9 +9,11 @@ from types import SimpleNamespace
 import pytest
 from fastapi.testclient import TestClient
 
+import ident
 from app import main
 from app.cli.worker import worker
 from app.settings import Settings
+from ident.progress import Progress
 from tests.alone.test_parallel import OWN, notebook, threads
 
 __all__ = ["notebook"]
@@ -47,4 +49,21 @@ def test_a_worker_from_its_start_to_its_end(monkeypatch: pytest.MonkeyPatch) -> 
     monkeypatch.setattr(sys.modules[worker.__module__], "time", SimpleNamespace(sleep=interrupted))
     worker("one", "postgresql://nobody@127.0.0.1:9/none")
     assert seen == [{1}, {1}, {1}]
+    assert threads() == {OWN}
+
+
+class Looked(Exception):
+    """Enough was seen."""
+
+
+@pytest.mark.usefixtures("notebook")
+def test_a_fit_in_a_notebook_from_its_start_to_its_end() -> None:
+    matrix = ident.simulate(seconds=0.25, small=True, seed=8)
+
+    def look(_: Progress) -> None:
+        assert threads() == {1}
+        raise Looked
+
+    with pytest.raises(Looked):
+        ident.identify(matrix, report=look)
     assert threads() == {OWN}

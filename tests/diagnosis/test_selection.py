@@ -128,7 +128,7 @@ class Judged:
         """Each for itself."""
         return [self.rank(models, base, names, report, thorough, strong=False) for base, names in bases]
 
-    def deepened(self, _models, _base, ranking):
+    def deepened(self, _models, _base, ranking, _report):
         """Nothing is found elsewhere."""
         return ranking
 

@@ -51,6 +51,7 @@ class Events:
     stage: str = "fit"
     stages: list[str] = field(default_factory=list)
     late: int = 0
+    counts: dict[str, tuple[int, int]] = field(default_factory=dict)
 
     def begun(self) -> None:
         self.late += self.now > LIMIT
@@ -60,6 +61,7 @@ class Events:
 
     def report(self, progress: Progress) -> None:
         self.stage = progress.stage
+        self.counts[self.stage] = progress.done, progress.total
 
     @property
     def budget(self) -> TimeBudget:
@@ -136,6 +138,10 @@ def test_after_the_limit_no_simulation_begins_in_any_stage(counted, full):
     assert whole.not_looked_at == ()
     assert events.late == 0
     stages = {*events.stages}
+    for counted_stage in ("trying", "confirming", "starting again"):  # what is left of a stage is judged by its count
+        done, total = events.counts[counted_stage]
+        assert done == total > 0
+    assert "preparing" in events.counts
     assert {"prepare", "polish", "predicting", "trying", "confirming", "labels", "error budget", "next run"} <= stages
     cuts = ends(events.stages, 12 if full else 1)
     if not full:  # the way to the terms is the same
