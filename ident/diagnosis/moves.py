@@ -276,7 +276,7 @@ class Moves:
         if ranking and [*added] == [ranking[0].effect]:
             first, *others = ranking
             again = [first.refitted(self.models, selection.base, selection.fitted), *others]
-            ranking = tuple(deepened(self.models, selection.base, again, self.report))
+            ranking = tuple(self._recorded(deepened(self.models, selection.base, again, self.report)))
             return self.keep(replace(selection, ranking=ranking)), [ranking]
         bases = each(partial(self._less, selection), added)
         sound = [(base, self._addable(base)) for base in bases if base.finite]

@@ -15,6 +15,7 @@ from ident.diagnosis.evidence.chance import bar
 from ident.diagnosis.evidence.comparison import (
     Evidence,
     Residuals,
+    both_probable,
     common_disturbance,
     compare,
     dominated,
@@ -309,6 +310,22 @@ def test_two_models_whose_outputs_the_noise_hides_are_indistinguishable() -> Non
     apart *= NOISE / np.linalg.norm(apart)
     for size, expected in ((4.0, True), (10.0, False)):
         assert indistinguishable(compared([noise], [noise + size * apart], [WHITE])) is expected
+
+
+def test_two_models_of_which_one_is_improbable_are_told_apart_however_large_the_error_of_their_difference() -> None:
+    """One of four runs alone sets them apart, each output near the other beside what both leave; seed 13."""
+    rng = np.random.default_rng(13)
+    noise = [white(rng, 1500) for _ in range(4)]
+    rest = [40 * NOISE * np.sin(0.01 * np.arange(1500)) for _ in noise]  # of one line: what is apart lies elsewhere
+    records = [replace(WHITE, condition="")] * 4
+    for size, expected in ((1.0, True), (12.0, False)):
+        moved = [noise[0] + size * slow(rng, 1500) * NOISE, *noise[1:]]
+        before, after = ([left + one for left, one in zip(rest, side, strict=True)] for side in (noise, moved))
+        evidence = compared(before, after, records)
+        assert evidence.apart <= EVIDENCE_CRITERIA.separation * evidence.explainable
+        assert not evidence.difference.below(0.0, EVIDENCE_CRITERIA)
+        assert both_probable(evidence) is expected
+        assert indistinguishable(evidence) is expected
 
 
 def test_two_models_that_leave_as_much_but_look_different_are_told_apart() -> None:

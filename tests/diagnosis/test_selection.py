@@ -238,6 +238,23 @@ def test_an_effect_that_was_met_on_the_way_is_ranked_by_what_was_met(searched):
     assert found.ranking[0].refit is found.fitted
 
 
+def test_what_is_found_elsewhere_counts_in_the_probabilities(monkeypatch):
+    """b, begun again from other strengths, comes as near as a: a group of the two is as probable as both."""
+    judged = Judged(
+        {"": 1.0, "a": 0.1, "b": 0.7, "c": 0.8, "ab": 0.1, "ac": 0.1}, needed={"a"}, far="", late="", off=""
+    )
+    judged.stand_in(monkeypatch)
+
+    def deepened(_models, _base, ranking, _report):
+        judged.scores["b"] = 0.1
+        judged.met.clear()
+        return [replace(one, refit=judged.refit((one.effect,), {})) for one in ranking]
+
+    monkeypatch.setattr(moves, "deepened", deepened)
+    found = selected(judged)
+    assert found.refitted_sets.best[frozenset("b")].held_out.score == 0.1
+
+
 def test_what_a_replacement_makes_needless_is_taken_out(added):
     """c, which showed only beside b, takes the place of a; with it b gains nothing."""
     scores = {"": 1.0, "a": 0.7, "b": 0.8, "c": 0.05, "ab": 0.2, "bc": 0.05}

@@ -29,6 +29,7 @@ a hundredth of the explainable power.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Hashable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import partial
@@ -267,11 +268,22 @@ def indistinguishable(evidence: Evidence, criteria: EvidenceCriteria = EVIDENCE_
     Near is what the noise does not separate, or a twentieth of what the better one leaves above the noise; the means of
     the runs are to be as near as nobody cares about.
     """
+    if not both_probable(evidence, criteria):
+        return False
     excess = max(min(evidence.before, evidence.after) - evidence.noise, 0.0)
     near = evidence.apart <= max(criteria.separation * excess, evidence.resolved)
     difference = evidence.difference
     as_good = not (difference.above(0.0, criteria) or difference.below(0.0, criteria))
     return near and evidence.levels_apart <= criteria.level and (as_good or evidence.apart <= evidence.resolved)
+
+
+def both_probable(evidence: Evidence, criteria: EvidenceCriteria = EVIDENCE_CRITERIA) -> bool:
+    """Whether of two models, one of which is right, each is more probable than chance.
+
+    That their difference lies within its error does not say so: one block alone may set two models apart, and it makes
+    both the difference and its error.
+    """
+    return abs(evidence.gain) * criteria.learning_rate <= math.log(1.0 / criteria.chance - 1.0)
 
 
 def dominated(evidence: Evidence, criteria: EvidenceCriteria = EVIDENCE_CRITERIA) -> bool:
