@@ -87,13 +87,14 @@ def not_dominated(tied: Sequence[Candidate]) -> list[Candidate]:
 
 
 def indistinguishable_group(name: str, here: FittedModel, ranking: Sequence[Candidate]) -> list[Candidate]:
-    """The effect itself, and the candidates of which the data leave open whether they are right instead of the best.
+    """The effect itself, and the candidates of which the data leave open whether they are right instead.
 
-    But for those that others of them dominate. What nothing replaced is in its group, come what may.
+    Instead of it or of the best, but for those that others of them dominate. What nothing replaced is in its group,
+    come what may.
     """
     refits = [c for c in ranking if c.refit is not None]
     best = min([here, *(c.refit for c in refits if c.refit)], key=lambda refit: refit.held_out.score)
-    as_good = [c for c in refits if c.refit and indistinguishable(best, c.refit)]
+    as_good = [c for c in refits if c.refit and any(indistinguishable(one, c.refit) for one in (best, here))]
     return [*(c for c in refits if c.effect == name), *(c for c in not_dominated(as_good) if c.effect != name)]
 
 

@@ -255,6 +255,17 @@ def test_what_is_found_elsewhere_counts_in_the_probabilities(monkeypatch):
     assert found.refitted_sets.best[frozenset("b")].held_out.score == 0.1
 
 
+def test_a_group_holds_what_cannot_be_told_from_the_best_or_from_the_named_effect(monkeypatch):
+    """c is the best by chance and can be told from b, as a, which is named, cannot: the data leave all three open."""
+    judged = Judged({"": 1.0, "a": 0.09, "b": 0.092, "c": 0.088}, needed=set(), far="", late="", off="")
+    judged.stand_in(monkeypatch)
+    apart = {"b", "c"}
+    monkeypatch.setattr(candidate, "indistinguishable", lambda one, other: {*one.effects, *other.effects} != apart)
+    a, b, c = (Judgement(name, judged.refit((name,), {}), improves=True) for name in "abc")
+    group = candidate.indistinguishable_group("a", a.refit, [a, b, c])
+    assert [one.effect for one in group] == ["a", "b", "c"]
+
+
 def test_what_a_replacement_makes_needless_is_taken_out(added):
     """c, which showed only beside b, takes the place of a; with it b gains nothing."""
     scores = {"": 1.0, "a": 0.7, "b": 0.8, "c": 0.05, "ab": 0.2, "bc": 0.05}
