@@ -328,6 +328,10 @@ class Selection:
     """[effects] That drive the free run away by themselves, each of which is tried with all others. Why: each costs a
     ranking, and more than the leading ones seldom act.
     Test: test_free_run.py::test_friction_and_a_constant_force_are_found_that_only_together_run_freely"""
+    runners_up: int = 2
+    """[sets] Of as many effects as were selected, from which the search continues where it ends above the noise floor.
+    Why: each costs a ranking, and of two lags that one stands for either leads to both.
+    Test: test_selection.py::test_two_of_which_neither_helps_beside_what_stands_for_both_are_found"""
     pair_finalists: int = 5
     """[finalists] Tried two at a time. Why: two lags look like a delay, one at a time.
     Test: test_selection.py::test_two_that_only_together_explain_the_data_are_found_where_a_third_came_first"""

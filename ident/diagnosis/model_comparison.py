@@ -60,6 +60,11 @@ def indistinguishable(first: FittedModel, second: FittedModel) -> bool:
     )
 
 
+def both_probable(first: FittedModel, second: FittedModel) -> bool:
+    """Whether each of two models, one of which is right, is more probable than chance."""
+    return _is_finite(first) and _is_finite(second) and comparison.both_probable(evidence(first, second))
+
+
 def verified_change(effect: str, less: FittedModel, more: FittedModel) -> VerifyChange | None:
     """What the runs to verify say of what an `effect` adds; None without any, or where the first model is unstable."""
     runs = less.fitness.matrix.of_use("verify")

@@ -340,6 +340,20 @@ class Moves:
         without = self._without_its_effect(changed, best.refit)
         return without or self._backward(self.step(changed, best.refit), best.effect)[0]
 
+    def runner_up(self, selection: Selection) -> Selection | None:
+        """Continue from another set of as many effects, where with a further one it improves on the selected set.
+
+        Two lags look like one that is longer: beside that one neither of them helps, beside either the other does.
+        """
+        if len(selection.added) == self.most:
+            return None
+        for other in self.refitted_sets.rivals(selection.fitted)[: CRITERIA.selection.runners_up]:
+            ranking = self._rank(other, thorough=False)
+            best = next((candidate.refit for candidate in ranking if candidate.improves), None)
+            if best is not None and improves(self.models, selection.fitted, best):
+                return self.step(replace(selection, changes=selection.changes + 1), best)
+        return None
+
     def pair_search(self, selection: Selection) -> Selection | None:
         """Continue from two finalists of the first ranking at once, where these are better beyond chance.
 

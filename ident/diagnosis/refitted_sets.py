@@ -17,6 +17,7 @@ from ident.diagnosis.evidence.comparison import common_disturbance, gain, most
 from ident.diagnosis.evidence.probability import NOTHING, SetGains
 from ident.diagnosis.fitted_model import FittedModel
 from ident.diagnosis.free_shapes import freed_widths
+from ident.diagnosis.model_comparison import both_probable
 
 
 @dataclass
@@ -34,6 +35,12 @@ class RefittedSets:
             known = model.finite and np.isfinite(model.held_out.score)
             if added and known and (best is None or model.held_out.score < best.held_out.score):
                 self.best[added] = model
+
+    def rivals(self, fitted: FittedModel) -> list[FittedModel]:
+        """The models of other sets of as many effects that are probable beside this one, the best first."""
+        others = [one for one in self.best.values() if len(one.effects) == len(fitted.effects)]
+        others = [one for one in others if {*one.effects} != {*fitted.effects} and both_probable(fitted, one)]
+        return sorted(others, key=lambda one: one.held_out.score)
 
     def gains(self) -> SetGains:
         """What speaks for each of them, in nats, less what its free widths are charged."""

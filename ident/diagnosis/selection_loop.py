@@ -3,8 +3,8 @@
 Forward: the best of the ranking is added while it improves the model beyond chance; backward: what the model can do
 without since is taken out. Then each effect that was added is compared with everything that could stand in its place:
 a better one is exchanged for it, those that are indistinguishable from it are its alternatives. Where all of this ends
-above the noise, strong effects are tried, far from where the search stands, and two at a time in the place of one; then
-it begins again with an effect whose widths are free.
+above the noise, further effects are tried beside the next best sets, strong ones, far from where the search stands, and
+two at a time in the place of one; then it begins again with an effect whose widths are free.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ def select(moves: Moves, selection: Selection) -> Selection:
     """
     with suppress(TimeIsUp):
         selection = add_and_exchange(moves, selection)
-        for look_farther in (moves.exchange_pass, moves.strong_starts, moves.pair_search):
+        for look_farther in (moves.exchange_pass, moves.runner_up, moves.strong_starts, moves.pair_search):
             if moves.above_floor(selection):
                 farther = look_farther(selection) or selection
                 selection = add_and_exchange(moves, farther) if farther.changes > selection.changes else farther

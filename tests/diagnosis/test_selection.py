@@ -9,7 +9,7 @@ from typing import Any
 
 import pytest
 
-from ident.diagnosis import candidate, moves
+from ident.diagnosis import candidate, moves, refitted_sets
 from ident.diagnosis.moves import Moves
 from ident.diagnosis.selection import Selection
 from ident.diagnosis.selection_loop import add_and_exchange, select
@@ -145,6 +145,10 @@ class Judged:
         less, more = less.held_out, more.held_out
         return bool((more.effects - less.effects) & self.needed) or more.score < 0.3 * less.score
 
+    def both_probable(self, first, second):
+        """Whether neither leaves a tenth more."""
+        return 0.9 < first.held_out.score / second.held_out.score < 1.1
+
     def better(self, one, other):
         """Whether of two with as many effects the other leaves less."""
         return other.held_out.score < one.held_out.score
@@ -169,7 +173,7 @@ class Judged:
         """For what a search asks of real refits."""
         asked = ("rank", "rank_each", "deepened", "improves", "better", "with_free_widths", "with_shapes_of", "springs")
         equal = ("indistinguishable", "dominated")
-        for module, names in ((moves, asked), (candidate, equal)):
+        for module, names in ((moves, asked), (candidate, equal), (refitted_sets, ("both_probable",))):
             for name in names:
                 monkeypatch.setattr(module, name, getattr(self, name))
 
@@ -214,6 +218,13 @@ def test_two_that_only_together_explain_the_data_are_found_where_a_third_came_fi
     """a alone does best, as a delay does for two lags, and leads nowhere; b and c together leave nothing."""
     scores = {"": 1.0, "a": 0.5, "b": 0.7, "c": 0.7, "ab": 0.6, "ac": 0.6, "bc": 0.05}
     assert added(scores, needed={"a", "b", "c"}) == {"b", "c"}
+
+
+def test_two_of_which_neither_helps_beside_what_stands_for_both_are_found(added):
+    """a does best, as one lag does for two, and b a little worse; c, which shows beside b alone, leaves nothing."""
+    scores = {"": 1.0, "a": 0.5, "b": 0.52, "c": 0.9, "ab": 0.5, "ac": 0.5, "bc": 0.05}
+    assert added(scores, needed={"a", "b", "c"}, late="c") == {"b", "c"}
+    assert added({**scores, "b": 0.7}, needed={"a", "b", "c"}, late="c") == {"a"}  # b is improbable beside a
 
 
 def test_at_the_noise_an_effect_stands_in_the_place_of_another_that_is_a_little_worse(added):
