@@ -94,7 +94,7 @@ def indistinguishable_group(name: str, here: FittedModel, ranking: Sequence[Cand
     """
     refits = [c for c in ranking if c.refit is not None]
     best = min([here, *(c.refit for c in refits if c.refit)], key=lambda refit: refit.held_out.score)
-    as_good = [c for c in refits if c.refit and any(indistinguishable(one, c.refit) for one in (best, here))]
+    as_good = [c for c in refits if c.refit and any(indistinguishable(model, c.refit) for model in (best, here))]
     return [*(c for c in refits if c.effect == name), *(c for c in not_dominated(as_good) if c.effect != name)]
 
 

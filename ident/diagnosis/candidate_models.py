@@ -356,7 +356,7 @@ class CandidateModels:
         """
         fitness = self.fitness(effects, CRITERIA.estimation.global_samples)
         points = scipy.stats.qmc.Sobol(len(fitness.space.axes), rng=0).random(CRITERIA.estimation.global_points)
-        points = self._at_rest(fitness.space, points)
+        points = self._with_resting(fitness.space, points)
         best = points[np.argsort(fitness.errors(points), kind="stable")[: CRITERIA.estimation.global_starts]]
         starts = [{name: float(v[0]) for name, v in fitness.space.values(point[None]).items()} for point in best]
         return [
@@ -391,7 +391,7 @@ class CandidateModels:
         usual = {p.in_equations: p.value for p in fitness.preset.parameters}
         values = {**usual, **start, **fitness.space.fixed}
         fitness = self.reaching(effects, fitness, [values])
-        point = self._at_rest(fitness.space, fitness.space.point(values))
+        point = self._with_resting(fitness.space, fitness.space.point(values))
         free = way or (CRITERIA.estimation.trial if samples else CRITERIA.estimation.full)
         way = replace(free, within=self._within(fitness.space)) if self.resting else free
         found = self._optimum(effects, fitness, point, way, samples)
@@ -410,14 +410,14 @@ class CandidateModels:
             found = farther
         return found
 
-    def _at_rest(self, space: Space, points: Array) -> Array:
+    def _with_resting(self, space: Space, points: Array) -> Array:
         """Points (…, p) of the unit cube with what is resting where it rests."""
         places = [self.resting.get(name, np.nan) for name in space.names]
         return np.where(np.isnan(places), points, places)
 
     def _within(self, space: Space) -> tuple[Array, Array]:
         """The bounds of every axis, which what is resting does not leave."""
-        return self._at_rest(space, np.zeros(len(space.axes))), self._at_rest(space, np.ones(len(space.axes)))
+        return self._with_resting(space, np.zeros(len(space.axes))), self._with_resting(space, np.ones(len(space.axes)))
 
     def _optimum(
         self, effects: tuple[str, ...], fitness: SimulatedFitness, start: Array, way: Way, samples: int
@@ -481,7 +481,9 @@ class CandidateModels:
         fitness = self.fitness(effects, CRITERIA.estimation.trial_samples)
         values = [{**self.off, **start, **fitness.space.fixed} for start in starts]
         fitness = self.reaching(effects, fitness, values)
-        errors = fitness.errors(self._at_rest(fitness.space, np.array([fitness.space.point(one) for one in values])))
+        errors = fitness.errors(
+            self._with_resting(fitness.space, np.array([fitness.space.point(one) for one in values]))
+        )
         start, _ = stable_minimum(list(zip(starts, errors.tolist(), strict=True)), lambda one: one[1])
         return self.refit(
             effects, start, CRITERIA.estimation.trial_samples, replace(CRITERIA.estimation.trial, aim=aim)

@@ -347,7 +347,7 @@ class Moves:
         """
         if len(selection.added) == self.most:
             return None
-        for other in self.refitted_sets.rivals(selection.fitted)[: CRITERIA.selection.runners_up]:
+        for other in self.refitted_sets.probable_beside(selection.fitted)[: CRITERIA.selection.runners_up]:
             ranking = self._rank(other, thorough=False)
             best = next((candidate.refit for candidate in ranking if candidate.improves), None)
             if best is not None and improves(self.models, selection.fitted, best):

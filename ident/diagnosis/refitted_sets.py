@@ -36,11 +36,12 @@ class RefittedSets:
             if added and known and (best is None or model.held_out.score < best.held_out.score):
                 self.best[added] = model
 
-    def rivals(self, fitted: FittedModel) -> list[FittedModel]:
-        """The models of other sets of as many effects that are probable beside this one, the best first."""
-        others = [one for one in self.best.values() if len(one.effects) == len(fitted.effects)]
-        others = [one for one in others if {*one.effects} != {*fitted.effects} and both_probable(fitted, one)]
-        return sorted(others, key=lambda one: one.held_out.score)
+    def probable_beside(self, fitted: FittedModel) -> list[FittedModel]:
+        """The models of other sets of as many effects that are more probable than chance beside it, best first."""
+        as_many = [model for model in self.best.values() if len(model.effects) == len(fitted.effects)]
+        others = [model for model in as_many if {*model.effects} != {*fitted.effects}]
+        probable = [model for model in others if both_probable(fitted, model)]
+        return sorted(probable, key=lambda model: model.held_out.score)
 
     def gains(self) -> SetGains:
         """What speaks for each of them, in nats, less what its free widths are charged."""
