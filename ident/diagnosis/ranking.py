@@ -76,7 +76,15 @@ def rank_each(
     ]
     listener(_so_far(predicted[0], tried[0]))
     finalists = [_finalists(models, *of, finalists_at_least) for of in zip(models_of, tried, strict=True)]
-    confirm = _counted("confirming", finalists, partial(_confirmed, models), report)
+    best = {
+        base.effects: min((one.score for one in ones), default=np.inf)
+        for base, ones in zip(models_of, tried, strict=True)
+    }
+
+    def final(base: FittedModel, candidate: Candidate) -> Candidate:
+        return _confirmed(models, base, candidate, best[base.effects])
+
+    confirm = _counted("confirming", finalists, final, report)
     found = [in_rank_order(models, ones) for ones in _side_by_side(confirm, models_of, finalists)]
     listener(_so_far(predicted[0], tried[0], found[0]))
     deeper = [ones[: CRITERIA.ranking.multistart_finalists if thorough else 1] for ones in found]
@@ -170,10 +178,12 @@ def _tried(models: CandidateModels, base: FittedModel, prediction: Prediction, a
     return Candidate(prediction, refit if refit.finite else None)
 
 
-def _confirmed(models: CandidateModels, base: FittedModel, candidate: Candidate) -> Candidate:
-    """A candidate refitted to every sample."""
+def _confirmed(models: CandidateModels, base: FittedModel, candidate: Candidate, best: float) -> Candidate:
+    """A candidate refitted to every sample, as far as it is worth it beside the `best` score on trial."""
     assert candidate.trial is not None
-    refit = models.refit((*base.effects, candidate.effect), candidate.trial.values)
+    is_behind = candidate.score > CRITERIA.ranking.close_trial * best
+    way = CRITERIA.estimation.behind if is_behind else CRITERIA.estimation.full
+    refit = models.refit((*base.effects, candidate.effect), candidate.trial.values, way=way)
     return candidate.refitted(models, base, refit) if refit.finite else replace(candidate, trial=None)
 
 

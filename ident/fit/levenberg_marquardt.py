@@ -16,6 +16,11 @@ Array = NDArray[np.float64]
 STEPS = 200  # at most: along a curved valley it takes more than 60
 _LEAST, _DAMPING, _MOST = 1e-12, 1e-4, 1e6  # least, at first, most
 _HOPE = 4.0  # times what a step takes off: what a few more may
+_KEPT = 0.1
+"""Of what a step promised, by which it missed it, below which the next one keeps its promise, too. Why: the model is
+straight there, unless the step was short because it was damped.
+
+Test: tests/fit/test_levenberg_marquardt.py::test_where_steps_keep_their_promise_the_next_one_is_believed"""
 _NEAR = 0.1
 """Of the length of a step that failed, in units of the diagonal of H, by which another has to differ to be tried.
 
@@ -104,6 +109,7 @@ def levenberg_marquardt(
     point, here, damping, rise = start.copy(), evaluate(start), _DAMPING, 2.0
     gained: list[float] = []
     failed: Array | None = None
+    straight = False
     accept(here)
     for count in range(way.most):
         report(count, here.error)
@@ -112,13 +118,15 @@ def levenberg_marquardt(
         # A step cut at a bound may promise nothing where a shorter one does.
         if not promised > way.converged * here.error and not cut:
             break
-        if here.error <= way.enough or (len(gained) > 1 and way.is_lost(here.error, promised, *gained[-2:])):
+        told = () if straight and not cut else gained[-2:]  # what else than its promise a step may take off
+        if here.error <= way.enough or (len(told) != 1 and gained and way.is_lost(here.error, promised, *told)):
             break
         new = promised > 0 and not (failed is not None and _is_near(step, failed, here))
         there = better(trial, here.error) if new else None
         failed = step if new else failed
         if there is not None:
             gained.append(here.error - there.error)
+            straight = damping <= _DAMPING and abs(gained[-1] / promised - 1.0) < _KEPT
             damping, rise = max(damping * _fall(gained[-1] / promised), _LEAST), 2.0
             point, here, failed = trial, there, None
             accept(here)

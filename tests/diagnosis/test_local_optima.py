@@ -48,7 +48,7 @@ def test_a_model_that_is_known_is_found_anew_where_that_leads_to_a_better_optimu
     for name, made in {
         "_predictions": lambda *_: predictions, "_near": lambda *_: predictions, "_overlooked": lambda *_: [],
         "_tried": tried,
-        "_confirmed": lambda models, base, one: one.refitted(models, base, one.trial),
+        "_confirmed": lambda models, base, one, _best: one.refitted(models, base, one.trial),
         "_multistart": lambda _models, _asked, _base, one: one,
     }.items():  # fmt: skip
         monkeypatch.setattr(ranking, name, made)

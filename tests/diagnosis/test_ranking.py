@@ -9,10 +9,11 @@ import numpy as np
 import pytest
 
 from ident.diagnosis.candidate import Candidate, in_rank_order, indistinguishable_group
+from ident.diagnosis.criteria import CRITERIA
 from ident.diagnosis.evidence.chance import bar
 from ident.diagnosis.evidence.comparison import Residuals, common_disturbance
 from ident.diagnosis.evidence.energy_bands import EnergyBands, Record
-from ident.diagnosis.ranking import _finalists, rank_each
+from ident.diagnosis.ranking import _confirmed, _finalists, rank_each
 from ident.diagnosis.screening import _without_first_state
 
 MODELS: Any = SimpleNamespace(simplicity=lambda name: (1, name))
@@ -102,7 +103,7 @@ def test_where_the_boldest_promise_is_not_kept_more_is_tried(monkeypatch, kept, 
 
     for name, made in {
         "_predictions": lambda *_: predictions, "_tried": refitted, "_few": lambda *_: 12,
-        "_confirmed": lambda _models, _base, one: one, "_multistart": lambda _models, _asked, _base, one: one,
+        "_confirmed": lambda _models, _base, one, _best: one, "_multistart": lambda _models, _asked, _base, one: one,
     }.items():  # fmt: skip
         monkeypatch.setattr(f"ident.diagnosis.ranking.{name}", made)
     models: Any = SimpleNamespace(simplicity=lambda name: (1, name), trial_error=lambda _base: 1.0)
@@ -123,6 +124,19 @@ def test_what_leaves_as_much_as_the_last_finalist_is_one_in_a_small_matrix(quick
     assert len(_finalists(models, base, trials, finalists_at_least=5)) == refitted
     nothing_more: Any = SimpleNamespace(trial_error=lambda _base: 0.404, is_quick=lambda _base: quick)
     assert len(_finalists(nothing_more, base, trials, finalists_at_least=5)) == 5
+
+
+@pytest.mark.parametrize(("error", "way"), [(0.314, CRITERIA.estimation.full), (0.316, CRITERIA.estimation.behind)])
+def test_a_finalist_that_is_far_behind_is_not_refined_as_the_best_is(error, way):
+    """The best left 0.3 on trial, and what leaves a twentieth more is behind."""
+    asked: list[Any] = []
+    models: Any = SimpleNamespace(
+        refit=lambda _effects, _start, way: asked.append(way) or SimpleNamespace(finite=False)
+    )
+    trial: Any = SimpleNamespace(local=SimpleNamespace(error=error), values={})
+    base: Any = SimpleNamespace(effects=())
+    _confirmed(models, base, Candidate(SimpleNamespace(effect="friction"), trial), 0.3)  # type: ignore[arg-type]
+    assert asked == [way]
 
 
 def test_a_gain_by_chance_is_known_where_one_run_begins_in_motion_and_another_at_rest():

@@ -63,6 +63,28 @@ def test_from_its_end_nothing_leads_to_an_error_far_below_it():
     assert not Way().leads_nowhere(end, here)
 
 
+@dataclass
+class Straight:
+    """Squares of two residuals that are nearly straight in the point: a step leads 95 % of the way."""
+
+    evaluations: int = 0
+
+    def __call__(self, point: Array) -> Here:
+        """The objective at a point."""
+        self.evaluations += 1
+        away = np.array([3.0, 1.0]) * (point - END)
+        return Here(LEAST + 0.5 * float(away @ away), np.array([3.0, 1.0]) * away, 1.05 * np.diag([9.0, 1.0]))
+
+
+def test_where_steps_keep_their_promise_the_next_one_is_believed():
+    """After one step next to nothing is promised; where the valley bends a second one has to say so, too."""
+    straight, bent = Straight(), Flat()
+    levenberg_marquardt(straight, START, Way(aim=0.9 * LEAST))
+    levenberg_marquardt(bent, START, Way(aim=0.9 * LEAST))
+    assert straight.evaluations == 2
+    assert bent.evaluations == 3
+
+
 def test_what_has_come_far_enough_goes_no_further():
     plain, asked = Flat(), Flat()
     levenberg_marquardt(plain, START)
