@@ -23,11 +23,11 @@ def matrix(servoident, tmp_path_factory) -> Path:
 
 @pytest.fixture(scope="session")
 def few(matrix, tmp_path_factory) -> Path:
-    """Every fifth run of it: enough for what is done with a fit."""
+    """Every seventh run of it: enough for what is done with a fit."""
     folder = tmp_path_factory.mktemp("few") / "matrix"
     shutil.copytree(matrix, folder)
     description = yaml.safe_load((folder / "matrix.yaml").read_text())
-    description["runs"] = description["runs"][::5]
+    description["runs"] = description["runs"][::7]
     (folder / "matrix.yaml").write_text(yaml.safe_dump(description, allow_unicode=True))
     return folder
 

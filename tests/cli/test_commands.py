@@ -153,7 +153,7 @@ def test_compare_writes_every_figure_in_every_format(servoident, few, fit_file, 
         for kind, start in starts.items():
             assert (tmp_path / "figures" / f"{name}.{kind}").read_bytes().startswith(start)
     compared = json.loads((tmp_path / "c.json").read_text())
-    assert len(compared["runs"]) == len(compared["bands"]["runs"]) == 17
+    assert len(compared["runs"]) == len(compared["bands"]["runs"]) == 12
     assert {run["unit"] for run in compared["runs"]} == {"m"}
     assert all(0 < run["mae"] <= run["rmse"] < 1e-3 for run in compared["runs"])
     assert {"amplitude", "gain", "specimen", "direction", "speed"} <= set(compared["groups"])
@@ -188,7 +188,7 @@ def test_several_fits_are_one_table_and_one_plot(servoident, few, fit_file, tmp_
     assert (tmp_path / "out" / "side-by-side.svg").read_bytes().startswith(b"<svg")
     found = json.loads((tmp_path / "c.json").read_text())
     assert [one["name"] for one in found["fits"]] == ["A", "B", "C"]
-    assert len(found["runs"]) == 17
+    assert len(found["runs"]) == 12
     assert all(run["A"] == run["B"] == run["C"] for run in found["runs"])
     assert servoident("compare", few, *(["--fit", fit_file] * 9)).returncode == 2
 

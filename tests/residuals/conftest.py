@@ -21,7 +21,7 @@ TRUE = {p.name: p.value for p in preset("qian2014").parameters}
 
 @cache
 def compared(name: str, strength: float | None = None, all_amplitudes: bool = False, **changed: float) -> Comparison:
-    """Seventeen runs of 1 s with a hidden effect against the linear model at the true values, or at others.
+    """Twelve runs of 1 s with a hidden effect against the linear model at the true values, or at others.
 
     With `all_amplitudes`, 24 runs of eight conditions at three amplitudes each, the model fitted.
     """
@@ -30,5 +30,5 @@ def compared(name: str, strength: float | None = None, all_amplitudes: bool = Fa
         whole = matrix(name, force, 5, 1.0)
         data = replace(whole, runs=whole.runs[:24])
         return compare(data, identify(data, Settings()))
-    data = matrix(name, force, 5, 1.0, 5)
+    data = matrix(name, force, 5, 1.0, 7)
     return compare(data, identify(data, Settings(fixed=TRUE | changed)))

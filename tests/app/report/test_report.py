@@ -76,7 +76,7 @@ def test_it_says_parameters_errors_budget_and_verdict(told):
 
 def test_without_a_diagnosis_it_is_a_report_of_the_fit():
     """No empty chapter."""
-    base = compared("dead_zone")
+    base = compared("coulomb_friction")
     said = document(base.matrix, base.fit)
     assert "Residual analysis" in said
     assert "Missing effects" not in said
