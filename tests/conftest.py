@@ -9,6 +9,7 @@ import io
 import logging
 import os
 import sys
+import threading
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
@@ -148,6 +149,30 @@ def full(request: pytest.FixtureRequest) -> bool:
     return bool(request.config.getoption("--full")) or os.environ.get("SERVOIDENT_FULL") == "1"
 
 
+@pytest.fixture(scope="session", autouse=True)
+def _a_core_a_worker(full: bool, request: pytest.FixtureRequest) -> Iterator[None]:
+    """In the short form of the whole run, which has a worker a core, none shares out its work among threads.
+
+    They would hand the interpreter to one another and gain nothing: an eighth of what a diagnosis takes.
+    """
+    with pytest.MonkeyPatch.context() as own:
+        if hasattr(request.config, "workerinput") and not full:
+            from ident import parallel
+
+            busy = threading.Semaphore(0)
+            own.setattr(parallel, "_idle", lambda: busy)
+        yield
+
+
+@pytest.fixture
+def all_cores(monkeypatch: pytest.MonkeyPatch) -> None:
+    """For a test of work that is shared out, wherever it runs."""
+    from ident import parallel
+
+    helpers = threading.Semaphore(parallel.cores() - 1)
+    monkeypatch.setattr(parallel, "_idle", lambda: helpers)
+
+
 FEW = {
     "backlash", "coulomb_friction", "dead_zone", "gain_asymmetry", "null_bias", "pressure_flow", "quadratic_damping",
     "sensor_lag",
@@ -158,12 +183,16 @@ FEW = {
 def of_few_effects(full: bool, *beside: str) -> Iterator[None]:
     """In the short form a diagnosis ranks eight effects of the catalogue, of several places, and those named `beside`.
 
-    The whole catalogue takes several times as long, and half a minute where its kernels have to be compiled.
+    The whole catalogue takes several times as long, and half a minute where its kernels have to be compiled. Of the
+    runs that a lab could make next it weighs a few: what is proposed of all of them is said in tests/design.
     """
     with pytest.MonkeyPatch.context() as own:
         if not full:
+            from ident.design import candidate_runs
             from ident.diagnosis import candidate_models
 
+            for most in ("_SPECIMENS", "_GAINS", "_AMPLITUDES"):
+                own.setattr(candidate_runs, most, 2)
             named = FEW | {*beside}
             few = tuple(effect for effect in candidate_models.CATALOGUE if effect.name in named)
             assert len(few) == len(named)

@@ -154,6 +154,7 @@ print(json.dumps(fit.to_json(), sort_keys=True))
 """
 
 
+@pytest.mark.usefixtures("all_cores")
 @pytest.mark.skipif(not hasattr(os, "sched_getaffinity"), reason="cannot bind a process to cores on this system")
 def test_one_core_and_all_cores_give_one_answer(tmp_path):
     """The result, every generation included, is the same to the last bit on one core and on all of them."""

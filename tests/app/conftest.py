@@ -20,6 +20,7 @@ from sqlalchemy import make_url
 from app import database
 from app.main import create_app
 from app.settings import Settings
+from tests.conftest import short_searches
 from tests.reference import qian_reference as reference
 from tests.running import TOKEN
 
@@ -108,6 +109,13 @@ def _empty_databases(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]
 
     with pytest.MonkeyPatch.context() as own:
         own.setattr(command, "upgrade", copied)
+        yield
+
+
+@pytest.fixture(scope="package", autouse=True)
+def _short_searches(full: bool) -> Iterator[None]:
+    """What is tested is what becomes of a fit, and not how it is found."""
+    with short_searches(full):
         yield
 
 

@@ -35,6 +35,7 @@ def matrix(service) -> str:
     return str(answer.json()["id"])
 
 
+@pytest.mark.usefixtures("few_effects")
 def test_without_a_model_that_which_fits_is_taken_and_the_others_are_told(service, matrix):
     job = ended(service, service.post(f"{API}/fits", json={"matrix": matrix, "options": OPTIONS}))
     fit = service.get(f"{API}/fits/{job['fit']}").json()["result"]

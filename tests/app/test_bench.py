@@ -66,14 +66,16 @@ def test_the_values_and_the_procedures_beside_them(service, fit):
 
 
 @pytest.mark.parametrize("name", [name for name in PRESETS["kononykhin"].display.figures if name != "evolution"])
-def test_every_figure_is_served(service, fit, name):
+def test_every_figure_is_served(service, fit, name, full):
     """As SVG for the page and PDF for the file; the sheet says whether the limits of the set are kept."""
     drawn = service.get(f"{API}/fits/{fit}/figures/{name}.svg")
     assert drawn.status_code == 200, drawn.text
     assert "SIM-BENCH-0001" in drawn.text
-    assert service.get(f"{API}/fits/{fit}/figures/{name}.pdf").content.startswith(b"%PDF")
     if name == "acceptance-sheet":
         assert "acceptance test passed" in drawn.text
+        if not full:  # which is worked out anew for each format
+            return
+    assert service.get(f"{API}/fits/{fit}/figures/{name}.pdf").content.startswith(b"%PDF")
 
 
 def test_the_sheet_is_json_judged_by_the_limits_of_the_line(service, fit):

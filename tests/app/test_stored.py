@@ -11,6 +11,7 @@ from fastapi.testclient import TestClient
 from sqlalchemy import text
 
 from app.tables import FitRow, SetRow
+from ident.fit.genetic import DEFAULT
 
 PATIENCE = 30  # s: they go a moment later
 
@@ -39,8 +40,9 @@ def test_the_outputs_of_steps_go_when_the_job_ends(service: TestClient, fitted: 
 def test_a_fit_keeps_its_history_once_and_compact(service: TestClient, fitted: str) -> None:
     """The row that every page reads is small; the history is as it was, and its figure is drawn."""
     result = service.get(f"/api/v1/fits/{fitted}").json()["result"]
-    assert [generation["index"] for generation in result["evolution"]] == list(range(1, 31))
-    assert len(result["evolution"][0]["population"]) == 200
+    generations, population = (round(DEFAULT[name]) for name in ("generations", "population"))
+    assert [generation["index"] for generation in result["evolution"]] == list(range(1, generations + 1))
+    assert len(result["evolution"][0]["population"]) == population
     whole = len(json.dumps(result["evolution"]))
     with service.app.state.context.sessions() as session:
         row = session.execute(text("SELECT length(result) FROM fits WHERE id = :id"), {"id": fitted}).scalar_one()

@@ -53,6 +53,7 @@ def compared(integrates: bool) -> tuple[Structure, ...]:
 
 @cache
 def of_motor() -> tuple[Structure, ...]:
+    """Its callers rank few effects."""
     return compared_structures(motor(8))
 
 
@@ -93,6 +94,7 @@ def test_what_follows_whole_runs_is_not_judged_by_windows():
     assert all(one.error["held_out"] > 3 * first.error["held_out"] for one in apart)
 
 
+@pytest.mark.usefixtures("few_effects")
 def test_of_equals_the_one_with_fewer_parameters_is_taken():
     """A motor's speed is fitted by a valve-controlled cylinder as well, with four parameters more."""
     first, *others = of_motor()
@@ -105,12 +107,14 @@ def test_where_the_channels_say_it_nothing_is_compared():
     assert (only.machine, only.error["held_out"]) == ("specimen", None)
 
 
+@pytest.mark.usefixtures("few_effects")
 def test_what_was_compared_is_kept_with_the_fit():
     fit = replace(identify(motor(8), Settings(model="motor")), structures=of_motor())
     assert FitResult.from_json(fit.to_json()) == fit
     assert "structures" not in replace(fit, structures=()).to_json()
 
 
+@pytest.mark.usefixtures("few_effects")
 def test_structures_are_compared_over_one_time():
     """A cylinder that disturbances moved: over whole runs a slow lag would leave less of it than what it is."""
     matrix = cylinder(2, wander=4e-3, seconds=60.0, uses=("fit", "fit", "verify"))

@@ -37,7 +37,7 @@ SHARE = {
     "pressure_dependent_gain": 0.5,
     "unequal_areas": 0.4,
 }  # of the largest strength, at which little would be left
-SAMPLES = 2048
+SAMPLES = 1024
 CLOSE, STICKING = 1e-4, 1e-3  # of the output's standard deviation; of friction that sticks
 OFF, FEW = 1.01, 0.02  # a strength that is wrong, and what a weak effect changes of the short runs
 SEEN = {"spool_stiction": 1.5, "stroke_dependent_volume": 1.1}
@@ -55,7 +55,7 @@ def tolerance(effect: Effect) -> float:
 
 
 def command(seed: int) -> np.ndarray:
-    """Half a second of the paper's noise at the middle amplitude."""
+    """A quarter of a second of the paper's noise at the middle amplitude."""
     return linear.band_limited_noise(SAMPLES, 1.27e-3, np.random.default_rng([2014, seed]))
 
 

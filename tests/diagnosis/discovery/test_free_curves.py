@@ -28,7 +28,7 @@ def with_a_bent_gain() -> tuple[Matrix, Diagnosis]:
     """A flow gain that swings along the pressure, as no form of the search does; runs of one size."""
     small = [trial for trial in linear.trials() if trial.use == "fit" and trial.amplitude < 6e-4]
     trials = [*small[:12:2], *(trial._replace(use="verify") for trial in small[12:15])]
-    records = measure_all(Outside(swinging_gain=SWING), trials, PLANT, seconds=0.5, noise=NOISE, seed=1)
+    records = measure_all(Outside(swinging_gain=SWING), trials, PLANT, seconds=0.35, noise=NOISE, seed=1)
     matrix = matrix_of(records, PLANT)
     return matrix, proposed(matrix)
 
