@@ -78,9 +78,14 @@ def driven() -> Matrix:
 
 def rigs() -> Matrix:
     """Two records of the hybrid-simulation rig: with position and spool to fit, with the position alone to verify."""
-    fit = rig.matrix(rig.machine(0), 0, ("displacement", "spool"), seconds=2.0)
-    (verify,) = rig.matrix(rig.machine(0), 1, ("displacement",), seconds=2.0).runs
+    fit = rig.matrix(rig.machine(0), 0, ("displacement", "spool"), seconds=1.0)
+    (verify,) = rig.matrix(rig.machine(0), 1, ("displacement",), seconds=1.0).runs
     return replace(fit, runs=(*fit.runs, replace(verify, id="verify", use="verify")))
+
+
+def levels() -> Matrix:
+    """The first ten minutes of two records of tanks."""
+    return Matrix(Actuator("TANKS"), tuple(tanks(i, use).part(0, 150) for i, use in enumerate(("fit", "verify"))))
 
 
 MACHINES: dict[str, tuple[str, Callable[[], Matrix], tuple[str, ...]]] = {
@@ -88,7 +93,7 @@ MACHINES: dict[str, tuple[str, Callable[[], Matrix], tuple[str, ...]]] = {
     "a loop, held": ("qian2014", lambda: loop(held=True), ()),
     "a loop with an effect": ("qian2014", loop, ("dead_zone",)),
     "a loop as a lag": ("first_order", loop, ()),
-    "two tanks": ("two_tanks", lambda: Matrix(Actuator("TANKS"), (tanks(0, "fit"), tanks(1, "verify"))), ()),
+    "two tanks": ("two_tanks", levels, ()),
     "a driven mass": ("drive", driven, ()),
     "a driven mass with an effect": ("drive", driven, ("coulomb_friction",)),
     "a motor": ("motor", lambda: motor(5), ()),
