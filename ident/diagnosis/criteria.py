@@ -184,7 +184,7 @@ class InitialGuesses:
     finely: int = 24
     """[places] Where a searched shape begins that the output jumps with. Why: over two decades each is a fifth longer
     than the one before, about what a sample tells of a play.
-    Test: test_friction_behind_play.py::test_a_play_before_the_friction_is_named_with_its_width"""
+    Test: test_friction_behind_play.py::test_a_play_before_the_friction_is_named_with_its_width_and_its_contact"""
     spring_shares: tuple[float, ...] = (0.3, 0.6)
     """[of the machine's spring] That an effect has taken over which is a spring at first. Why: from either the refit
     of a Bouc-Wen oscillator arrives, from none and from all of it does not.

@@ -1,4 +1,4 @@
-"""Dry friction that a play lies before: what rubs is moved only when the play is taken up."""
+"""Dry friction that a play lies before: what rubs is moved, by a spring of contact, only when the play is taken up."""
 
 from ident.effects.effect import Effect
 from ident.effects.needs import force_answers
@@ -8,13 +8,13 @@ FRICTION_BEHIND_PLAY = Effect(
     name="friction_behind_play",
     place="load",
     meaning="dry friction behind a play: after each reversal there is no friction until the play is closed",
-    strength=Parameter("force", "Fp", "N", 0.0, 200.0, 0.0, "dry friction force", at_reversals=AtReversals.FORCE),
+    strength=Parameter("force", "Fp", "N", 0.0, 200.0, 0.0, "dry friction force"),
     texts=(
-        "d := clip(d + x - xr, -g, g)",
+        "d := clip(d + x - xr, -g - xs, g + xs)",
         "xr := x",
-        "Ff = Ff + Fp * where(d * v < 0.999999 * g * abs(v), 0, 1)",
+        "R = R + Fp * (d - clip(d, -g, g)) / xs",
     ),
-    units={"Ff": "N"},
+    units={"R": "N"},
     shape=(
         Parameter(
             "half_width",
@@ -29,9 +29,20 @@ FRICTION_BEHIND_PLAY = Effect(
             start=Starts.FINELY,
             at_reversals=AtReversals.WAY,
         ),
+        Parameter(
+            "contact",
+            "xs",
+            "m",
+            1e-6,
+            1e-2,
+            1e-5,
+            "displacement of the contact, over which the force builds up when the play is closed",
+            relative=0.002,
+            of_motion=True,
+        ),
     ),
-    looks="after each reversal no friction over the width of the play, then full friction at once",
-    source="play operator before Coulomb friction: a friction damper with clearance in its joints",
+    looks="after each reversal no force over the width of the play, then friction, at once or over the contact's way",
+    source="a play, a spring and a slider in series (Jenkins element): a friction damper with clearance in its joints",
     steps=2,
     needs=force_answers,
 )

@@ -63,18 +63,21 @@ class Damper:
 
 @dataclass(frozen=True)
 class PlayedDamper(Damper):
-    """The same with Coulomb friction behind a play: after each reversal it stands until the play is taken up."""
+    """The same with a slider behind a play and a spring: after each reversal it stands until the play is taken up.
+
+    Its force then builds up over the way of the contact.
+    """
 
     half_width: float = 4e-3
+    contact: float = 1e-4
 
-    def rubbing(self, x: Array, v: Array) -> Array:
-        """The sign of the speed where what rubs is moved, nothing where it stands."""
-        place, moved = x[0], np.zeros(len(x), bool)
+    def rubbing(self, x: Array, v: Array) -> Array:  # noqa: ARG002  what a slider carries hangs on the way alone
+        """What the slider carries, over its friction."""
+        place, reach, stretch = x[0], self.half_width + self.contact, np.zeros(len(x))
         for i, here in enumerate(x):
-            low, high = here - self.half_width, here + self.half_width
-            moved[i] = not low < place < high
-            place = min(max(place, low), high)
-        return np.where(moved, np.sign(v), 0.0)
+            place = min(max(place, here - reach), here + reach)
+            stretch[i] = here - place
+        return np.sign(stretch) * np.maximum(np.abs(stretch) - self.half_width, 0.0) / self.contact
 
 
 def dahl(x: Array, displacement: float) -> Array:

@@ -108,15 +108,15 @@ def moved() -> np.ndarray:
     return np.asarray(STIFFNESS * way + DAMPING * SPEED)
 
 
-def played(friction: float, half_width: float = 0.2, fine: int = 64) -> np.ndarray:
-    """The force of a spring and a damper with dry friction behind a play, moved at a given speed."""
+def played(friction: float, half_width: float = 0.2, contact: float = 0.1, fine: int = 64) -> np.ndarray:
+    """The force of a spring and a damper with a slider behind a play and a spring of contact, moved at a speed."""
     speed = np.interp(np.arange((len(T) - 1) * fine + 1) / fine, np.arange(len(T)), SPEED)
     way = np.concatenate([[0.0], np.cumsum(0.5 * (speed[1:] + speed[:-1])) / (RATE * fine)])
-    rubs, place = np.zeros(len(way)), 0.0
+    carried, slider, reach = np.zeros(len(way)), 0.0, half_width + contact
     for i, x in enumerate(way):
-        moved = min(max(place, x - half_width), x + half_width)
-        rubs[i], place = np.sign(moved - place), moved
-    return np.asarray((STIFFNESS * way + DAMPING * speed + friction * rubs)[::fine])
+        slider = min(max(slider, x - reach), x + reach)
+        carried[i] = np.sign(x - slider) * max(abs(x - slider) - half_width, 0.0) / contact
+    return np.asarray((STIFFNESS * way + DAMPING * speed + friction * carried)[::fine])
 
 
 def degraded(force: float, way: float = 0.3, loss: float = 0.2, pinched: float = 0.6) -> np.ndarray:
@@ -176,8 +176,10 @@ CASES = {
     "damping_asymmetry": Case(
         "drive", {"damping_asymmetry.coefficient": 1.5}, lambda k: mass(lambda _t, _x, v: 1.5 * k * abs(v)), {}),
     "friction_behind_play": Case(
-        "specimen", {"friction_behind_play.force": 25.0, "friction_behind_play.half_width": 0.2},
-        lambda k: played(25.0 * k), {"velocity": SPEED}, 1e-2, output="force"),
+        "specimen",
+        {"friction_behind_play.force": 25.0, "friction_behind_play.half_width": 0.2,
+         "friction_behind_play.contact": 0.1},
+        lambda k: played(25.0 * k), {"velocity": SPEED}, output="force"),
     "pressure_force": Case(
         "specimen", {"pressure_force.area": 5e-3},
         lambda k: moved() - 5.0 * k * SQUEEZE, {"velocity": SPEED, "load_pressure": 1e3 * SQUEEZE}, output="force"),
