@@ -1,9 +1,9 @@
 """An input that is not in the record: from the same state, under the same inputs, the output rests or moves.
 
 A machine whose inputs rest stays where it came to rest. Leakage, gravity, creep and bias move it at the same speed from
-the same state. Where it rests first and then sets out by itself, as fast as it is driven at other times, something else
-drove it. What always sets out the same time after a change of its inputs is a delay. What turns round again and again
-once it has set out is an oscillation.
+the same state. Where it sets out by itself, as fast as it is driven at other times, something else drove it. What
+always sets out the same time after a change of its inputs is a delay. What turns round again and again once it has set
+out is an oscillation.
 """
 
 from __future__ import annotations
@@ -13,23 +13,23 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.ndimage import maximum_filter1d, median_filter
+from scipy.ndimage import median_filter
 
 from ident.checks.at_rest import HELD, acting, held, spans
 from ident.checks.finding import Finding
+from ident.checks.setting_out import FAST, QUICK, REST, Motion
 from ident.resolution import resolution
 from ident.run import BENCH, Run, Samples
 from ident.words.message import Message, message
 
 TRAVEL = 0.1  # of how far the output goes in a twentieth of the record: its way in the time of a quick motion
-QUICK = 0.9  # share of its motions that are slower than a quick one
-SLOW, FAST = 0.15, 0.5  # of a quick motion: it creeps or rests, and sets out
-REST = 2  # durations of a quick motion for which it has rested before it sets out
-LEAST = 3  # times that it sets out: one or two may be a mishap
 LONGEST = 0.05  # of the record, the duration of a quick motion: what is slower shows no rest
 SHORTEST = 8  # samples of a quick motion
-AHEAD, SWINGS = 12, 4  # durations of a quick motion in which an oscillation has turned so many times
+FINER = 4  # durations of a quick motion that are looked at, each half of the one before: a short rest needs a short one
 DIGITS = 10  # steps of a reading that a quick motion goes at least: one that creeps shows step by step
+LEAST = 3  # times that it sets out: one or two may be a mishap
+MOST = 0.1, 0.9  # quantiles between which most starts lie: what comes after one time, but for these, is a delay
+AHEAD, SWINGS = 12, 4  # durations of a quick motion in which an oscillation has turned so many times
 SPIKE = 5  # samples, of which the median is taken: a wrong sample or two are no motion
 
 
@@ -63,25 +63,29 @@ def missing_inputs(run: Run) -> tuple[MissingInput, ...]:
         return ()
     y = np.asarray(median_filter(run.measured, SPIKE), np.float64)
     extent = _extent(y)
-    motion = _quick(y, extent)
-    rest, signed = REST * motion, y[motion:] - y[:-motion]
-    way = np.abs(signed)
-    if run.length <= rest + 2 * motion:
-        return ()
-    at_rest, quick = held(inputs, rest + 2 * motion)[:-1], max(float(np.quantile(way, QUICK)), TRAVEL * extent)
-    quick = max(quick, DIGITS * resolution(run.measured))
-    found = _neighbours(np.flatnonzero(_sets_out(way, motion, quick) & at_rest), rest)
-    begins = [int(k[0]) + rest + int(np.argmax(way[k[0] + rest :] >= FAST * quick)) for k in found]
-    begins = [begin for begin in begins if _turns(signed[begin : begin + AHEAD * motion], FAST * quick) < SWINGS]
+    longest, travel = _quick(y, extent), TRAVEL * extent
+    for half in range(FINER):
+        samples = longest // 2**half
+        if (half and samples < SHORTEST) or run.length <= (REST + 2) * samples:
+            break
+        at_rest = held(inputs, (REST + 2) * samples)[:-1]
+        motion = Motion.of(y, samples, max(travel / 2**half, DIGITS * resolution(run.measured)), at_rest)
+        begins = motion.starts(at_rest)
+        begins = [k for k in begins if _turns(motion.way[k : k + AHEAD * samples], FAST * motion.quick) < SWINGS]
+        if _by_itself(inputs, begins, longest, samples):
+            evidence = _evidence(run, motion, begins, at_rest)
+            times = [begin / run.sample_rate for begin in begins]
+            return tuple(MissingInput(run.id, time, time + samples / run.sample_rate, evidence) for time in times)
+    return ()
+
+
+def _by_itself(inputs: Sequence[Samples], begins: Sequence[int], longest: int, samples: int) -> bool:
+    """Whether the output sets out often enough, at any time after a change of the inputs, and not at even times."""
     changes = np.flatnonzero(np.any([np.abs(np.diff(u, prepend=u[0])) > HELD * np.ptp(u) for u in inputs], axis=0))
-    last = [max(changes[changes <= begin], default=-rest) for begin in begins]
-    if len(begins) < LEAST or np.ptp(np.subtract(begins, last)) <= motion:
-        return ()
-    if np.ptp(last) == 0 and np.ptp(np.diff(begins)) <= motion:  # it swings, slowly for a while at each turn
-        return ()
-    evidence = _evidence(run, way, motion, begins, at_rest)
-    times = [begin / run.sample_rate for begin in begins]
-    return tuple(MissingInput(run.id, time, time + motion / run.sample_rate, evidence) for time in times)
+    last = [max(changes[changes <= begin], default=-REST * samples) for begin in begins]
+    if len(begins) < LEAST or np.ptp(np.quantile(np.subtract(begins, last), MOST)) <= longest:
+        return False
+    return bool(np.ptp(last) > 0 or np.ptp(np.diff(begins)) > samples)  # else it swings, slowly at each turn
 
 
 def _extent(y: Samples) -> float:
@@ -97,34 +101,19 @@ def _quick(y: Samples, extent: float) -> int:
     return samples
 
 
-def _sets_out(way: Samples, motion: int, quick: float) -> NDArray[np.bool_]:
-    """Whether the output, which goes such ways in a quick motion, is slow from each sample on and then sets out."""
-    rest = REST * motion
-    before = maximum_filter1d(way, rest - motion, origin=-((rest - motion) // 2))
-    after = maximum_filter1d(way, motion, origin=-(motion // 2))
-    count = len(way) - rest - motion
-    return np.asarray((before[:count] <= SLOW * quick) & (after[rest : rest + count] >= FAST * quick))
-
-
 def _turns(way: Samples, least: float) -> int:
     """How often a motion turns round that goes at least so far either way."""
     large = np.sign(way[np.abs(way) >= least])
     return int(np.sum(large[1:] != large[:-1]))
 
 
-def _neighbours(places: NDArray[np.intp], apart: int) -> list[NDArray[np.intp]]:
-    """The samples in groups that lie farther apart."""
-    groups = np.split(places, np.flatnonzero(np.diff(places) > apart) + 1)
-    return [group for group in groups if len(group)]
-
-
-def _evidence(run: Run, way: Samples, motion: int, begins: Sequence[int], at_rest: NDArray[np.bool_]) -> Message:
+def _evidence(run: Run, motion: Motion, begins: Sequence[int], at_rest: NDArray[np.bool_]) -> Message:
     """How often and when it set out, and in which share of the rest of its inputs it moves at half of that speed."""
-    rest, unit = REST * motion, run.units.get(run.output, "1")
+    rest, unit, way = REST * motion.samples, run.units.get(run.output, "1"), np.abs(motion.way)
     moved = way[rest:][: len(at_rest)][at_rest[: len(way) - rest]]
-    least = 0.5 * min(float(way[begin : begin + motion].max()) for begin in begins)
+    least = 0.5 * min(float(way[begin : begin + motion.samples].max()) for begin in begins)
     by_time = unit.removesuffix("/s") + "/s²" if unit.endswith("/s") else f"{unit}/{run.time_unit}"
-    speed = least * run.sample_rate / motion, by_time
+    speed = least * run.sample_rate / motion.samples, by_time
     output = run.output if unit == "1" else f"{run.output} ({unit})"
     return message(
         "missing_input", run=run.id, output=output, count=len(begins), start=begins[0] / run.sample_rate,

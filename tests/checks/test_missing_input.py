@@ -88,3 +88,32 @@ def test_a_place_that_wanders_and_creeps_hides_no_missing_input():
         said[False] += bool(missing_inputs(record(speed, command=first, load_disturbance=second)))
     assert said[True] >= 19
     assert said[False] == 0
+
+
+def drawn(seed: int, second: float) -> Run:
+    """A place that leaks 10 to 20 % of its way in 1 s, with a bias, 150 s; the second lever, of this share."""
+    rng = np.random.default_rng([66, seed])
+    lag, leak, bias = rng.uniform(0.02, 0.2), rng.uniform(0.1, 0.2), rng.uniform(-0.1, 0.1)
+    first, other = pulses(rng, 3000), pulses(rng, 3000)
+    a, kept = np.exp(-1.0 / RATE / lag), np.exp(-leak / RATE)
+    speed = scipy.signal.lfilter([0.0, 1.0 - a], [1.0, -a], first + second * other + bias)
+    place = scipy.signal.lfilter([1.0 / RATE], [1.0, -kept], speed)
+    noise = 0.005 * place.std() * rng.standard_normal(len(place))
+    return Run("leaks", "", RATE, {"command": first, "displacement": place + noise}, {"displacement": "m"})
+
+
+def test_a_place_that_leaks_and_is_driven_in_short_turns_hides_no_missing_input():
+    """Seed 66: it creeps at up to half of its speed, another speed at each place."""
+    assert sum(bool(missing_inputs(drawn(seed, 0.8))) for seed in range(10)) >= 9
+    assert not any(missing_inputs(drawn(seed, 0.0)) for seed in range(10))
+
+
+@pytest.mark.parametrize("damping", [0.05, 0.2, 0.4])
+def test_a_swing_that_stands_for_a_moment_at_each_turn_misses_no_input(damping):
+    """Its last values say how it goes on, whenever it is that it was let go."""
+    lever = pulses(np.random.default_rng(67), 2400)
+    own, fast = np.exp((-damping + 1j * np.sqrt(1 - damping**2)) * 4.0 / RATE), 0.2
+    swings = scipy.signal.lfilter([abs(1 - own) ** 2], [1.0, -2 * own.real, abs(own) ** 2], lever)
+    swings = scipy.signal.lfilter([fast], [1.0, fast - 1.0], swings)
+    swings = swings + 0.003 * np.random.default_rng(68).standard_normal(len(swings))
+    assert missing_inputs(Run("swings", "", RATE, {"command": lever, "displacement": swings})) == ()
