@@ -15,6 +15,7 @@ from ident.chain.channels import unmeasured
 from ident.diagnosis.compared_records import ComparedRecords
 from ident.diagnosis.criteria import CRITERIA, EPSILON
 from ident.diagnosis.fitted_model import FittedModel
+from ident.diagnosis.resting import Resting
 from ident.diagnosis.tie_breaking import stable_minimum, stable_ranking
 from ident.diagnosis.verdict import Residual, is_noise
 from ident.effects import CATALOGUE
@@ -28,7 +29,7 @@ from ident.fit.reduction import excited_band
 from ident.fit.settings import Settings
 from ident.fit.simulated_fitness import SimulatedFitness, shortened
 from ident.fit.simulated_runs import SimulatedRuns
-from ident.fit.space import Space, search_space
+from ident.fit.space import search_space
 from ident.fit.wider_bounds import ROUNDS, wider_at
 from ident.matrix import Matrix
 from ident.noise.floor import Floors, noise_floors
@@ -63,7 +64,7 @@ class CandidateModels:
     `given` are what the user holds fixed or bounds; `left_out` the ids of runs that are not fitted; `horizon` (s) the
     length of the windows over which a machine that integrates is fitted, None for whole runs, `memory` (s) as there. Of
     the runs that are `contradicted` no noise floor is known: a fitted model leaves less than what was told. What the
-    data do not determine stays where it is `resting`, at these places of its axes, until a model asks for another.
+    data do not determine stays where it is `resting` until a model asks for another place.
     """
 
     preset: Preset
@@ -80,7 +81,7 @@ class CandidateModels:
     _recent: RecentMoments = field(default_factory=RecentMoments, repr=False)
     bars: dict[tuple[str, ...], float] = field(default_factory=dict)
     contradicted: frozenset[str] = frozenset()
-    resting: Mapping[str, float] = field(default_factory=dict)
+    resting: Resting = field(default_factory=Resting)
 
     @classmethod
     def of(
@@ -356,7 +357,7 @@ class CandidateModels:
         """
         fitness = self.fitness(effects, CRITERIA.estimation.global_samples)
         points = scipy.stats.qmc.Sobol(len(fitness.space.axes), rng=0).random(CRITERIA.estimation.global_points)
-        points = self._with_resting(fitness.space, points)
+        points = self.resting.held(fitness.space, points)
         best = points[np.argsort(fitness.errors(points), kind="stable")[: CRITERIA.estimation.global_starts]]
         starts = [{name: float(v[0]) for name, v in fitness.space.values(point[None]).items()} for point in best]
         return [
@@ -391,9 +392,9 @@ class CandidateModels:
         usual = {p.in_equations: p.value for p in fitness.preset.parameters}
         values = {**usual, **start, **fitness.space.fixed}
         fitness = self.reaching(effects, fitness, [values])
-        point = self._with_resting(fitness.space, fitness.space.point(values))
+        point = self.resting.held(fitness.space, fitness.space.point(values))
         free = way or (CRITERIA.estimation.trial if samples else CRITERIA.estimation.full)
-        way = replace(free, within=self._within(fitness.space)) if self.resting else free
+        way = replace(free, within=self.resting.bounds(fitness.space)) if self.resting.places else free
         found = self._optimum(effects, fitness, point, way, samples)
         if way is not free and found.asks_for(free, CRITERIA.ranking.promising):
             way, found = free, self._optimum(effects, fitness, found.point, free, samples)
@@ -409,15 +410,6 @@ class CandidateModels:
                 break
             found = farther
         return found
-
-    def _with_resting(self, space: Space, points: Array) -> Array:
-        """Points (…, p) of the unit cube with what is resting where it rests."""
-        places = [self.resting.get(name, np.nan) for name in space.names]
-        return np.where(np.isnan(places), points, places)
-
-    def _within(self, space: Space) -> tuple[Array, Array]:
-        """The bounds of every axis, which what is resting does not leave."""
-        return self._with_resting(space, np.zeros(len(space.axes))), self._with_resting(space, np.ones(len(space.axes)))
 
     def _optimum(
         self, effects: tuple[str, ...], fitness: SimulatedFitness, start: Array, way: Way, samples: int
@@ -482,7 +474,7 @@ class CandidateModels:
         values = [{**self.off, **start, **fitness.space.fixed} for start in starts]
         fitness = self.reaching(effects, fitness, values)
         errors = fitness.errors(
-            self._with_resting(fitness.space, np.array([fitness.space.point(one) for one in values]))
+            self.resting.held(fitness.space, np.array([fitness.space.point(one) for one in values]))
         )
         start, _ = stable_minimum(list(zip(starts, errors.tolist(), strict=True)), lambda one: one[1])
         return self.refit(

@@ -343,11 +343,11 @@ class Moves:
     def runner_up(self, selection: Selection) -> Selection | None:
         """Continue from another set of as many effects, where with a further one it improves on the selected set.
 
-        Two lags look like one that is longer: beside that one neither of them helps, beside either the other does.
+        Two lags look like one that is longer: with that one neither of them helps, with either of the two the other does.
         """
         if len(selection.added) == self.most:
             return None
-        for other in self.refitted_sets.probable_beside(selection.fitted)[: CRITERIA.selection.runners_up]:
+        for other in self.refitted_sets.as_probable(selection.fitted)[: CRITERIA.selection.runners_up]:
             ranking = self._rank(other, thorough=False)
             best = next((candidate.refit for candidate in ranking if candidate.improves), None)
             if best is not None and improves(self.models, selection.fitted, best):

@@ -179,7 +179,7 @@ def _tried(models: CandidateModels, base: FittedModel, prediction: Prediction, a
 
 
 def _confirmed(models: CandidateModels, base: FittedModel, candidate: Candidate, best: float) -> Candidate:
-    """A candidate refitted to every sample, as far as it is worth it beside the `best` score on trial."""
+    """A candidate refitted to every sample, as far as its score on trial, compared with the `best`, is worth it."""
     assert candidate.trial is not None
     is_behind = candidate.score > CRITERIA.ranking.close_trial * best
     way = CRITERIA.estimation.behind if is_behind else CRITERIA.estimation.full

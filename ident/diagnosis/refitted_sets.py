@@ -22,7 +22,7 @@ from ident.diagnosis.model_comparison import both_probable
 
 @dataclass
 class RefittedSets:
-    """The best refit of each set of effects beside those of the fitted model, as they are met."""
+    """The best refit of each set of effects that the fitted model lacks, as they are met."""
 
     base: FittedModel
     best: dict[frozenset[str], FittedModel] = field(default_factory=dict)
@@ -36,8 +36,8 @@ class RefittedSets:
             if added and known and (best is None or model.held_out.score < best.held_out.score):
                 self.best[added] = model
 
-    def probable_beside(self, fitted: FittedModel) -> list[FittedModel]:
-        """The models of other sets of as many effects that are more probable than chance beside it, best first."""
+    def as_probable(self, fitted: FittedModel) -> list[FittedModel]:
+        """The models of other sets of as many effects, that may as well be right, best first."""
         as_many = [model for model in self.best.values() if len(model.effects) == len(fitted.effects)]
         others = [model for model in as_many if {*model.effects} != {*fitted.effects}]
         probable = [model for model in others if both_probable(fitted, model)]

@@ -3,7 +3,7 @@
 Forward: the best of the ranking is added while it improves the model beyond chance; backward: what the model can do
 without since is taken out. Then each effect that was added is compared with everything that could stand in its place:
 a better one is exchanged for it, those that are indistinguishable from it are its alternatives. Where all of this ends
-above the noise, further effects are tried beside the next best sets, strong ones, far from where the search stands, and
+above the noise, further effects are added to the next best sets, strong ones, far from where the search stands, and
 two at a time in the place of one; then it begins again with an effect whose widths are free.
 """
 

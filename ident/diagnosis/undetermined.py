@@ -15,6 +15,7 @@ import numpy as np
 from ident.diagnosis.candidate_models import CandidateModels
 from ident.diagnosis.criteria import CRITERIA
 from ident.diagnosis.fitted_model import FittedModel
+from ident.diagnosis.resting import Resting
 from ident.fit.uncertainty import DETERMINED
 
 
@@ -33,7 +34,7 @@ def rested(models: CandidateModels, refit: FittedModel) -> tuple[CandidateModels
             moved += [number] if slowed is not refit else []
             refit = slowed
     places = {refit.space.names[number]: float(refit.point[number]) for number in moved}
-    return (replace(models, resting=places) if places else models), refit
+    return (replace(models, resting=Resting(places)) if places else models), refit
 
 
 def _slowed(models: CandidateModels, refit: FittedModel, number: int) -> FittedModel:

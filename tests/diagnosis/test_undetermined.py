@@ -9,6 +9,7 @@ import pytest
 
 from ident.diagnosis.candidate_models import CandidateModels
 from ident.diagnosis.fitted_model import FittedModel
+from ident.diagnosis.resting import Resting
 from ident.diagnosis.undetermined import rested
 from ident.fit.settings import Settings
 from ident.matrix import Actuator, Matrix
@@ -69,5 +70,5 @@ def test_what_rests_is_free_where_a_model_asks_for_another_place():
     shown = drive(m=0.14)
     found = shown.converged(shown.refit((), {"m0": 0.1, "c0": 1.4, "k0": 3.7}))
     axis, place = found.space.names.index("m0"), found.space.point({**found.values, "m0": 0.05})
-    held = replace(shown, resting={"m0": float(place[axis])})
+    held = replace(shown, resting=Resting({"m0": float(place[axis])}))
     assert held.refit((), found.values).values["m0"] == pytest.approx(found.values["m0"], rel=0.01)

@@ -1,0 +1,30 @@
+"""Parameters that the data do not determine, held where few steps follow them, also where effects are added."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ident.fit.space import Space
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Resting:
+    """Parameters that are held, each at a place (0 to 1) of its axis."""
+
+    places: Mapping[str, float] = field(default_factory=dict)
+
+    def held(self, space: Space, points: Array) -> Array:
+        """Points (…, p) of the unit cube of a space, with what rests at its places."""
+        places = [self.places.get(name, np.nan) for name in space.names]
+        return np.where(np.isnan(places), points, places)
+
+    def bounds(self, space: Space) -> tuple[Array, Array]:
+        """The lower and upper ends of every axis, which are one where a parameter rests."""
+        count = len(space.axes)
+        return self.held(space, np.zeros(count)), self.held(space, np.ones(count))
