@@ -343,7 +343,7 @@ class Moves:
     def runner_up(self, selection: Selection) -> Selection | None:
         """Continue from another set of as many effects, where with a further one it improves on the selected set.
 
-        Two lags look like one that is longer: with that one neither of them helps, with either of the two the other does.
+        Two lags look like one that is longer: with it neither of them helps, with either of the two the other does.
         """
         if len(selection.added) == self.most:
             return None
