@@ -8,10 +8,16 @@ from itertools import groupby
 
 from ident.diagnosis.candidate_models import CandidateModels
 from ident.diagnosis.criteria import CRITERIA
-from ident.diagnosis.evidence.comparison import Evidence, runs_freely
+from ident.diagnosis.evidence.comparison import Evidence
 from ident.diagnosis.evidence.criteria import EVIDENCE_CRITERIA, OF_SHOWN
 from ident.diagnosis.fitted_model import FittedModel
-from ident.diagnosis.model_comparison import dominated, evidence, indistinguishable, is_improvement
+from ident.diagnosis.model_comparison import (
+    dominated,
+    evidence,
+    indistinguishable,
+    is_improvement,
+    is_improvement_on_the_whole,
+)
 from ident.diagnosis.screening import Prediction
 from ident.diagnosis.tie_breaking import stable_ranking
 
@@ -20,8 +26,9 @@ from ident.diagnosis.tie_breaking import stable_ranking
 class Candidate:
     """An effect, what it promises, its refit on all records where it came that far, and what speaks for it.
 
-    `improves` is whether adding it to the model without it is worth it. It `drives_away` a free run where that is all
-    that speaks against it: over windows it would be.
+    `improves` is whether adding it to the model without it is worth it. It `worsens_part` where it improves the model
+    on the whole, and worsens a condition of the tests, a half of the records, or the free run of what is fitted over
+    windows.
     """
 
     prediction: Prediction
@@ -29,7 +36,7 @@ class Candidate:
     refit: FittedModel | None = None
     evidence: Evidence | None = None
     improves: bool = False
-    drives_away: bool = False
+    worsens_part: bool = False
 
     @property
     def effect(self) -> str:
@@ -51,13 +58,11 @@ class Candidate:
     def refitted(self, models: CandidateModels, base: FittedModel, refit: FittedModel) -> Candidate:
         """The candidate with a refit on all records, and what speaks for it against the model without the effect."""
         if not base.finite:
-            return replace(self, refit=refit, evidence=None, improves=True, drives_away=False)
+            return replace(self, refit=refit, evidence=None, improves=True, worsens_part=False)
         found, criteria = evidence(base, refit), OF_SHOWN if models.is_shown(self.effect) else EVIDENCE_CRITERIA
         improves = is_improvement(models, base, found, criteria)
-        away = not (improves or runs_freely(found)) and is_improvement(
-            models, base, replace(found, by_free_run=None), criteria
-        )
-        return replace(self, refit=refit, evidence=found, improves=improves, drives_away=away)
+        worsens_part = not improves and is_improvement_on_the_whole(models, base, found, criteria)
+        return replace(self, refit=refit, evidence=found, improves=improves, worsens_part=worsens_part)
 
 
 def in_rank_order(models: CandidateModels, candidates: Iterable[Candidate]) -> list[Candidate]:

@@ -329,8 +329,8 @@ class Selection:
     """[effects] Of the first ranking started from the whole search space. Why: a model that went far astray makes
     another effect look better. Test: test_selection.py::test_one_effect_from_anywhere_takes_the_place_of_the_first"""
     companions: int = 2
-    """[effects] That drive the free run away by themselves, each of which is tried with all others. Why: each costs a
-    ranking, and more than the leading ones seldom act.
+    """[effects] That by themselves improve the model and worsen a part of the data, each of which is tried with all
+    others. Why: each costs a ranking, and more than the leading ones seldom act.
     Test: test_free_run.py::test_friction_and_a_constant_force_are_found_that_only_together_run_freely"""
     runners_up: int = 2
     """[sets] Of as many effects as were selected, from which the search continues where it ends above the noise floor.

@@ -41,6 +41,13 @@ def is_improvement(
     return comparison.worth_adding(found, partial(bar, models, less), criteria)
 
 
+def is_improvement_on_the_whole(
+    models: CandidateModels, less: FittedModel, found: Evidence, criteria: EvidenceCriteria = EVIDENCE_CRITERIA
+) -> bool:  # fmt: skip
+    """The same, whatever a part of the data loses."""
+    return comparison.improves(found, partial(bar, models, less), criteria)
+
+
 def better(before: FittedModel, after: FittedModel) -> bool:
     """Whether the second of two models with as many effects is more likely, beyond what the data leave open."""
     return _is_finite(after) and (not _is_finite(before) or comparison.better(evidence(before, after)))

@@ -185,14 +185,14 @@ class Moves:
         return self.step(replace(selection, models=self.models, rungs=Ladder(self.models)), refit)
 
     def _with_companion(self, selection: Selection, ranking: Sequence[Candidate]) -> Selection | None:
-        """Add an effect that by itself drives the free run away with the first other that keeps it where it belongs.
+        """Add an effect that by itself worsens a part of the data with the first other that mends that part.
 
-        Over windows the first alone improves the model, and perhaps only that; the free run asks for both.
+        A condition of the tests may show what another effect does, or the free run what windows do not.
         """
-        driving = [c.refit for c in ranking if c.drives_away and c.refit is not None]
+        worsening = [c.refit for c in ranking if c.worsens_part and c.refit is not None]
         if len(selection.added) + 2 > self.most:
             return None
-        for alone in driving[: CRITERIA.selection.companions]:
+        for alone in worsening[: CRITERIA.selection.companions]:
             refits = (c.refit for c in self._rank(alone, thorough=False) if c.refit is not None)
             both = next((refit for refit in refits if improves(self.models, selection.fitted, refit)), None)
             if both is not None:

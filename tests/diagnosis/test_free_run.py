@@ -66,7 +66,7 @@ def test_friction_that_drives_the_free_run_away_is_not_added_and_that_is_said(mo
     found = selected(monkeypatch, "coulomb_friction", "quadratic_damping")
     assert found.added == ()
     (friction,) = (one for one in found.ranking if one.effect == "coulomb_friction")
-    assert friction.drives_away
+    assert friction.worsens_part
     assert next(free_run_sentence(friction.refit.free_run)).startswith("The free run of the estimation data leaves")
     said = why(friction, friction.refit.fitness.preset.effects[0], found.base.held_out.error, None, False)
     assert "An effect that drives the free run away is not added." in said

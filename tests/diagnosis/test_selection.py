@@ -30,7 +30,7 @@ class Judgement:
     refit: Any
     improves: bool
     base: Any = None
-    drives_away: bool = False
+    worsens_part: bool = False
 
     @property
     def score(self):
@@ -52,7 +52,7 @@ class Judged:
 
     effects = ("a", "b", "c")
     floor = 0.1
-    freed = spring = shown = ""
+    freed = spring = shown = worsening = ""
 
     def __init__(self, scores: dict[str, float], needed: set[str], far: str, late: str, off: str) -> None:
         self.off = off
@@ -120,7 +120,9 @@ class Judged:
                 return Judgement(name, None, improves=False)
             refit = self.refit((*base.effects, name), {})
             together = {"b", "c"} <= set(refit.effects)
-            return Judgement(name, refit, improves=refit.held_out.score < base.held_out.score and not together)
+            falls = refit.held_out.score < base.held_out.score and not together
+            worsens = name in self.worsening and not base.effects
+            return Judgement(name, refit, improves=falls and not worsens, worsens_part=falls and worsens)
 
         return moves.in_rank_order(self, map(judged, names))
 
@@ -225,6 +227,17 @@ def test_two_of_which_neither_helps_beside_what_stands_for_both_are_found(added)
     scores = {"": 1.0, "a": 0.5, "b": 0.52, "c": 0.9, "ab": 0.5, "ac": 0.5, "bc": 0.05}
     assert added(scores, needed={"a", "b", "c"}, late="c") == {"b", "c"}
     assert added({**scores, "b": 0.7}, needed={"a", "b", "c"}, late="c") == {"a"}  # b is improbable beside a
+
+
+def test_an_effect_that_worsens_a_part_of_the_data_is_added_with_the_one_that_mends_it(monkeypatch):
+    """a explains most and makes one condition worse, as long as b is missing there; c helps with neither."""
+    judged = Judged({"": 1.0, "a": 0.4, "b": 0.99, "c": 1.0, "ab": 0.05, "ac": 0.4}, {"a", "b"}, "", "b", "")
+    judged.stand_in(monkeypatch)
+    assert selected(judged).added == ("a", "b")
+    judged = Judged(judged.scores, {"a", "b"}, "", "b", "")
+    judged.worsening = "a"
+    judged.stand_in(monkeypatch)
+    assert selected(judged).added == ("a", "b")
 
 
 def test_at_the_noise_an_effect_stands_in_the_place_of_another_that_is_a_little_worse(added):
