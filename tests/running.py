@@ -32,6 +32,8 @@ TOKEN = "a-token-for-tests"
 ENDED = ("succeeded", "failed", "cancelled")
 FEW_EFFECTS = "from tests.conftest import of_few_effects; few = of_few_effects(full=False); few.__enter__()"
 """Done first, has a service rank a few effects: for a story whose point is another than the whole catalogue."""
+LITTLE = f"{FEW_EFFECTS}; from tests.conftest import short_searches as short; less = short(False); less.__enter__()"
+"""The same, and its fits search shortly: for a story whose point is another than how a fit is found."""
 SERVE = """
 import sys
 from pathlib import Path

@@ -12,7 +12,7 @@ from playwright.sync_api import Browser, ConsoleMessage, Page
 
 from tests.app.conftest import zipped
 from tests.browser.window import Window, hearing, signed_in
-from tests.running import CHROMIUM, FEW_EFFECTS, Service, process
+from tests.running import CHROMIUM, LITTLE, Service, process
 
 HERE = Path(__file__).resolve().parent
 SCREENSHOTS = HERE.parents[1] / "build" / "screenshots"
@@ -39,8 +39,8 @@ def browser_type_launch_args() -> dict[str, object]:
 
 @pytest.fixture(scope="package")
 def site(tmp_path_factory: pytest.TempPathFactory, full: bool) -> Iterator[Service]:
-    """A service for all tests of this folder, no longer; in the short form its diagnoses rank eight effects."""
-    with process(tmp_path_factory.mktemp("site"), "" if full else FEW_EFFECTS) as service:
+    """A service for all tests of this folder, no longer; in the short form with short searches and eight effects."""
+    with process(tmp_path_factory.mktemp("site"), "" if full else LITTLE) as service:
         yield service
 
 

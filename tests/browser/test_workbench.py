@@ -15,7 +15,7 @@ from tests.browser import story
 from tests.browser.looks import everywhere
 from tests.browser.window import Window, signed_in
 from tests.hidden_dead_zone import zipped
-from tests.running import FEW_EFFECTS, Service, command, free_port
+from tests.running import LITTLE, Service, command, free_port
 
 SOUND, LACKING = "SIM-0001", "SIM-0002"
 NOISE = 0.5  # %, of each output of both
@@ -25,7 +25,7 @@ SEARCH = 1_200_000  # ms, for a search on 40 000 samples
 @pytest.fixture(scope="module")
 def site(tmp_path_factory: pytest.TempPathFactory, full: bool) -> Iterator[Service]:
     """The demo, as a new user starts it; in the short form its diagnoses rank eight effects."""
-    data, first = tmp_path_factory.mktemp("demo"), "" if full else FEW_EFFECTS
+    data, first = tmp_path_factory.mktemp("demo"), "" if full else LITTLE
     with command("demo", "--port", free_port(), "--data", data, until="token=", first=first) as line:
         yield Service.that_said(line)
 
