@@ -212,7 +212,7 @@ def short_searches(full: bool) -> Iterator[None]:
     """In the short form a search has a third of its members and generations, and two of them are polished, not five.
 
     For what is said of a fit, and not of how it is found: along a flat direction each polish goes on for as long as it
-    may. The usual searches are in tests/acceptance and tests/fit.
+    may. The usual searches are in tests/acceptance, and in tests/fit where the search is the point.
     """
     with pytest.MonkeyPatch.context() as own:
         if not full:
