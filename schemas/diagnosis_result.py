@@ -110,7 +110,8 @@ class VerdictView(BaseModel):
     `standing` is found where the error is at the noise floor, stand_in where something is left, contradicted where
     the error rises with an effect (`contradicted_by`) on runs to verify, nothing where no effect helps. `at_bound` are
     effects whose strength ended at a bound that the search set, `elsewhere` what other models explain as well, and
-    `stood_in` effects of the ladder that are not named, for beside proposed terms they are not needed. `probability` is
+    `stood_in` effects of the ladder that are not named, for beside proposed terms they are not needed, and
+    `unconfirmed` those that are not named, for validation data show nothing of them. `probability` is
     that of the verdict, null where it was not asked; `probabilities` those of each effect that was refitted, of
     "nothing" and of something "unlisted", `group_probabilities` those of the groups.
     """
@@ -125,6 +126,7 @@ class VerdictView(BaseModel):
     at_bound: list[str] = Field(default_factory=list)
     elsewhere: list[ExplanationView] = Field(default_factory=list)
     stood_in: list[str] = Field(default_factory=list)
+    unconfirmed: list[str] = Field(default_factory=list)
     probability: float | None = None
     probabilities: dict[str, float] = Field(default_factory=dict)
     group_probabilities: list[float] = Field(default_factory=list)

@@ -369,8 +369,9 @@ class Verification:
     """What runs that no fit saw say."""
 
     deviations: float = 2.0
-    """[standard errors] By which the error rises where runs to verify contradict an effect. Why: one in 40 by
-    chance: it only takes the word found away. Test: test_verification.py::test_chance_contradicts_seldom"""
+    """[standard errors] By which the error rises where runs to verify contradict an effect; and by which it falls by
+    less than is due where they show nothing of it. Why: one in 40 by chance: it only takes the word found away, or
+    the last name. Test: test_verification.py::test_chance_contradicts_seldom"""
     chunk_length: float = 10.0
     """[correlation times] In a chunk of the bootstrap. Why: chunks are then independent (Künsch 1989).
     Test: test_verification.py::test_chance_contradicts_seldom"""

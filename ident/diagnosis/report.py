@@ -97,12 +97,15 @@ def _text(selection: Selection, steps: Rungs, found: Findings, floor: float | No
     models, verdict = selection.models, conclude(found)
     against = tuple(filter(None, map(contradiction, found.verify)))
     in_band = in_time(lambda: models.floors.in_band)
+    unconfirmed = {change.effect: change for change in found.verify if change.effect in verdict.unconfirmed}
+    steps = [step for step in steps if step[0] not in unconfirmed]
     fewer = None if against else better_with_fewer(steps)
     return verdict_text(
-        found.added, verdict.indistinguishable, found.suspects, verdict.unexplained, steps[-1][1].errors,
+        verdict.effects, verdict.indistinguishable, found.suspects, verdict.unexplained, steps[-1][1].errors,
         selection.base.error, in_band is not False, floor, against, selection.complete, models.described,
-        found.at_bound, fewer, steps[-1][1].unstable.get("verify", ()), verdict.probabilities,
-        verdict.group_probabilities, selection.limit,
+        [name for name in found.at_bound if name not in unconfirmed], fewer,
+        steps[-1][1].unstable.get("verify", ()), verdict.probabilities, verdict.group_probabilities, selection.limit,
+        [unconfirmed[name] for name in verdict.unconfirmed],
     )  # fmt: skip
 
 

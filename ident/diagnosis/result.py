@@ -147,7 +147,8 @@ class Verdict:
     `standing` says how sure the effects are, see :data:`ident.diagnosis.verification.Standing`; None where it was not
     asked. `contradicted_by` are those with which the error rises on runs to verify, `at_bound` those whose strength
     ended at a bound that the search set, `elsewhere` what other models explain as well. `stood_in` are effects of the
-    ladder that are not named: beside terms that a search proposes the model does as well without them.
+    ladder that are not named: beside terms that a search proposes the model does as well without them; `unconfirmed`
+    are others of the ladder that are not named: runs to verify show nothing of them.
     `indistinguishable` are groups of which one is named, or two lags or delays that two others stand for as well.
     `probability` is that of the verdict, None where it was not asked; `probabilities` those of each effect that was
     refitted, of "nothing" and of something "unlisted", `group_probabilities` those of the groups.
@@ -163,6 +164,7 @@ class Verdict:
     at_bound: tuple[str, ...] = ()
     elsewhere: tuple[Explanation, ...] = ()
     stood_in: tuple[str, ...] = ()
+    unconfirmed: tuple[str, ...] = field(default=(), metadata=WHERE_KNOWN)
     probability: float | None = field(default=None, metadata=WHERE_KNOWN)
     probabilities: Mapping[str, float] = field(default_factory=dict, metadata=WHERE_KNOWN)
     group_probabilities: tuple[float, ...] = field(default=(), metadata=WHERE_KNOWN)

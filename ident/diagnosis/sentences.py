@@ -16,7 +16,7 @@ from ident.diagnosis.evidence.free_run import FreeRun, drifts
 from ident.diagnosis.evidence.probability import is_improbable
 from ident.diagnosis.result import Explanation, Suspect
 from ident.diagnosis.total_delay import TotalDelay
-from ident.diagnosis.verification import Contradiction
+from ident.diagnosis.verification import Contradiction, VerifyChange
 from ident.effects.effect import Effect
 from ident.fit.result import Combination
 from ident.presets.record_units import SAMPLE
@@ -94,7 +94,7 @@ def verdict_text(
     against: Sequence[Contradiction] = (), complete: bool = True, described: Callable[[str], str] = title,
     bounded: Sequence[str] = (), fewer: tuple[float, Sequence[str]] | None = None, unstable: Sequence[str] = (),
     probabilities: Mapping[str, float] = MappingProxyType({}), group_probabilities: Sequence[float] = (),
-    limit: int | None = None,
+    limit: int | None = None, unconfirmed: Sequence[VerifyChange] = (),
 ) -> str:  # fmt: skip
     """The verdict in a few sentences, what speaks against it first.
 
@@ -103,7 +103,8 @@ def verdict_text(
     bound of its search. `fewer` is the error on verify runs without the last of what was added, where it is
     smaller there; `unstable` are the verify runs on which the model is unstable with it. `probabilities` are those
     of effects, of "nothing" and of something "unlisted", `group_probabilities` those of the groups. `limit` is the
-    number of effects that ended the search, where that did.
+    number of effects that ended the search, where that did. `unconfirmed` are what verify runs say of effects that
+    were added and are not named.
     """
     named = _described_once(described)
     found = [one.message(named(one.effect)) for one in against]
@@ -119,7 +120,7 @@ def verdict_text(
             change = _change(before, errors, fewer, unstable)
         improbable = any(is_improbable(effect.values.get("probability"), probabilities) for effect in effects)
         found.append(_falls(added, effects, change, bool(against) or unexplained, improbable))
-    elif not complete:
+    elif not complete or unconfirmed:
         found.append(message("verdict.unconfirmed", before=before))
     elif unexplained:
         found.append(message("verdict.none", before=before))
@@ -127,6 +128,7 @@ def verdict_text(
         found.append(message("verdict.white", before=before))
     else:
         found.append(_probable("verdict.nothing", "nothing", probabilities, before=before))
+    found += [_shows_nothing(named(change.effect), change) for change in unconfirmed]
     found += [message("verdict.bounded", effect=named(name)) for name in bounded]
     found += [_group(group, added, named, unexplained) for group in groups]
     if not against and (others := _others(added, groups, probabilities)):
@@ -135,6 +137,14 @@ def verdict_text(
     if unexplained:
         found += _remaining(complete, limit, probabilities, in_band, floor)
     return said(found)
+
+
+def _shows_nothing(named: str, change: VerifyChange) -> Message:
+    """That runs to verify show nothing of an effect, by the errors that decide."""
+    first = change.with_mean[0] if change.with_mean else change.before
+    return message(
+        "verdict.shows_nothing", named=named, before=first, after=first + change.rise, due=first - change.due
+    )
 
 
 def _falls(

@@ -1,8 +1,9 @@
 """The verdict of a diagnosis: a pure function of its findings. The whole rule stands on this page.
 
 What is *named* is what the selection added, but for what is dispensable: with terms that were confirmed the model does
-as well without it. The residual is *unexplained* unless it is noise. A *group* are effects that the data cannot tell
-apart. The verdict stands in one of four ways:
+as well without it; and but for what was added last and is *unconfirmed*: validation data show nothing of it, although
+it would lower their error if it acted. The residual is *unexplained* unless it is noise. A *group* are effects that the
+data cannot tell apart. The verdict stands in one of four ways:
 
 * *nothing*: no effect is named;
 * *contradicted*: with an effect that is named, the error on runs to verify rises;
@@ -20,6 +21,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from itertools import takewhile
 
 from ident.diagnosis.criteria import CRITERIA, Criteria
 from ident.diagnosis.evidence.probability import NOTHING, Probabilities, SetGains, probabilities
@@ -86,6 +88,15 @@ def contradicts(change: VerifyChange, criteria: Criteria = CRITERIA) -> bool:
     return change.rise > criteria.verification.deviations * change.std_error
 
 
+def shows_nothing(change: VerifyChange, criteria: Criteria = CRITERIA) -> bool:
+    """Whether runs to verify show nothing of an effect that they would show if it acted as it was fitted.
+
+    The error there does not fall beyond chance, and beyond chance it falls by less than is due.
+    """
+    chance, fall = criteria.verification.deviations * change.std_error, -change.rise
+    return not contradicts(change, criteria) and fall <= chance < change.due - fall
+
+
 def contradiction(change: VerifyChange | None) -> Contradiction | None:
     """That runs to verify contradict what an effect or a term stands for, where they do."""
     return None if change is None or not contradicts(change) else change.contradiction()
@@ -93,10 +104,11 @@ def contradiction(change: VerifyChange | None) -> Contradiction | None:
 
 def conclude(found: Findings, criteria: Criteria = CRITERIA) -> Verdict:
     """The verdict that follows from the findings; its sentences are the report's."""
-    named = tuple(name for name in found.added if name not in found.dispensable)
+    unconfirmed = _unconfirmed(found, criteria)
+    named = tuple(name for name in found.added if name not in (*found.dispensable, *unconfirmed))
     contradicted = tuple(change.effect for change in found.verify if contradicts(change, criteria))
     against = tuple(name for name in contradicted if name not in found.dispensable)
-    groups = _groups(found)
+    groups = _groups(found, unconfirmed)
     of_sets = None if found.set_gains is None else probabilities(found.set_gains, criteria.evidence)
     return Verdict(
         effects=named,
@@ -108,6 +120,7 @@ def conclude(found: Findings, criteria: Criteria = CRITERIA) -> Verdict:
         at_bound=found.at_bound,
         elsewhere=tuple(found.elsewhere),
         stood_in=found.dispensable,
+        unconfirmed=unconfirmed,
         probability=None if of_sets is None else _probability(found, of_sets, named, groups, criteria),
         probabilities={} if of_sets is None else of_sets.named,
         group_probabilities=() if of_sets is None else tuple(_of_group(group, of_sets, named) for group in groups),
@@ -147,8 +160,18 @@ def _standing(
     return "found"
 
 
-def _groups(found: Findings) -> tuple[Names, ...]:
-    """Effects that the data cannot tell apart: those of a lag pair count once, none is of a dispensable effect."""
+def _unconfirmed(found: Findings, criteria: Criteria) -> Names:
+    """The effects at the end of the selection of which runs to verify show nothing.
+
+    One that was added earlier may show itself with what came after it, so it stays.
+    """
+    nothing = {change.effect for change in found.verify if shows_nothing(change, criteria)}
+    asked = [name for name in found.added if name not in found.dispensable]
+    return tuple(reversed([*takewhile(nothing.__contains__, reversed(asked))]))
+
+
+def _groups(found: Findings, unconfirmed: Names) -> tuple[Names, ...]:
+    """Effects that the data cannot tell apart: those of a lag pair count once, each of an effect that is named."""
     alone = (group for group in found.alternatives if len(group) > 1)
     groups = (*(group for group in alone if not any({*group} <= {*pair} for pair in found.lag_pairs)), *found.lag_pairs)
-    return tuple(group for group in groups if not {*group} & {*found.added} & {*found.dispensable})
+    return tuple(group for group in groups if not {*group} & {*found.added} & {*found.dispensable, *unconfirmed})

@@ -73,7 +73,8 @@ class VerifyChange:
     Where the mean counts that of the errors `with_mean` is meant, which decide: they are what was fitted. The others
     are those of eq. (17), that tables show.
     `after` is None where the model is `unstable` on these runs with the effect, and was not without. Of a `free_run`
-    that is driven away they are the errors with its mean, and that it is more than chance has been asked.
+    that is driven away they are the errors with its mean, and that it is more than chance has been asked. `shown` is
+    by how much the model differs on these runs with the effect, as an error of the same kind.
     """
 
     effect: str
@@ -83,6 +84,16 @@ class VerifyChange:
     unstable: tuple[str, ...] = ()
     free_run: bool = False
     with_mean: tuple[float, float] | None = None
+    shown: float = 0.0
+
+    @property
+    def due(self) -> float:
+        """By how much the error that was fitted falls if the effect acts as it was fitted.
+
+        What the model then leaves has nothing to do with what the effect shows: before² = shown² + after².
+        """
+        first = self.with_mean[0] if self.with_mean else self.before
+        return first - float(np.sqrt(max(first**2 - self.shown**2, 0.0)))
 
     @property
     def rise(self) -> float:
@@ -120,9 +131,11 @@ def verify_change(
         counted = _raised(before, means[0]), _raised(after, means[1])
     with_mean = _error(runs, counted[0]), _error(runs, counted[1])
     std_error = _error_of_difference(runs, *counted)
+    shown = _error(runs, [first - last for first, last in zip(*counted, strict=True)])
     if means is None:
-        return VerifyChange(effect, *with_mean, std_error)
-    return VerifyChange(effect, _error(runs, before), _error(runs, after), std_error, with_mean=with_mean)
+        return VerifyChange(effect, *with_mean, std_error, shown=shown)
+    tabled = _error(runs, before), _error(runs, after)
+    return VerifyChange(effect, *tabled, std_error, with_mean=with_mean, shown=shown)
 
 
 def _raised(residuals: Sequence[Array], means: Array) -> list[Array]:

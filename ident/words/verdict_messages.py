@@ -97,6 +97,10 @@ VERDICT: Mapping[str, str] = {
         "The error falls {change} with {effects:all}. More probably this has another cause, or is chance.",
     "verdict.partly": "With {effects:all} the error on estimation data falls {change}.",
     "verdict.unconfirmed": "No effect was confirmed that lowers the error of {before:error}.",
+    "verdict.shows_nothing":
+        "With {named} the error on estimation data falls further, but validation data show nothing of it: the error "
+        "there is {before:error} without it and {after:error} with it, and would be {due:error} if it acted. Either it "
+        "only imitates something else, or the machine was different in these runs.",
     "verdict.white":
         "Nothing seems to be missing: the residual, {before:error}, is white. The noise floor is not known.",
     "verdict.nothing": "Nothing is missing: the error of {before:error} is measurement noise.",

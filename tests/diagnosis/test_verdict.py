@@ -51,6 +51,36 @@ def test_what_only_a_dispensable_effect_was_contradicted_by_is_a_stand_in():
     assert cleared.stood_in == ("lead",)
 
 
+SHOWS_NOTHING = VerifyChange("lag", 0.1, 0.0999, 0.001, shown=0.06)  # due if it acts: to 0.08
+
+
+@pytest.mark.parametrize(
+    ("change", "named"),
+    [
+        (SHOWS_NOTHING, ("lead",)),
+        (replace(SHOWS_NOTHING, after=0.097), ("lead", "lag")),  # it falls by three standard errors
+        (replace(SHOWS_NOTHING, shown=0.02), ("lead", "lag")),  # due to 0.098: within chance of what came
+        (replace(SHOWS_NOTHING, std_error=0.02), ("lead", "lag")),  # nobody knows
+        (replace(SHOWS_NOTHING, after=0.103), ("lead", "lag")),  # contradicted, which is said of what is named
+        (replace(SHOWS_NOTHING, before=0.05, after=0.0499, with_mean=(0.1, 0.097)), ("lead", "lag")),
+        (replace(SHOWS_NOTHING, before=0.05, after=0.02, with_mean=(0.1, 0.0999)), ("lead",)),
+    ],
+)
+def test_what_was_added_last_is_not_named_where_validation_data_would_show_it_and_do_not(change, named):
+    two = replace(LEAD, added=("lead", "lag"), verify=(FALLS, change), alternatives=(("lag", "delay"),))
+    verdict = conclude(two)
+    assert verdict.effects == named
+    assert verdict.unconfirmed == (() if "lag" in named else ("lag",))
+    assert verdict.indistinguishable == ((("lag", "delay"),) if "lag" in named else ())
+
+
+def test_an_effect_of_which_validation_data_show_nothing_is_named_where_a_later_one_is():
+    """Two that show themselves together: the first alone need not lower the error."""
+    first = replace(SHOWS_NOTHING, effect="lead")
+    assert conclude(replace(LEAD, added=("lead", "lag"), verify=(first, FALLS))).effects == ("lead", "lag")
+    assert conclude(replace(LEAD, verify=(first,))).effects == ()
+
+
 @pytest.mark.parametrize(
     ("residual", "noise"),
     [

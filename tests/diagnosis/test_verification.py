@@ -9,7 +9,7 @@ import pytest
 from scipy.signal import lfilter
 
 from ident.diagnosis.result import Diagnosis
-from ident.diagnosis.verdict import contradiction
+from ident.diagnosis.verdict import contradiction, shows_nothing
 from ident.diagnosis.verification import Contradiction, verify_change
 from ident.errors import Unusable
 from ident.fit.settings import Settings
@@ -74,6 +74,24 @@ def test_chance_contradicts_seldom():
     assert count <= 12
 
 
+def test_what_acts_in_runs_to_verify_lowers_their_error_as_is_due_and_what_does_not_shows_nothing():
+    """A part of the output that the effect makes, in noise: there as fitted, not at all, and half of it."""
+    runs, made, noise = [run_of(1)], residual(1, 0.08), residual(2, 0.1)
+    acts, not_there, half = (verify_change("lead", runs, [noise + share * made], [noise + (share - 1.0) * made])
+                             for share in (1.0, 0.0, 0.5))  # fmt: skip
+    assert acts.shown == pytest.approx(0.08, rel=0.02)
+    assert acts.due == pytest.approx(-acts.rise, rel=0.2)
+    assert [shows_nothing(one) for one in (acts, not_there, half)] == [False, False, True]
+    assert contradiction(not_there) is not None
+
+
+def test_what_acts_seldom_shows_nothing():
+    runs = [run_of(1)]
+    found = [verify_change("lead", runs, [residual(2 * i, 0.1) + (made := residual(2 * i + 1, size))],
+                           [residual(2 * i, 0.1) + 0.1 * made]) for i in range(60) for size in (0.03, 0.1)]  # fmt: skip
+    assert sum(map(shows_nothing, found)) <= 2
+
+
 @pytest.fixture(scope="module")
 def other(full):
     """A motor with a dead zone is fitted; the runs to verify are of one without."""
@@ -107,6 +125,18 @@ def test_the_standing_is_read_back_and_an_unknown_one_is_refused(other):
     assert Diagnosis.from_json({**written, "verdict": {"effects": []}}).verdict.standing is None  # of an older version
     with pytest.raises(Unusable, match="is none of found, stand_in, contradicted, nothing"):
         Diagnosis.from_json({**written, "verdict": {**written["verdict"], "standing": "sure"}})
+
+
+@pytest.mark.usefixtures("few_effects")
+def test_what_validation_data_show_nothing_of_is_said_and_not_named():
+    """With a narrower dead zone the other motor is followed as badly with that of the fitted run as without."""
+    fitted, other = motor(8, half_width=1.5), motor(9, half_width=1.1)
+    matrix = replace(fitted, runs=(fitted.of_use("fit")[0], other.of_use("verify")[0]))
+    found = diagnose(matrix, settings=Settings(model="motor"), most=1)
+    assert (found.verdict.effects, found.verdict.unconfirmed) == ((), ("dead_zone",))
+    assert found.ladder[-1].added == "dead_zone"
+    assert "validation data show nothing of it: the error there is" in found.verdict.text
+    assert Diagnosis.from_json(found.to_json()).verdict == found.verdict
 
 
 @pytest.mark.usefixtures("few_effects")
