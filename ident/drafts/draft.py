@@ -29,6 +29,7 @@ OUTPUTS = ("displacement", "velocity", "force", "load_pressure")
 _DRIVES = ("command", "current")
 _HELD = "the command rests and jumps, so a zero-order hold is assumed (hold: zoh)"
 _DRAWN = "the command is assumed to be linear between samples (hold: linear); set zoh if it is held"
+_MOVED = "the motion that drives is assumed to be linear between samples (hold: linear); set zoh if it is held"
 _CURVED = (
     "the command's spectrum ends below half the sample rate, so it is assumed to be band-limited between samples "
     "(hold: band-limited); set zoh if it is held, linear if it is drawn"
@@ -193,7 +194,8 @@ class Draft:
             return
         held = [file.name for file, one in zip(self.files, known, strict=True) if one.hold == "zoh"]
         if not held:
-            yield _CURVED if self._are_curves(known) else _DRAWN
+            drawn = _DRAWN if any("command" in one.channels for one in known) else _MOVED
+            yield _CURVED if self._are_curves(known) else drawn
             return
         if len(held) == len(known):
             yield _HELD

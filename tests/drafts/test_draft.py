@@ -235,6 +235,14 @@ def test_a_command_that_rests_and_jumps_is_taken_as_held_and_it_is_said(command,
     assert not any("hold:" in doubt for doubt in said.doubts)
 
 
+def test_of_a_record_without_a_command_the_motion_is_said_to_be_linear_between_samples():
+    text = "\n".join(["time (s),travel (mm),load (N)", *(f"{n / 100:g},{np.sin(n / 9):g},1" for n in range(90)), ""])
+    channels = {"displacement": Answer("travel (mm)"), "force": Answer("load (N)")}
+    draft = Draft([raw(text)], Answers(serial="D", channels=channels, common={"output": "force"}))
+    (told,) = [doubt for doubt in draft.doubts if "hold:" in doubt]
+    assert told.startswith("the motion that drives is assumed to be linear")
+
+
 def test_where_some_files_look_held_and_others_do_not_they_are_named():
     def file(name: str, samples: np.ndarray):
         rows = [f"{n / 100:g},{u:g},1" for n, u in enumerate(samples)]
