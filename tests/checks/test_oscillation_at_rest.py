@@ -47,6 +47,27 @@ def test_what_an_input_or_the_mains_explain_and_what_dies_down_is_none(swings, c
     assert self_oscillation(record(swings, command)) is None
 
 
+def stepped(damping: float) -> Run:
+    """Eight steps of other heights, 0.75 s each, of which each is answered by 4.5 periods of 6 Hz that begin anew."""
+    rng, since = np.random.default_rng(2), T % 0.75
+    command = np.repeat(rng.uniform(-1.5, 1.5, 8), 375)
+    swings = 0.2 * np.exp(-damping * 2 * np.pi * 6.0 * since) * np.sin(2 * np.pi * 6.0 * since + command)
+    y = command + swings + rng.normal(0.0, 0.003, len(T))
+    units = {"command": "m", "displacement": "m"}
+    return Run("steps", "", RATE, {"command": command, "displacement": y}, units)
+
+
+def test_several_rests_show_an_oscillation_of_which_none_has_ten_periods():
+    found = self_oscillation(stepped(0.0))
+    assert found.frequency == pytest.approx(6.0, rel=0.02)
+    assert found.growth == 0
+
+
+@pytest.mark.parametrize("damping", [0.004, 0.03, 0.2])
+def test_what_dies_down_in_each_of_several_rests_is_none(damping):
+    assert self_oscillation(stepped(damping)) is None
+
+
 def test_the_ripple_of_what_turns_is_driven_round_and_no_oscillation():
     swings = record(0.1 * np.sin(2 * np.pi * 12.3 * T))
     turns = replace(swings, output="velocity", channels={**swings.channels, "velocity": swings.measured})
