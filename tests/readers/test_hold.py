@@ -52,7 +52,7 @@ def test_what_lines_lose_of_a_sine_is_its_droop():
     assert found.filled < 2.5
 
 
-@pytest.mark.parametrize("command", [multisine(0.66), noise(0.85), 3.0 + multisine(0.4)])
+@pytest.mark.parametrize("command", [multisine(0.66), noise(0.85), 3.0 + multisine(0.4), noise(0.12)])
 def test_a_command_that_ends_below_half_the_rate_is_band_limited_and_it_is_told(command):
     hold, (told,) = measured(command)
     assert hold == "band-limited"
