@@ -64,7 +64,8 @@ class CandidateModels:
     `given` are what the user holds fixed or bounds; `left_out` the ids of runs that are not fitted; `horizon` (s) the
     length of the windows over which a machine that integrates is fitted, None for whole runs, `memory` (s) as there. Of
     the runs that are `contradicted` no noise floor is known: a fitted model leaves less than what was told. What the
-    data do not determine stays where it is `resting` until a model asks for another place.
+    data do not determine stays where it is `resting` until a model asks for another place. A trial divides a sample
+    into `trial_steps` at most.
     """
 
     preset: Preset
@@ -82,6 +83,7 @@ class CandidateModels:
     bars: dict[tuple[str, ...], float] = field(default_factory=dict)
     contradicted: frozenset[str] = frozenset()
     resting: Resting = field(default_factory=Resting)
+    trial_steps: int = MOST
 
     @classmethod
     def of(
@@ -248,7 +250,7 @@ class CandidateModels:
             runs = self._shortened(samples) if samples else self.runs
             self._known[key] = SimulatedFitness(
                 model, self.matrix, runs, self.band, space, horizon=self.horizon, memory=self.memory, trusting=True,
-                recent=self._recent,
+                recent=self._recent, most=self.trial_steps if samples else MOST,
             )  # fmt: skip
         known = self._known[key]
         return known.fresh(known.runs)  # no search goes on from the first states in which another one ended
@@ -295,8 +297,7 @@ class CandidateModels:
 
     def _steps(self, fitted: FittedModel, most: int = MOST) -> int:
         """The simulation steps of all runs, of which at most so many a sample count."""
-        steps = int(fitted.fitness.steps(fitted.fitness.space.values(fitted.point[None])).max())
-        return min(steps, most) * sum(run.length for run in self.runs)
+        return min(fitted.steps, most) * sum(run.length for run in self.runs)
 
     def at_floor(self, refit: FittedModel) -> bool:
         """Whether the error of a refit is noise alone, as far as the floor is known; never where it cannot be told."""

@@ -72,3 +72,16 @@ def test_what_rests_is_free_where_a_model_asks_for_another_place():
     axis, place = found.space.names.index("m0"), found.space.point({**found.values, "m0": 0.05})
     held = replace(shown, resting=Resting({"m0": float(place[axis])}))
     assert held.refit((), found.values).values["m0"] == pytest.approx(found.values["m0"], rel=0.01)
+
+
+def test_a_trial_takes_few_steps_and_a_refit_as_many_as_it_needs():
+    """What a trial simulated with too few is not taken for what the refit asks for; where few do, it is."""
+    _, models, _ = resting()
+    trial, full = models.fitness((), 131_072), models.fitness(())
+    for mass, few, needed in ((1e-3, 8, 16), (0.14, 1, 1)):
+        point = full.space.point({"m0": mass, "c0": 1.4, "k0": 3.7})
+        values = full.space.values(point[None])
+        assert (trial.steps(values)[0], full.steps(values)[0]) == (few, needed)
+        roughly, closely = trial.exact(point), full.exact(point)
+        assert roughly.error == pytest.approx(closely.error, rel=1e-3)
+        assert (roughly.error == closely.error) == (few == needed)
