@@ -64,8 +64,7 @@ class CandidateModels:
     `given` are what the user holds fixed or bounds; `left_out` the ids of runs that are not fitted; `horizon` (s) the
     length of the windows over which a machine that integrates is fitted, None for whole runs, `memory` (s) as there. Of
     the runs that are `contradicted` no noise floor is known: a fitted model leaves less than what was told. What the
-    data do not determine stays where it is `resting` until a model asks for another place. A trial divides a sample
-    into `trial_steps` at most.
+    data do not determine stays where it is `resting` until a model asks for another place.
     """
 
     preset: Preset
@@ -83,7 +82,6 @@ class CandidateModels:
     bars: dict[tuple[str, ...], float] = field(default_factory=dict)
     contradicted: frozenset[str] = frozenset()
     resting: Resting = field(default_factory=Resting)
-    trial_steps: int = MOST
 
     @classmethod
     def of(
@@ -250,7 +248,7 @@ class CandidateModels:
             runs = self._shortened(samples) if samples else self.runs
             self._known[key] = SimulatedFitness(
                 model, self.matrix, runs, self.band, space, horizon=self.horizon, memory=self.memory, trusting=True,
-                recent=self._recent, most=self.trial_steps if samples else MOST,
+                recent=self._recent,
             )  # fmt: skip
         known = self._known[key]
         return known.fresh(known.runs)  # no search goes on from the first states in which another one ended
@@ -394,6 +392,9 @@ class CandidateModels:
         values = {**usual, **start, **fitness.space.fixed}
         fitness = self.reaching(effects, fitness, [values])
         point = self.resting.held(fitness.space, fitness.space.point(values))
+        if samples:
+            needed = int(fitness.steps(fitness.space.values(point[None])).max())
+            fitness = replace(fitness, most=max(CRITERIA.estimation.trial_steps, needed))
         free = way or (CRITERIA.estimation.trial if samples else CRITERIA.estimation.full)
         way = replace(free, within=self.resting.bounds(fitness.space)) if self.resting.places else free
         found = self._optimum(effects, fitness, point, way, samples)
@@ -405,7 +406,8 @@ class CandidateModels:
             ]
             if not ended:
                 break
-            wider = replace(self.fitness(effects, samples), space=wider_at(found.space, found.point, ended))
+            wider = wider_at(found.space, found.point, ended)
+            wider = replace(self.fitness(effects, samples), space=wider, most=fitness.most)
             farther = self._optimum(effects, wider, wider.space.point(found.values), way, samples)
             if not farther.local.error < CRITERIA.estimation.new_optimum * found.local.error:
                 break

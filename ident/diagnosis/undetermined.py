@@ -22,8 +22,8 @@ from ident.fit.uncertainty import DETERMINED
 def rested(models: CandidateModels, refit: FittedModel) -> tuple[CandidateModels, FittedModel]:
     """The refit with what the data do not determine where fewer steps follow it, as far as the error stays.
 
-    The other parameters are fitted again with it held there, and the models hold it there, too; their trials take no
-    more steps than are usual, or this refit needs. What a user bounds or holds stays where it is.
+    The other parameters are fitted again with it held there, and the models hold it there, too. What a user bounds
+    or holds stays where it is.
     """
     if not refit.stable:
         return models, refit
@@ -34,8 +34,7 @@ def rested(models: CandidateModels, refit: FittedModel) -> tuple[CandidateModels
             moved += [number] if slowed is not refit else []
             refit = slowed
     places = {refit.space.names[number]: float(refit.point[number]) for number in moved}
-    most = max(CRITERIA.estimation.trial_steps, refit.steps)
-    return replace(models, resting=Resting(places), trial_steps=most, _known={}), refit
+    return (replace(models, resting=Resting(places)) if places else models), refit
 
 
 def _slowed(models: CandidateModels, refit: FittedModel, number: int) -> FittedModel:
