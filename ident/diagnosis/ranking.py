@@ -179,7 +179,7 @@ def _tried(models: CandidateModels, base: FittedModel, prediction: Prediction, a
 
 
 def _confirmed(models: CandidateModels, base: FittedModel, candidate: Candidate, best: float) -> Candidate:
-    """A candidate refitted to every sample, as far as its score on trial, compared with the `best`, is worth it."""
+    """A candidate refitted to every sample, as closely as its score on trial asks for; `best` is the least of all."""
     assert candidate.trial is not None
     is_behind = candidate.score > CRITERIA.ranking.close_trial * best
     way = CRITERIA.estimation.behind if is_behind else CRITERIA.estimation.full
