@@ -30,6 +30,7 @@ from tests.diagnosis.vary import vary
 from tests.reference import qian_reference as linear
 from tests.reference.outside_reference import Outside, measure_all
 
+pytestmark = pytest.mark.usefixtures("few_effects")  # nothing of the catalogue is added here
 PLANT, NOISE = linear.Plant(), 0.005
 STORED = Path(__file__).parents[2] / "stored"
 
