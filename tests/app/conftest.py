@@ -41,9 +41,10 @@ RUN = """
 
 
 @lru_cache
-def files(serial: str = "SW-1") -> dict[str, bytes]:
-    """Nine runs of half a second: name → bytes."""
-    chosen = reference.trials()[::9] + reference.trials()[-2:]
+def files(serial: str = "SW-1", more: bool = False) -> dict[str, bytes]:
+    """Nine runs of half a second, or twelve: name → bytes."""
+    trials = reference.trials()
+    chosen = [*trials[::9], *trials[-2:]] if more else [*trials[:54:9], trials[63], *trials[-2:]]
     records = reference.measure_all(reference.Plant(), chosen, seconds=0.5, noise=0.005, seed=3, hold="linear")
     return packed(records, serial)
 
@@ -64,9 +65,9 @@ def packed(records: list[reference.Record], serial: str) -> dict[str, bytes]:
 
 
 @lru_cache
-def zipped(serial: str = "SW-1") -> bytes:
+def zipped(serial: str = "SW-1", more: bool = False) -> bytes:
     """The same as one archive."""
-    return archived(files(serial))
+    return archived(files(serial, more))
 
 
 def unpacked(files: dict[str, bytes], folder: Path) -> Path:

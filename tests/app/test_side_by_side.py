@@ -34,7 +34,7 @@ def test_each_fit_is_a_column_with_what_it_was_stored_with(service, three):
 def test_one_plot_has_them_all(service, three):
     url = f"/api/v1/fits/{three[0]}/figures/side-by-side"
     rows = json.loads(service.get(f"{url}.json", params={"other": three[1:]}).content)["datasets"]["errors"]
-    assert len(rows) == 3 * 12
+    assert len(rows) == 3 * 9
     assert len({row["f"] for row in rows}) == 3
     assert service.get(f"{url}.svg", params={"other": three[1]}).content.startswith(b"<svg")
     refused = service.get(f"{url}.svg")

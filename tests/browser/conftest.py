@@ -46,8 +46,8 @@ def site(tmp_path_factory: pytest.TempPathFactory, full: bool) -> Iterator[Servi
 
 @pytest.fixture(scope="package")
 def matrix(site: Service) -> str:
-    """An uploaded matrix of nine runs."""
-    answer = site.client.post("/matrices", files={"files": ("matrix.zip", zipped("SW/1 <b>"))})
+    """An uploaded matrix of twelve runs."""
+    answer = site.client.post("/matrices", files={"files": ("matrix.zip", zipped("SW/1 <b>", more=True))})
     assert answer.status_code == 201, answer.text
     return str(answer.json()["id"])
 

@@ -104,7 +104,7 @@ def test_what_goes_is_shown_then_removed_and_says_so(lab: TestClient) -> None:
     for one in found["items"]:
         matrix, fit = one["matrix"], f"f-{one['serial']}"
         view = lab.get(f"{API}/matrices/{matrix}").json()
-        assert len(view["runs"]) == 12
+        assert len(view["runs"]) == 9
         day = view["removed_at"][:10]
         for method, path, body in (
             ("GET", f"/matrices/{matrix}/description", None), ("GET", f"/fits/{fit}/compare", None),
