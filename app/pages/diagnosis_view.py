@@ -229,8 +229,8 @@ def _ladder(found: Diagnosis) -> Iterator[Rung]:
 
 def _left(found: Diagnosis) -> str:
     """What stays unexplained, in a sentence."""
-    error, floor = found.ladder[-1].error_of("fit").in_print(), found.noise_floor.get("fit")
-    after = " with all recommended effects" if len(found.ladder) > 1 else ""
+    error, floor = found.confirmed_ladder[-1].error_of("fit").in_print(), found.noise_floor.get("fit")
+    after = " with all recommended effects" if len(found.confirmed_ladder) > 1 else ""
     if floor is None:
         return f"The error is {error}{after}, and the residual is not white."
     return f"The error is {error}{after}, above the noise floor of {percent_in_print(floor)}."

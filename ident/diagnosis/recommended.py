@@ -56,6 +56,8 @@ def settings_after(
 def recommended(found: Diagnosis, terms: int | None = None) -> End:
     """What a diagnosis would add, with all terms that it proposes or the first `terms` of them (0: none).
 
+    Without terms it has no effect of which validation data show nothing.
+
     Raises Unusable where it proposes fewer, or where it came to no refit.
     """
     proposals = found.proposals or ()
@@ -65,7 +67,7 @@ def recommended(found: Diagnosis, terms: int | None = None) -> End:
     taken = proposals[:terms]
     if taken:
         return _with_terms(taken)
-    ladder = [*_rungs(found)]
+    ladder = [end for end in _rungs(found) if not {*end.added} & {*found.verdict.unconfirmed}]
     if not ladder:
         raise Unusable("bad-diagnosis", "the diagnosis holds no refit", "start",
                        "give what `servoident diagnose --json FILE` wrote")  # fmt: skip

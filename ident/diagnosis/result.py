@@ -253,6 +253,11 @@ class Diagnosis(Shown):
     matrix: Matrix | None = field(default=None, compare=False, repr=False, metadata=UNWRITTEN)
 
     @property
+    def confirmed_ladder(self) -> tuple[Rung, ...]:
+        """The ladder without the last effects of which runs to verify show nothing: what is recommended."""
+        return tuple(rung for rung in self.ladder if rung.added not in self.verdict.unconfirmed)
+
+    @property
     def lacks_input(self) -> bool:
         """Whether no effect was looked for, since an input of the runs to fit is not recorded."""
         return bool(self.missing_inputs) and self.complete and not self.candidates

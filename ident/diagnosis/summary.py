@@ -120,7 +120,7 @@ def _names(found: Diagnosis, name: str) -> list[str]:
 
 def _strength(found: Diagnosis, name: str) -> tuple[float, float, str] | None:
     """The strength on the last step, its standard error and unit; None where it was not told."""
-    last = found.ladder[-1].parameters if found.ladder else {}
+    last = found.confirmed_ladder[-1].parameters if found.ladder else {}
     strength = next((p for parameter, p in last.items() if parameter.startswith(f"{name}.")), None)
     if strength is None or strength.std_error is None:
         return None
@@ -129,7 +129,7 @@ def _strength(found: Diagnosis, name: str) -> tuple[float, float, str] | None:
 
 def _error(found: Diagnosis) -> Message:
     """The error on the data that say most, before and after, and the noise floor."""
-    steps = found.ladder or (found.baseline,)
+    steps = found.confirmed_ladder or (found.baseline,)
     use = next((use for use in _USES if steps[0].error.get(use) is not None), _USES[-1])
     before, after = (step.error.get(use) for step in (steps[0], steps[-1]))
     floor = found.noise_floor.get(use) or found.noise_floor.get("fit")

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from scipy.signal import lfilter
 
+from ident.diagnosis.recommended import recommended
 from ident.diagnosis.result import Diagnosis
 from ident.diagnosis.verdict import contradiction, shows_nothing
 from ident.diagnosis.verification import Contradiction, verify_change
@@ -134,7 +135,8 @@ def test_what_validation_data_show_nothing_of_is_said_and_not_named():
     matrix = replace(fitted, runs=(fitted.of_use("fit")[0], other.of_use("verify")[0]))
     found = diagnose(matrix, settings=Settings(model="motor"), most=1)
     assert (found.verdict.effects, found.verdict.unconfirmed) == ((), ("dead_zone",))
-    assert found.ladder[-1].added == "dead_zone"
+    assert [rung.added for rung in found.ladder] == [None, "dead_zone"]
+    assert (recommended(found).added, [rung.added for rung in found.confirmed_ladder]) == ((), [None])
     assert "validation data show nothing of it: the error there is" in found.verdict.text
     assert Diagnosis.from_json(found.to_json()).verdict == found.verdict
 

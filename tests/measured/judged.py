@@ -83,7 +83,7 @@ class Judged:
     def row(self) -> tuple[str, ...]:
         """Machine, model, errors before and after on fitted and held-back runs, what was named, standing, terms, s."""
         over = "" if self.found.horizon is None else f" over {self.found.horizon:.2g} s"
-        first, last = (rung.error for rung in (self.found.ladder[0], self.found.ladder[-1]))
+        first, last = (rung.error for rung in (self.found.ladder[0], self.found.confirmed_ladder[-1]))
         before, after = (f"{percent(error['fit'])} / {percent(error['verify'])}" for error in (first, last))
         named = ", ".join(self.found.verdict.effects) or "–"
         standing = str(self.found.verdict.standing).replace("_", "-")
@@ -105,7 +105,7 @@ class Judged:
     @property
     def _size(self) -> str:
         """The RMSE of the last step of the ladder on the held-back record, its mean counted."""
-        last = self.found.ladder[-1]
+        last = self.found.confirmed_ladder[-1]
         size = last.rmse.get("verify")
         return "–" if size is None else quantity(size, last.rmse_unit)
 
