@@ -406,9 +406,9 @@ class CandidateModels:
             ]
             if not ended:
                 break
-            wider = wider_at(found.space, found.point, ended)
-            wider = replace(self.fitness(effects, samples), space=wider, most=fitness.most)
-            farther = self._optimum(effects, wider, wider.space.point(found.values), way, samples)
+            space = wider_at(found.space, found.point, ended)
+            wider = replace(self.fitness(effects, samples), space=space, most=fitness.most)
+            farther = self._optimum(effects, wider, space.point(found.values), way, samples)
             if not farther.local.error < CRITERIA.estimation.new_optimum * found.local.error:
                 break
             found = farther

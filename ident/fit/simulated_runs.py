@@ -440,7 +440,7 @@ class SimulatedRuns:
                 for p in effect.added
                 if p.at_reversals is not None
             ]
-        return np.minimum(np.max(needed, axis=0), self.most)
+        return np.asarray(np.minimum(np.max(needed, axis=0), self.most))
 
     def _at_reversals(self, of: AtReversals, size: Array, values: Mapping[str, Array]) -> NDArray[np.int64]:
         """Steps a sample that a way, a speed or a force (v,) asks for where the motion reverses."""
