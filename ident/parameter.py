@@ -18,6 +18,8 @@ class Starts(Enum):
     """Places along its axis between the bounds."""
     FINELY = "finely along the range"
     """Many places along its axis: of what makes the output jump, which no step from one place to another tells."""
+    AS_KNOWN = "as known"
+    """What whoever builds the machine knows, as a gear: at its value, which no search moves."""
     PHASE = "phase"
     """An angle, rad: all around."""
     SPECTRAL_LINES = "spectral lines"

@@ -95,6 +95,6 @@ def parameter_of(entry: Fields, symbol: str, default: float | None = None, name:
         raise Unusable("outside-bounds", f"{value:g} {scale.unit} is outside its bounds", entry.where, "widen them")
     own = symbol_of(entry, entry.text("name") or name or symbol)
     start = _STARTS[entry.choice("start", tuple(_STARTS), Starts.ALONG_RANGE.value)]
-    searched = "start" in entry and default is None and start is not Starts.STROKE_MIDDLE
+    searched = "start" in entry and default is None and start not in (Starts.STROKE_MIDDLE, Starts.AS_KNOWN)
     meaning = entry.text("meaning", f"{entry.where} {symbol}")
     return Parameter(own, symbol, scale.unit, lower, upper, value, meaning, searched=searched, start=start)

@@ -25,6 +25,7 @@ from ident.diagnosis.result import Diagnosis, NextRun, Suspect
 from ident.diagnosis.selection import Selection
 from ident.diagnosis.selection_loop import select
 from ident.diagnosis.sentences import alternative_sentences, dispensable_sentence, free_run_sentence, horizon_sentence
+from ident.diagnosis.shown_effects import fitted_with_shown
 from ident.diagnosis.stages import EFFECTS, ERROR_BUDGET, FURTHER, LABELS, LATER, NEXT_RUN, TERMS, Stages, not_looked_at
 from ident.diagnosis.undetermined import rested
 from ident.diagnosis.unfitted import unranked, unsearched, with_missing_inputs, with_oscillations
@@ -134,6 +135,7 @@ class Diagnoser:
         if (models := models.doubting(base)).contradicted:
             base = replace(base, records=models.compared_records())
         models = from_the_start(models, base)
+        begin = begin or fitted_with_shown(models, self.matrix, base)
         return Moves(models, base, self.budget.most, self.budget.report_progress, self._publish_step, begin)
 
     def _publish_step(self, selection: Selection) -> None:

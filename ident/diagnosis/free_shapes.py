@@ -18,7 +18,7 @@ import numpy as np
 from ident.diagnosis.candidate_models import CandidateModels
 from ident.diagnosis.criteria import CRITERIA
 from ident.diagnosis.fitted_model import FittedModel
-from ident.diagnosis.initial_guesses import in_place_of_spring
+from ident.diagnosis.initial_guesses import in_place_of_spring, way_of
 from ident.diagnosis.model_comparison import improves
 from ident.diagnosis.screening import Prediction, predict
 from ident.diagnosis.tie_breaking import stable_minimum
@@ -79,8 +79,8 @@ def with_widths(models: CandidateModels, names: Iterable[str]) -> list[str]:
 
 
 def springs(models: CandidateModels, base: FittedModel, names: Iterable[str]) -> list[str]:
-    """Those of the effects that are a spring at small motions, which a base has fitted as its own."""
-    return [name for name in names if in_place_of_spring(base, models.effects[name])]
+    """Those of the effects that yield and are a spring at small motions, which a base has fitted as its own."""
+    return [name for name in names if way_of(models.effects[name]) and in_place_of_spring(base, models.effects[name])]
 
 
 def with_free_widths(

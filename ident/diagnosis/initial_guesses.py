@@ -35,20 +35,24 @@ def initial_guesses(
 def in_place_of_spring(base: FittedModel, effect: Effect) -> list[dict[str, float]]:
     """The fitted model with a part of its spring given to an effect that is a spring at small motions.
 
-    What yields was fitted as a spring: where it is added instead, the machine's resonance is off at once, and no step
-    leads from there to where both share what was one.
+    What yields, and a weight that hangs, were fitted as a spring: where they are added instead, the machine's resonance
+    is off at once, and no step leads from there to where both share what was one. A weight's torque is its stiffness.
     """
     criteria, spring = CRITERIA.initial_guesses, next((k for k in effect.takes_over if k in base.values), None)
-    way = next((p for p in effect.added if p.at_reversals is AtReversals.WAY), None)
-    if spring is None or way is None:
+    if spring is None:
         return []
-    amplitude = criteria.amplitude * float(np.mean([run.motion for run in base.fitness.runs]))
-    stiffness, strength = base.values[spring], effect.added[0].in_equations
+    way, stiffness, strength = way_of(effect), base.values[spring], effect.added[0].in_equations
+    amplitude = criteria.amplitude * float(np.mean([run.motion for run in base.fitness.runs])) if way else 1.0
     return [
         {**base.values, spring: (1.0 - share) * stiffness, strength: share * stiffness * amplitude,
-         way.in_equations: amplitude}
+         **({way.in_equations: amplitude} if way else {})}
         for share in criteria.spring_shares
     ]  # fmt: skip
+
+
+def way_of(effect: Effect) -> Parameter | None:
+    """The way after which an effect yields; None where it does not."""
+    return next((p for p in effect.added if p.at_reversals is AtReversals.WAY), None)
 
 
 def strength_in_records(base: FittedModel, effect: Effect) -> float | None:

@@ -2,7 +2,7 @@
 
 from ident.effects.effect import Effect
 from ident.effects.needs import angle_measured
-from ident.parameter import Parameter
+from ident.parameter import Parameter, Starts
 
 ARM_GRAVITY = Effect(
     name="arm_gravity",
@@ -13,9 +13,12 @@ ARM_GRAVITY = Effect(
     units={"R": "N"},
     shape=(
         Parameter("hanging", "x0", "m", -3.2, 3.2, 0.0, "angle at which the arm hangs down", searched=True),
-        Parameter("gear", "ra", "m", 1e-2, 1e2, 1.0, "measured angle for each radian of the arm"),
+        Parameter(
+            "gear", "ra", "m", 1e-2, 1e2, 1.0, "measured angle for each radian of the arm", start=Starts.AS_KNOWN
+        ),
     ),
     looks="a load torque that varies as the sine of the angle; oscillation about the hanging position",
     source="pendulum behind a gear: J x'' = -m g l sin((x - x0)/r)",
     needs=angle_measured,
+    takes_over=("k0",),
 )

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, field
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass, field, replace
 
 from ident.cached import cached_property
 from ident.effects.needs import Need
@@ -11,6 +11,7 @@ from ident.equations.equation import Equation
 from ident.errors import Unusable
 from ident.matrix import Matrix
 from ident.parameter import Parameter
+from ident.run import Run
 from ident.stages import PLACES
 
 
@@ -58,6 +59,11 @@ class Effect:
     """Whether a record that has what it needs shows it by itself: it then comes before what explains as much."""
     whole: bool = False
     """Whether it is there wholly or not at all: what has it then has the upper bound of its strength."""
+    undone: Callable[[Run], Run] | None = None
+    """A run as it would be without what the effect does to its output, as far as its record tells; None tells nothing.
+
+    A linear fit of such runs leads to the model with the effect, one of what was recorded may lead nowhere.
+    """
     takes_over: tuple[str, ...] = ()
     """Symbols of a machine's springs, of which a part is this effect's at small motions: its strength over its way."""
     unless: str = ""
@@ -111,6 +117,15 @@ class Effect:
         if equation.is_memory:
             names |= {name: f"{self.symbol(name)}__old" for name in memories}
         return names
+
+
+def undone(matrix: Matrix, effects: Iterable[Effect]) -> Matrix:
+    """The matrix with each run as it would be without the effects, of those that can be undone in it."""
+    runs = matrix.runs
+    for effect in effects:
+        if effect.undone is not None and effect.suits(matrix):
+            runs = tuple(map(effect.undone, runs))
+    return replace(matrix, runs=runs) if runs is not matrix.runs else matrix
 
 
 def off_values(effects: Iterable[Effect]) -> dict[str, float]:

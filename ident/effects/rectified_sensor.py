@@ -1,8 +1,35 @@
 """The transducer does not see the sign of the speed."""
 
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+from scipy.signal import lfilter
+
 from ident.effects.effect import Effect
 from ident.effects.needs import rectified
 from ident.parameter import Parameter
+from ident.run import Run, Samples
+
+SHORTEST, LONGEST, LAGS = 0.5, 0.05, 16
+"""Lags that are tried: the shortest in samples, the longest as a share of the record, and how many there are between.
+
+Neighbours are half as long again: a sign is then wrong near the zeros alone. Test: tests/effects/test_rectified.py"""
+
+
+def with_sign(run: Run) -> Run:
+    """The run with the sign that its command tells: that of the command behind the lag with the most alike size."""
+    followed = [_behind(run.command, lag) for lag in np.geomspace(SHORTEST, LONGEST * run.length, LAGS)]
+    best = max(followed, key=lambda x: np.corrcoef(np.abs(x), run.measured)[0, 1])
+    return replace(run, channels={**run.channels, run.output: np.where(best < 0, -run.measured, run.measured)})
+
+
+def _behind(u: Samples, lag: float) -> Samples:
+    """A command behind a lag of the first order of so many samples."""
+    kept = np.exp(-1.0 / lag)
+    return np.asarray(lfilter([1.0 - kept], [1.0, -kept], u), np.float64)
+
 
 RECTIFIED_SENSOR = Effect(
     name="rectified_sensor",
@@ -17,4 +44,5 @@ RECTIFIED_SENSOR = Effect(
     needs=rectified,
     shown=True,
     whole=True,
+    undone=with_sign,
 )
