@@ -22,8 +22,8 @@ EPSILON: float = 1e-12
 class Estimation:
     """How far the parameters of one model are refined, and what counts as a refit."""
 
-    full: Way = Way(1e-6, 20, rough=1e-5)
-    """[Way] Effort of a refit to every sample. Why: 20 steps end within a few hundredths of a tie."""
+    full: Way = Way(1e-7, 20, rough=1e-5)
+    """[Way] Effort of a refit to every sample. Why: 20 steps end within a hundredth of a tie."""
     behind: Way = Way(1e-4, 20, rough=1e-4)
     """[Way] The same of one that was behind the best on trial. Why: a tie more or less is not what it lacks.
     Test: test_ranking.py::test_a_finalist_that_is_far_behind_is_not_refined_as_the_best_is"""
