@@ -19,6 +19,8 @@ from ident.diagnosis.fitted_model import FittedModel
 from ident.diagnosis.model_comparison import better
 from ident.diagnosis.operating_point import at_operating_point
 from ident.diagnosis.ranking import rank
+from ident.effects import CATALOGUE
+from ident.effects.effect import undone
 from ident.errors import Unusable
 from ident.fit.identification import Identification, StepwiseFit, completed
 from ident.fit.result import FitResult, Structure, Window
@@ -32,6 +34,7 @@ from ident.presets import Preset, preset
 from ident.presets.suited import in_question, moved_by_command, told_by_following, unusual
 from ident.progress import Progress, Report, silent
 from ident.words.message import Message, message
+from ident.words.titles import title
 
 
 @dataclass(frozen=True)
@@ -62,7 +65,7 @@ def compared_structures(
 
     Raises Unusable where the channels allow none.
     """
-    return _compared(screen(matrix, preprocessing), report, preprocessing)[0]
+    return _compared(undone(screen(matrix, preprocessing), CATALOGUE), report, preprocessing)[0]
 
 
 def _compared(
@@ -205,13 +208,18 @@ def choose_structure(
     that is switched off.
     """
     matrix = screen(matrix, preprocessing)
-    found, fit = _compared(matrix, report, preprocessing)
+    without = undone(matrix, CATALOGUE)  # a structure shows in what the records would be without such an effect
+    found, fit = _compared(without, report, preprocessing)
+    fit = fit if without is matrix else None
     first, *others = found
     usual = first.machine in (Settings().model, matrix.machine) and not others
     if usual and (matrix.machine or not told_by_following(preset(first.machine), matrix.runs)):
         return StructureChoice(matrix, found, fit)
     compared = [message("structure.of", machine=one.machine, why=one.why) for one in found]
     notice = str(message("structures", models=compared) if others else message("structures.one", why=first.why))
+    if without is not matrix:
+        shown = [title(effect.name) for effect in CATALOGUE if effect.undone is not None and effect.suits(matrix)]
+        notice = f"{notice} {message('structures.undone', effects=shown)}"
     return StructureChoice(replace(matrix, notices=(notice, *matrix.notices)), found, fit and noticed(fit, notice))
 
 

@@ -134,7 +134,8 @@ def _one_sided(run: Described) -> bool:
 
 def _rank(model: Preset, runs: Sequence[Described]) -> int:
     if any(_by_force(model, run) for run in runs):
-        return _STATED if all(run.output in MOTIONS for run in runs) else _OPEN  # or what follows a force
+        stated = all(run.units.get("command") != "1" and run.output in MOTIONS for run in runs)
+        return _STATED if stated else _OPEN  # what is in units of 1 may be no force, and an output what follows one
     if all(_by_motion(model, run) for run in runs):
         return _STATED if moved_by_command(model, runs) else _OPEN
     if model.data.driven_by != "command":
@@ -150,8 +151,8 @@ def _rank(model: Preset, runs: Sequence[Described]) -> int:
 
 
 def _by_force(model: Preset, run: Described) -> bool:
-    """Whether a drive's force may be what was recorded as the command."""
-    is_force = run.units.get("command") in ("N", "N*m")
+    """Whether a drive's force may be what was recorded as the command: by its unit, or for that is not known."""
+    is_force = run.units.get("command") in ("N", "N*m", "1")
     return model.data.driven_by == "drive_force" and is_force and "drive_force" not in run.channels
 
 

@@ -236,6 +236,7 @@ WHY: Mapping[str, str] = {
 STRUCTURES: Mapping[str, str] = {
     "structures": "No model was named. The first of these was chosen: {models:terms}.",
     "structures.one": "No model was named: {why}.",
+    "structures.undone": "The records show {effects}. The models were compared by what they would be without.",
     "structure.of": "{machine}, {why}",
     "structure": "{facts:listed} ({why})",
     "structure.facts": "{facts:listed}",

@@ -6,6 +6,7 @@ import numpy as np
 from scipy.signal import lsim
 
 from ident.diagnosis import candidate_models
+from ident.diagnosis.structure_selection import choose_structure
 from ident.fit.settings import Settings
 from ident.matrix import Actuator, Matrix
 from ident.readers import from_arrays
@@ -32,6 +33,9 @@ def test_a_counter_without_a_sign_is_named_whatever_the_command(monkeypatch):
     monkeypatch.setattr(candidate_models, "CATALOGUE", few)
     runs = (*counted(1, "fit").runs, *counted(2, "fit").runs, *counted(3, "verify").runs)
     matrix = Matrix(Actuator("COUNTER"), runs)
+    choice = choose_structure(matrix)
+    assert choice.structures[0].machine == "motor"
+    assert "compared by what they would be without" in choice.matrix.notices[0]
     fit = identify(matrix, Settings(model="motor", options={"population": 24.0, "generations": 8.0, "elite": 4.0}))
     assert (fit.error["fit"] or 0.0) > 0.5
     found = diagnose(matrix, fit, propose=False)

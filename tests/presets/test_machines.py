@@ -10,6 +10,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 import scipy.signal
+from scipy.signal import cont2discrete, dlsim
 
 from ident.checks.check import check
 from ident.diagnosis.candidate_models import CandidateModels
@@ -86,6 +87,22 @@ def test_what_is_moved_is_a_specimen_though_its_motion_is_called_command(unit, m
 def test_in_units_of_1_a_specimen_is_in_question_beside_what_follows_a_command():
     runs = commanded(specimen(3), "1").runs
     assert {"specimen", "open_valve"} <= {model.name for model in in_question(runs)}
+
+
+def test_in_units_of_1_a_mass_on_a_spring_is_found():
+    """It answers a command that is held with a swing, solved exactly from sample to sample; noise of 0.5 %, seed 66."""
+    runs = []
+    for number, use in enumerate(("fit", "fit", "verify")):
+        rng = np.random.default_rng([66, number])
+        u = np.repeat(rng.uniform(-1, 1, 40), 30)
+        mass = np.array([[0.0, 1.0], [-400.0, -6.0]]), np.array([[0.0], [1.0]]), np.eye(2)[:1], np.zeros((1, 1))
+        _, x, _ = dlsim(cont2discrete(mass, 1 / RATE), u)
+        x = x[:, 0] + 0.005 * x.std() * rng.standard_normal(len(u))
+        runs.append(Run(f"r{number}", "", RATE, {"command": u, "displacement": x}, hold="zoh", use=use,
+                        units={"command": "1", "displacement": "1"}))  # fmt: skip
+    matrix = Matrix(Actuator("MASS"), tuple(runs))
+    assert {"drive", "first_order", "motor"} <= {model.name for model in in_question(matrix.runs)}
+    assert choose_structure(matrix).structures[0].machine == "drive"
 
 
 def test_the_command_of_a_loop_is_no_motion_of_a_specimen():
