@@ -61,8 +61,8 @@ def standing_for(x: Samples, command: Samples | None, sample_rate: float) -> int
     """For how many samples the command is held first while the output x stands; 0 where it is not, or moves.
 
     Standing: the means of the quarters of this time lie, from each other and from the first samples, within 2 %
-    of the record's standard deviation or four standard errors. Fewer samples than 16 may be a step that has not
-    arrived yet.
+    of the record's standard deviation or four standard errors of their difference, those of the noise alone: what
+    scatters for it moves does not stand. Fewer samples than 16 may be a step that has not arrived yet.
     """
     command = x if command is None else command
     changes = np.flatnonzero(np.abs(command - command[0]) > ROUNDING * np.abs(command).max())
@@ -70,8 +70,10 @@ def standing_for(x: Samples, command: Samples | None, sample_rate: float) -> int
     if count < LEAST_HELD:
         return 0
     parts = (x[: _first(x, sample_rate)], *np.array_split(x[:count], 4))
-    means, errors = [part.mean() for part in parts], [part.std() / np.sqrt(len(part)) for part in parts]
-    return count if np.ptp(means) <= AT_ZERO * np.std(x) + ERRORS * max(errors) else 0
+    size, step = float(np.std(x)), resolution(x)
+    noise = min(noise_of(x), MOST_NOISE * size) if len(x) > 8 else 0.0
+    error = np.hypot(noise, step / np.sqrt(12.0)) * np.sqrt(2.0 / min(map(len, parts)))
+    return count if np.ptp([part.mean() for part in parts]) <= max(AT_ZERO * size, ERRORS * error) else 0
 
 
 def zero_at_rest(x: Samples, begins: Beginning, sample_rate: float) -> tuple[float, float] | None:

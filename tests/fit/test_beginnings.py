@@ -11,6 +11,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
+from scipy.signal import lfilter
 
 from ident.beginning import beginning
 from ident.diagnosis.candidate_models import CandidateModels
@@ -320,3 +321,20 @@ def test_a_reading_that_stands_at_a_count_of_its_encoder_is_at_rest(counts, begi
     time = np.arange(2000) / 500.0
     encoder = np.round(40.0 * np.sin(2 * np.pi * np.maximum(time - 0.1, 0.0))) + counts
     assert beginning(encoder, np.sin(2 * np.pi * time), 500.0) == begins
+
+
+@pytest.mark.parametrize(("drift", "begins"), [(0.0, "standing"), (0.04, "moving")])
+def test_what_drifts_beyond_its_noise_does_not_stand(drift, begins):
+    """A level under a command that is held for 18 samples, before it moves as it does later; seeds 67, 1 to 20.
+
+    That it scatters about its means because it moves is no reason to take it for standing: of twenty at most two are.
+    """
+    found = []
+    for seed in range(1, 21):
+        rng = np.random.default_rng([67, seed])
+        later = lfilter([1.0], [1.0, -1.9, 0.9025], rng.standard_normal(600))
+        x = np.concatenate([drift * np.linspace(0, 1, 18) ** 2, later / later.std()])
+        command = np.repeat(rng.uniform(1.0, 3.0, 103), 6)[:618]
+        command[:18] = command[0]
+        found.append(beginning(5.0 + x + 0.003 * rng.standard_normal(618), command, 100.0))
+    assert found.count(begins) >= 18
