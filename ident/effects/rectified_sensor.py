@@ -5,7 +5,6 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
-from scipy.signal import lfilter
 
 from ident.effects.effect import Effect
 from ident.effects.needs import rectified
@@ -27,6 +26,8 @@ def with_sign(run: Run) -> Run:
 
 def _behind(u: Samples, lag: float) -> Samples:
     """A command behind a lag of the first order of so many samples."""
+    from scipy.signal import lfilter  # noqa: PLC0415 - dear to load, and asked for of a rectified speed alone
+
     kept = np.exp(-1.0 / lag)
     return np.asarray(lfilter([1.0 - kept], [1.0, -kept], u), np.float64)
 

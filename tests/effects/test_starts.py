@@ -89,7 +89,7 @@ def test_what_an_effect_states_is_of_its_kind():
     units = {
         Starts.PHASE: "1", Starts.SPECTRAL_LINES: "1/s", Starts.STROKE_END: "1/m", Starts.STROKE_MIDDLE: "m",
         Starts.TIME: "s", Starts.FRICTION: "Pa", Starts.FRICTION_GRADIENT: "Pa/m",
-        Starts.FINELY: "m",
+        Starts.FINELY: "m", Starts.AS_KNOWN: "m",
     }  # fmt: skip
     stated = [(p.start, p.unit) for e in CATALOGUE for p in e.parameters if p.start is not Starts.ALONG_RANGE]
     assert {start for start, _ in stated} == units.keys()
@@ -102,6 +102,8 @@ def test_a_users_own_effect_states_where_its_search_begins():
     assert (frequency.start, frequency.searched) == (Starts.SPECTRAL_LINES, True)
     held = {**OWN, "shape": {"fp": {"unit": "Hz", "lower": 1, "upper": 100, "value": 10}}}
     assert not read_effect(held, model="qian2014").shape[0].searched
+    known = {**OWN, "shape": {"fp": {**OWN["shape"]["fp"], "start": "as known"}}}
+    assert not read_effect(known, model="qian2014").shape[0].searched
     wrong = {**OWN, "shape": {"fp": {**OWN["shape"]["fp"], "start": "lines"}}}
     with pytest.raises(Unusable, match="spectral lines"):
         read_effect(wrong, model="qian2014")
