@@ -295,7 +295,8 @@ class CandidateModels:
 
     def _steps(self, fitted: FittedModel, most: int = MOST) -> int:
         """The simulation steps of all runs, of which at most so many a sample count."""
-        return min(fitted.steps, most) * sum(run.length for run in self.runs)
+        steps = int(fitted.fitness.steps(fitted.fitness.space.values(fitted.point[None])).max())
+        return min(steps, most) * sum(run.length for run in self.runs)
 
     def at_floor(self, refit: FittedModel) -> bool:
         """Whether the error of a refit is noise alone, as far as the floor is known; never where it cannot be told."""
@@ -392,9 +393,6 @@ class CandidateModels:
         values = {**usual, **start, **fitness.space.fixed}
         fitness = self.reaching(effects, fitness, [values])
         point = self.resting.held(fitness.space, fitness.space.point(values))
-        if samples:
-            needed = int(fitness.steps(fitness.space.values(point[None])).max())
-            fitness = replace(fitness, most=max(CRITERIA.estimation.trial_steps, needed))
         free = way or (CRITERIA.estimation.trial if samples else CRITERIA.estimation.full)
         way = replace(free, within=self.resting.bounds(fitness.space)) if self.resting.places else free
         found = self._optimum(effects, fitness, point, way, samples)
@@ -406,9 +404,8 @@ class CandidateModels:
             ]
             if not ended:
                 break
-            space = wider_at(found.space, found.point, ended)
-            wider = replace(self.fitness(effects, samples), space=space, most=fitness.most)
-            farther = self._optimum(effects, wider, space.point(found.values), way, samples)
+            wider = replace(self.fitness(effects, samples), space=wider_at(found.space, found.point, ended))
+            farther = self._optimum(effects, wider, wider.space.point(found.values), way, samples)
             if not farther.local.error < CRITERIA.estimation.new_optimum * found.local.error:
                 break
             found = farther

@@ -37,10 +37,6 @@ class Estimation:
     Test: test_fitted_model.py::test_of_first_steps_the_eight_that_leave_least_go_on"""
     trial_samples: int = 131_072
     """[samples] Of all runs in a trial. Why: enough for a ranking; the finalists take every sample."""
-    trial_steps: int = 8
-    """[steps a sample] At most in a trial, or as many as it begins with. Why: what asks for more is over within a small
-    part of a sample, and eight follow a mode up to 20 radians a sample; beyond, a search is turned back.
-    Test: test_undetermined.py::test_a_trial_takes_no_more_steps_than_are_usual_or_it_begins_with"""
     global_samples: int = 32_768
     """[samples] Of all runs by which points of the whole space are judged, and on which refits from far away set out.
     Why: 128 points are to cost about as much as one trial, and one of many starts is gone on with."""

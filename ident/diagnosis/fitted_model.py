@@ -130,11 +130,6 @@ class FittedModel:
         """Whether the model is stable on every run."""
         return bool(np.isfinite(self.local.error))
 
-    @property
-    def steps(self) -> int:
-        """The steps a sample that its simulation takes."""
-        return int(self.fitness.steps(self.space.values(self.point[None])).max())
-
     def asks_for(self, way: Way, share: float) -> bool:
         """Whether a further step, as free as a way lets it be, promises more than a share of the error."""
         return self.stable and way.promised(self.point, self.local, self.space.spans) > share * self.local.error

@@ -22,22 +22,17 @@ class RecentMoments:
     def __init__(self) -> None:
         self._lock, self._kept, self._runs = Lock(), OrderedDict[Hashable, Moments](), 0
 
-    def of(self, asked: Hashable, most: int, found: Callable[[], Moments]) -> Moments:
-        """What is kept of what is asked for, or else is `found` now.
-
-        A search with fewer steps a sample than another, `most`, has the same results where it needs no more than that.
-        """
-        keys = (asked, None), (asked, most)
+    def of(self, asked: Hashable, found: Callable[[], Moments]) -> Moments:
+        """What is kept of what is asked for, or else is `found` now."""
         with self._lock:
-            for key in keys:
-                if (known := self._kept.get(key)) is not None:
-                    self._kept.move_to_end(key)
-                    return known
+            known = self._kept.get(asked)
+            if known is not None:
+                self._kept.move_to_end(asked)
+                return known
         made = found()
-        key = keys[made[0] >= most]
         with self._lock:
-            if key not in self._kept:
-                self._kept[key] = made
+            if asked not in self._kept:
+                self._kept[asked] = made
                 self._runs += len(made[1])
             while self._runs > _MOST:
                 self._runs -= len(self._kept.popitem(last=False)[1][1])

@@ -138,7 +138,7 @@ class SimulatedFitness(SimulatedRuns):
         begun = [self.start(run).tobytes() for run in moving] + ([self._reach.tobytes()] if moving else [])
         of = (self.chain, self.runs, self.horizon, self.memory, self.absolute, *values)
         return self.recent.of(
-            (*of, *(value.tobytes() for value in values.values()), strides.tobytes(), *begun), self.most, simulated
+            (*of, *(value.tobytes() for value in values.values()), strides.tobytes(), *begun), simulated
         )
 
     def fresh(self, runs: tuple[Run, ...]) -> SimulatedFitness:

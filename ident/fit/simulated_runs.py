@@ -34,7 +34,7 @@ from ident.run import MOTIONS, Run
 from ident.simulation.equilibrium import equilibrium
 from ident.simulation.kernel import WIDE
 from ident.simulation.simulate import Simulation, side_by_side
-from ident.simulation.steps import MOST, Modes, steps_at_jumps, steps_at_passages, steps_at_reversals, steps_needed
+from ident.simulation.steps import Modes, steps_at_jumps, steps_at_passages, steps_at_reversals, steps_needed
 
 Array = NDArray[np.float64]
 BegunOver = tuple[float, float | None]
@@ -57,8 +57,8 @@ class SimulatedRuns:
     with a `memory` (s) at the speed, too, that was found before. Of the outputs named in `absolute` the mean counts
     too, which eq. (17) does not see. A free run `begun_over` windows has the first states that these find, by their
     horizon and memory: none is free to make up for where the record drifts to. A search follows the kinks of a core
-    `roughly`, one on trial divides a sample into at `most` so many steps. `sizes` are those of the core's states, (n,),
-    and `sizes_of_effects` those of what effects begin with, (m,), once a run has begun that moves.
+    `roughly`. `sizes` are those of the core's states, (n,), and `sizes_of_effects` those of what effects begin with,
+    (m,), once a run has begun that moves.
     """
 
     preset: Preset
@@ -71,7 +71,6 @@ class SimulatedRuns:
     absolute: tuple[str, ...] = field(default=(), kw_only=True)
     begun_over: BegunOver | None = field(default=None, kw_only=True)
     roughly: bool = field(default=False, kw_only=True)
-    most: int = field(default=MOST, kw_only=True)
     sizes: Array = field(default_factory=lambda: np.zeros(1), kw_only=True)
     sizes_of_effects: Array = field(default_factory=lambda: np.zeros(1), kw_only=True)
 
@@ -440,7 +439,7 @@ class SimulatedRuns:
                 for p in effect.added
                 if p.at_reversals is not None
             ]
-        return np.asarray(np.minimum(np.max(needed, axis=0), self.most))
+        return np.asarray(np.max(needed, axis=0))
 
     def _at_reversals(self, of: AtReversals, size: Array, values: Mapping[str, Array]) -> NDArray[np.int64]:
         """Steps a sample that a way, a speed or a force (v,) asks for where the motion reverses."""

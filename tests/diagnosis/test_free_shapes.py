@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from types import SimpleNamespace
 
+import numpy as np
 import pytest
 
 from ident.diagnosis import candidate_models
@@ -144,8 +145,10 @@ def test_a_mass_next_to_nothing_makes_no_record_long():
     models = CandidateModels.of(Damper(rate=400.0).matrix(), Settings("specimen"))
     base = models.refit((), {})
     assert models.is_short(base)
+    stiff = SimpleNamespace(fitness=SimpleNamespace(space=base.space, steps=lambda _values: np.array([MOST])))
+    stiff.point = base.point
     assert MOST * sum(run.length for run in models.runs) > CRITERIA.free_widths.short_steps
-    assert models.is_short(SimpleNamespace(steps=MOST))
+    assert models.is_short(stiff)
 
 
 def test_a_trial_that_was_stopped_on_its_way_is_converged_trial():

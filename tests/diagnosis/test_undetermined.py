@@ -72,23 +72,3 @@ def test_what_rests_is_free_where_a_model_asks_for_another_place():
     axis, place = found.space.names.index("m0"), found.space.point({**found.values, "m0": 0.05})
     held = replace(shown, resting=Resting({"m0": float(place[axis])}))
     assert held.refit((), found.values).values["m0"] == pytest.approx(found.values["m0"], rel=0.01)
-
-
-def test_a_trial_takes_no_more_steps_than_are_usual_or_it_begins_with():
-    """Where it begins far off it is as stable as any."""
-    models, start = drive(m=1e-4), {"m0": 0.14, "c0": 1.4, "k0": 3.7}
-    usual, fast = (models.trial((), [{**start, "m0": mass}]) for mass in (0.14, 5e-4))
-    assert (usual.fitness.most, fast.fitness.most) == (8, 32)
-    assert usual.stable
-    assert fast.stable
-
-
-def test_what_was_simulated_in_few_steps_is_not_taken_for_what_needs_more():
-    """Where few do, it is: of a search with few and one with as many as are needed the second asks for nothing."""
-    full = drive(m=1e-4).fitness(())
-    for mass, needed in ((1e-3, 16), (0.14, 1)):
-        point = full.space.point({"m0": mass, "c0": 1.4, "k0": 3.7})
-        roughly, closely = replace(full, most=8).exact(point), full.exact(point)
-        assert full.steps(full.space.values(point[None])) == needed
-        assert roughly.error == pytest.approx(closely.error, rel=1e-3)
-        assert (roughly.runs[0] is closely.runs[0]) == (needed <= 8)

@@ -97,5 +97,5 @@ def test_only_so_many_are_kept(monkeypatch):
         return 1, {"one": asked, "two": asked}
 
     for asked in ("a", "b", "a", "c", "a", "b"):
-        assert kept.of(asked, 32, lambda asked=asked: found(asked)) == (1, {"one": asked, "two": asked})
+        assert kept.of(asked, lambda asked=asked: found(asked)) == (1, {"one": asked, "two": asked})
     assert made == ["a", "b", "c", "b"]
