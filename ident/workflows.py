@@ -189,7 +189,7 @@ def diagnose(
     report: Report = silent, seconds: float | None = None, found: Callable[[Diagnosis], None] | None = None,
     propose: bool | None = None, budget: TimeBudget | None = None, bounds: Bounds | None = None,
 ) -> Diagnosis:  # fmt: skip
-    """Rank what the fitted model lacks, add what helps beyond chance, and say what is left.
+    """Rank what the fitted model lacks, add what helps beyond chance, and say whether the residual is explained.
 
     Without a `fit` the model of `settings` is fitted first. `most` is the largest number of effects to add, `custom`
     are effects beside the catalogue's, or their definitions. Verify runs only report. After `seconds`, that of a fit

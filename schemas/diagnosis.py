@@ -9,10 +9,10 @@ from schemas.fit import Chosen
 class DiagnosisRequest(Chosen):
     """A diagnosis to be queued: of a stored `fit`, or of a `matrix`, whose fit with these settings is made first.
 
-    `bounds` and `set` may be of parameters of effects that may be added, and with a `fit` are of these alone.
-    The effects that `custom` defines or names are ranked beside those of the catalogue; with `own` all that the lab
-    keeps and the model can take. After `time` seconds nothing more is tried: what was found by then is the diagnosis.
-    Terms that no list holds are searched for where the catalogue leaves the error unexplained; with `propose` true also
+    `bounds` and `set` may be of parameters of effects that may be added, and with a `fit` are of these alone. The
+    effects that `custom` defines or names are ranked beside those of the catalogue; with `own` all that the lab keeps
+    and the model can take. After `time` seconds nothing more is tried: what was found by then is the diagnosis. Terms
+    that no list holds are searched for where the catalogue does not explain the residual; with `propose` true also
     where nobody knows the noise, with false never.
     """
 

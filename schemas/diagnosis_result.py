@@ -105,9 +105,9 @@ class ExplanationView(BaseModel):
 
 
 class VerdictView(BaseModel):
-    """What to add, what the data cannot tell apart, whose label is doubted, whether something is left.
+    """What to add, what the data cannot tell apart, whose label is doubted, whether the residual is unexplained.
 
-    `standing` is found where the error is at the noise floor, stand_in where something is left, contradicted where
+    `standing` is found where the error is at the noise floor, stand_in where it is above it, contradicted where
     the error rises with an effect (`contradicted_by`) on runs to verify, nothing where no effect helps. `at_bound` are
     effects whose strength ended at a bound that the search set, `elsewhere` what other models explain as well, and
     `stood_in` effects of the ladder that are not named, for beside proposed terms they are not needed, and
@@ -253,7 +253,7 @@ class DiagnosisResult(BaseModel):
 
     Not `complete`, the stages `not_looked_at` are missing: there was no time for them, or they failed. Of the terms
     that were `looked_at` so many are `terms_left_out`, for no model can hold them or they are not finite. `effect_sets`
-    are all sets of effects that were refitted, `most_nats` the gain of a model that leaves nothing but the noise.
+    are all sets of effects that were refitted, `most_nats` the gain of a model whose residual is the noise.
     `missing_inputs` are where an input acted that is not recorded; on a run to fit, no effect was looked for.
     """
 

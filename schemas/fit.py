@@ -237,7 +237,7 @@ class ComparedRun(BaseModel):
 
 
 class ErrorSize(BaseModel):
-    """Root mean square and mean size of what is left, in `unit`, and as they are printed."""
+    """Root mean square and mean size of the residual, in `unit`, and as they are printed."""
 
     rmse: float
     mae: float

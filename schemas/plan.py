@@ -45,7 +45,7 @@ class MovedView(BaseModel):
 
 
 class PlannedRunView(BaseModel):
-    """A run: `size` is its amplitude and `asked` that of the program, `scale` what is left of it.
+    """A run: `size` is its amplitude and `asked` that of the program, `scale` the one over the other.
 
     `share` is what it takes of the tightest limit, `limit`; null where nothing is judged.
     """

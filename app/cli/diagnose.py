@@ -1,4 +1,4 @@
-"""`servoident diagnose`: what a fitted model lacks, which labels are doubted, and what is left."""
+"""`servoident diagnose`: what a fitted model lacks, which labels are doubted, and whether the residual is explained."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""How large what is left is, in the unit of the output: beside eq. (17), which is a ratio."""
+"""How large the residual is in the unit of the output: beside eq. (17), which is a ratio."""
 
 from __future__ import annotations
 

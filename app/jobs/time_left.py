@@ -17,7 +17,7 @@ from app.jobs.course import Course
 
 MOST = 100  # ended jobs that are looked at, the newest
 _INSTANT = 0.2  # s: what is shorter is the machine's, not the work's
-_LEAST = 0.1  # of a stage that has gone on longer than expected: what is left of it at least
+_LEAST = 0.1  # of a stage that has gone on longer than expected: its least remaining share
 _DIFFERENT = 0.5  # weight of a job for each thing that it was asked otherwise
 _PACE = math.log(2)  # a job at twice or half the pace counts 0.6
 _UNKNOWN = 1.6  # ln: half of all work lasts between a third and three times as long again as it has taken

@@ -1,4 +1,4 @@
-"""A diagnosis as the page of its fit shows it: the verdict, a card an effect or group, suspects, what is left."""
+"""A diagnosis as the page of its fit shows it: the verdict, a card an effect or group, suspects, the residual."""
 
 from __future__ import annotations
 

@@ -16,7 +16,7 @@ from ident.words.titles import title
 from schemas.fit import JobView
 from schemas.parameters import ActuatorView, ParameterSetView
 
-NEAR = 1.1  # times the noise floor: a fit as near as that leaves little to find
+NEAR = 1.1  # times the noise floor: in the residual of a fit as near as that little is to be found
 
 
 @dataclass(frozen=True)

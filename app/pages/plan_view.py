@@ -41,7 +41,7 @@ seconds: 30 s
 
 @dataclass(frozen=True)
 class RunRow:
-    """A run in words: amplitude, what is left of that asked, share of the tightest limit."""
+    """A run in words: amplitude, its share of that asked, share of the tightest limit."""
 
     id: str
     use: str

@@ -76,7 +76,7 @@ def proposed(stored: Stored, run: RunView | None) -> Iterator[ProposedCard]:
 
 
 def _instead_of(one: Proposal, ladder: Sequence[Rung]) -> str:
-    """What the catalogue named in its place, and what that leaves on runs to verify."""
+    """What the catalogue named in its place, and its error on runs to verify."""
     names = ", ".join(map(title, one.instead_of))
     left = ladder[-1].error_of("verify") if ladder else ErrorOf(None)
     if left.is_unstable:

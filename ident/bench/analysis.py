@@ -150,7 +150,7 @@ def fit_whole(start: Model, observed: Sequence[Observed], steps: int = 8, way: W
 
 
 def refined(start: Model, observed: Sequence[Observed], records: Sequence[Record]) -> Solution:
-    """Every value once more on the whole records, each weighed by what is left of it.
+    """Every value once more on the whole records, each weighed by its residual.
 
     Means over several ms cut the peaks of a regulator's current, which the play keeps: kp would come out 1 % too high.
     """

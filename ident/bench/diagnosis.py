@@ -35,7 +35,8 @@ from ident.time_budget import in_time
 
 
 def diagnose_bench(matrix: Matrix, fit: FitResult, custom: Sequence[Effect], course: SearchBudget) -> Diagnosis:
-    """Rank the effects of a bench and the user's own, add what helps beyond chance, and say what is left."""
+    """Rank the effects of a bench and the user's own, add what helps beyond chance, and say whether the residual is
+    explained."""
     _refuse_candidates_given(fit)
     with course.budget.running():
         try:

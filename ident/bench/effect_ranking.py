@@ -46,7 +46,7 @@ _RATE = 500.0  # Hz
 @dataclass(frozen=True, eq=False)
 class Refit:
     """The model with these effects at its optimum: errors of eq. (17) of each record, with nothing left out and held
-    out, and what is compared with another refit: each record over what the fitted model leaves of it."""
+    out, and what is compared with another refit: each record over the residual of the fitted model on it."""
 
     effects: tuple[str, ...]
     solution: Solution
@@ -105,7 +105,7 @@ class Refitter:
 
     @cached_property
     def _left(self) -> Array:
-        """Mean square, of the position of each record, that the fitted model leaves."""
+        """Mean square of the fitted model's residual in the position of each record."""
         residual = self._positions(self.model)
         return np.array([float(np.mean(r**2)) for r in residual])
 
@@ -149,7 +149,7 @@ class Refitter:
 
     @cached_property
     def _bands(self) -> EnergyBands:
-        """Of the positions that are compared, each record over what the fitted model leaves of it."""
+        """Of the positions that are compared, each record over the residual of the fitted model on it."""
         records = (
             ComparedRecord(float(np.sqrt(left)), one.record.id)
             for left, one in zip(self._left, self._shown, strict=True)

@@ -143,7 +143,7 @@ class BenchIdentification:
         """What the procedures found, which know of no effects, and the records that it is polished on.
 
         Effects come one after the other. They are told from the lag by parts of a millisecond and by what few samples
-        see: then the records are taken finely, each weighed by what is left of it.
+        see: then the records are taken finely, each weighed by its residual.
         """
         # The chain's equations have the table's monotone cubics.
         found = replace(found, table=replace(found.table, kind=MONOTONE))

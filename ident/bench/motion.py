@@ -17,7 +17,7 @@ _LONGER = 4.0  # times the usual time between two steps: so long a pause is a re
 def groups(record: Record) -> Groups:
     """−1, 0, +1 for each sample: moving back, at rest, moving forward (Kononykhin, section 5.1, the three groups).
 
-    A position that flickers by one step is freed of it by a play of that size; what is left changes only where the
+    A position that flickers by one step is freed of it by a play of that size; that changes only where the
     link has moved. Two changes the same way belong to one movement unless they are much further apart than usual.
     """
     step = record.resolution or 3.0 * float(np.std(np.diff(record.position)))

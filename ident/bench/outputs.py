@@ -54,7 +54,7 @@ def errors_of(records: Sequence[Record], model: Model) -> tuple[RunError, ...]:
 
 
 def noise_floor(matrix: Matrix, use: str) -> float | None:
-    """What the steps of the converter alone leave of eq. (17), mean over the runs of a use."""
+    """The error of eq. (17) that the steps of the converter alone make, mean over the runs of a use."""
     records = [record for record in bench_set(matrix).records if record.use == use]
     shares = [record.resolution / np.sqrt(12.0) / float(np.std(record.position)) for record in records]
     return float(np.mean(shares)) if shares else None

@@ -44,7 +44,7 @@ def _of(solution: Solution, observed: Observed) -> tuple[float, float]:
 
 
 def _error(observed: Observed, seen: Array, off: Array) -> tuple[float, Array]:
-    """RMS of `off` over the deviation of `seen`, the mean of each part taken off, and what is left of `off`."""
+    """RMS of `off` over the deviation of `seen`, the mean of each part taken off, and `off` without these means."""
     size = float(np.std(np.concatenate([seen[a:b] for a, b in observed.parts])))
     rest = np.concatenate([off[a:b] - off[a:b].mean() for a, b in observed.parts])
     return float(np.sqrt(np.mean(rest**2))) / max(size, 1e-300), rest

@@ -17,7 +17,7 @@ _STEPS = 100
 
 @dataclass(frozen=True)
 class Sine:
-    """a1 (m), a2 ≥ 0 (m), a3 in 0 … 2π; `drift` in m a radian of α where it was asked for; `rms` of what is left, m."""
+    """a1 (m), a2 ≥ 0 (m), a3 in 0 … 2π; `drift` in m a radian of α where it was asked for; `rms` of the residual, m."""
 
     a1: float
     a2: float

@@ -24,7 +24,7 @@ FLOOR = 0.002  # misfit, relative: below, differences are those of the method
 WIDEST = 3.0  # samples between the first and the last delay that fit
 LEAST = 0.75  # samples; the scatter of the estimate at 5 % noise is below 0.3
 APART = 0.75  # samples between one run and the middle of all
-EXPLAINED = 0.1  # misfit, relative: a run on which the best delay leaves more is no matter of a delay
+EXPLAINED = 0.1  # misfit, relative: a run with a larger one at the best delay has another fault than a delay
 _OUTLIER = 6.0  # times the median deviation from it: the delay of what is limited in speed is another in every run
 
 
@@ -80,7 +80,7 @@ def late(lags: str, leads: str, samples: float, **values: object) -> Message:
 def delay(run: Run, response: Response | None) -> Delay | None:
     """The delay T of the best H(f) = exp(-i w T) / (a0 + a1 s + ... + a4 s^4); None where there is nothing to fit.
 
-    An actuator lags its command by tens of samples, which its poles explain; T is what is left.
+    An actuator lags its command by tens of samples, which its poles explain; T is the rest.
     """
     if response is None or run.output != "displacement" or run.time_unit != "s" or run.kind in ("sine", "frequency"):
         return None

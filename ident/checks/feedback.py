@@ -101,7 +101,8 @@ def _weights(products: Samples) -> Samples:
 
 
 def _ordinary(table: Samples) -> NDArray[np.bool_] | None:
-    """The rows without jumps of the command; None where what is left there is rounding, or hardly a row is left."""
+    """The rows without jumps of the command; None where the rest of the command there is rounding, or hardly a row
+    remains."""
     rows = np.ones(len(table), bool)
     for _ in range(ROUNDS):
         left = table[:, 0] - table[:, 1:] @ _weights(_products(table[rows]))

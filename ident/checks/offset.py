@@ -9,7 +9,7 @@ from ident.checks.response import rests
 from ident.run import Run
 from ident.words.message import message
 
-SMALL = 0.05  # of the displacement's standard deviation; as large as the error that a good model leaves
+SMALL = 0.05  # of the displacement's standard deviation; as large as the error of a good model
 LARGE = 1.0
 
 

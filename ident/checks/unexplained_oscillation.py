@@ -1,7 +1,7 @@
 """An oscillation that the command does not make: a loop beyond its stability, growing or settled in a limit cycle.
 
 What the command explains is taken from the output, G U of their averaged spectra. A mode of a loop beyond its stability
-is a line in what is left, whose amplitude A(t) in a band around it grows as exp(σ t), or is constant. A mode that noise
+is a line in the residual, whose amplitude A(t) in a band around it grows as exp(σ t), or is constant. A mode that noise
 drives has the fluctuating amplitude of narrow-band noise, std(A)/mean(A) = 0.52 (Rice 1944); one that the command
 drives is explained, or lies at a multiple of a command that repeats itself.
 """
@@ -113,7 +113,7 @@ def _unexplained(u: Samples, y: Samples) -> Samples:
 
 
 def _settled(left: Samples, size: float, rate: float, cycles: int = CYCLES) -> Unexplained | None:
-    """The strongest oscillation of what is left of an output of a deviation `size`, where its amplitude is constant."""
+    """The strongest oscillation of the residual of an output of a deviation `size`, where its amplitude is constant."""
     z = _strongest(left, cycles)
     if z is None:
         return None

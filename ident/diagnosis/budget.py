@@ -18,7 +18,7 @@ class SearchBudget:
     At most `most` effects are added; nothing is begun any more once the time `budget` is over. `report` hears of every
     step of the work, `found` of the diagnosis as it stands after each effect and once the catalogue is through: what
     was found is not lost with what was still to come. Terms that no list holds are searched for where the catalogue
-    leaves the error unexplained; with `propose` true also where nobody knows the noise, with false never.
+    does not explain the residual; with `propose` true also where nobody knows the noise, with false never.
     """
 
     most: int

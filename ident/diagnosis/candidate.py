@@ -92,7 +92,7 @@ def not_dominated(tied: Sequence[Candidate]) -> list[Candidate]:
 
 
 def indistinguishable_group(name: str, here: FittedModel, ranking: Sequence[Candidate]) -> list[Candidate]:
-    """The effect itself, and the candidates of which the data leave open whether they are right instead.
+    """The effect itself, and the candidates that are indistinguishable from it.
 
     Instead of it or of the best, but for those that others of them dominate. What nothing replaced is in its group,
     come what may.
@@ -104,7 +104,7 @@ def indistinguishable_group(name: str, here: FittedModel, ranking: Sequence[Cand
 
 
 def _ties(best: Candidate, other: Candidate) -> bool:
-    """Whether the data leave open which of two refits is right, and it leaves as much on the data of the fit.
+    """Whether two refits are indistinguishable, and the errors of both on the data of the fit are as large.
 
     Errors on held-out data hang on where the fits without them ended, which in a flat valley rounding decides.
     """

@@ -63,8 +63,9 @@ class CandidateModels:
 
     `given` are what the user holds fixed or bounds; `left_out` the ids of runs that are not fitted; `horizon` (s) the
     length of the windows over which a machine that integrates is fitted, None for whole runs, `memory` (s) as there. Of
-    the runs that are `contradicted` no noise floor is known: a fitted model leaves less than what was told. What the
-    data do not determine stays where it is `resting` until a model asks for another place.
+    the runs that are `contradicted` no noise floor is known: the error of a fitted model is below the one that was
+    stated. Parameters that the data do not determine stay where they are `resting` until a model asks for another
+    place.
     """
 
     preset: Preset
@@ -182,7 +183,7 @@ class CandidateModels:
         return searched, list(self.effects).index(effect)
 
     def is_shown(self, effect: str) -> bool:
-        """Whether the records show an effect by themselves: they have what only such a machine leaves in them."""
+        """Whether the records show an effect by themselves: they have a mark that only such a machine makes."""
         return self.effects[effect].shown
 
     def strength(self, effect: str) -> str:
@@ -446,7 +447,7 @@ class CandidateModels:
     def best_optimum(self, refit: FittedModel) -> FittedModel:
         """The refit, or a better one from where else in the whole search space the error is least.
 
-        Looked for where the records are short, unless this one is known to leave noise alone: without a floor a
+        Looked for where the records are short, unless its residual is known to be noise: without a floor a
         residual may lack memory because the model rings.
         """
         if not refit.stable or not self.is_short(refit) or self.at_floor(refit):

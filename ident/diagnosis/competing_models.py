@@ -1,4 +1,4 @@
-"""The models that a diagnosis leaves in question."""
+"""The models that are in question after a diagnosis."""
 
 from __future__ import annotations
 

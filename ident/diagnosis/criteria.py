@@ -85,7 +85,7 @@ class Noise:
     """[of the floor] By which an error may exceed the noise floor, in addition to chance. Why: the floor itself is
     an estimate. Test: test_diagnose.py::test_what_the_catalogue_does_not_hold_is_called_unexplained"""
     floor_contradicted: float = 1.2
-    """[ratio] Of a noise floor to what the fitted model leaves, above which the floor is not believed. Why: samples of
+    """[ratio] Of a noise floor to the error of the fitted model, above which the floor is not believed. Why: samples of
     one phase differ where a motion jumps between two of them.
     Test: test_free_shapes.py::test_a_floor_that_a_fitted_model_comes_below_is_none"""
     floor_deviations: float = 3.0
@@ -301,7 +301,7 @@ class CrossValidationFolds:
 
 @dataclass(frozen=True)
 class Equality:
-    """When the order of two models is left to how they are listed."""
+    """When two models count as equal: the one that is listed first is taken."""
 
     tie: float = 1e-4
     """[relative difference] Of two errors that rounding may decide. Why: refits end within about a hundredth of it.
@@ -323,7 +323,8 @@ class Selection:
     exchanged: int = 3
     """[effects] Up to which each is compared with everything in its place every time. Why: more take long."""
     rounds: int = 3
-    """[rounds] Of exchange, and of looking farther. Why: what enters and leaves in a circle ends.
+    """[rounds] Of exchange, and of looking farther. Why: effects that are added and taken out in a circle come to an
+    end.
     Test: test_selection.py::test_of_effects_that_enter_and_leave_in_a_circle_the_best_set_stays"""
     global_restarts: int = 8
     """[effects] Of the first ranking started from the whole search space. Why: a model that went far astray makes
@@ -355,7 +356,7 @@ class Ambiguity:
     """[ratio of errors] Above which another lag in its place is given up. Why: what cannot come below it is not
     equal."""
     pair_near: float = 1.01
-    """[ratio of trial errors] Above which another pair of lags is given up. Why: what leaves more is
+    """[ratio of trial errors] Above which another pair of lags is given up. Why: a pair with a larger error is
     distinguishable. Test: test_total_delay.py::test_two_lags_that_two_others_stand_for_as_well_are_told_as_pairs"""
     delay_effort: Way = Way(1e-4, 12, rough=1e-3)
     """[Way] Of a refit with another lag. Why: only whether it is equal is asked."""
@@ -420,12 +421,12 @@ class LabelChecks:
 
 @dataclass(frozen=True)
 class Conclusion:
-    """What a report tells, and which models it leaves in question."""
+    """What a report says, and which models it says are in question."""
 
     competing: int = 3
     """[models] Between which the next run is to decide. Why: more make no better experiment."""
     simpler_terms: float = 1.05
-    """[ratio of errors] That terms alone may leave and still come before those with what was added. Why: they need
+    """[ratio of errors] Up to which terms alone come before terms beside the effects that were added. Why: they need
     one effect less. Test: test_stages.py::test_terms_of_the_first_search_stay_where_there_is_no_time_for_the_second"""
 
 

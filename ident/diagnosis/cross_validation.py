@@ -1,4 +1,4 @@
-"""What a refit leaves of data that it was not fitted to: the residuals out of fold.
+"""The residuals out of fold: those of a refit on data that it was not fitted to.
 
 Of four runs or more whole runs are left out in turn; of fewer stretches of each: eight of a single run, four of two or
 three. The parameters are fitted again without those of one fold, and the model that was found so is simulated there.
@@ -31,7 +31,7 @@ Array = NDArray[np.float64]
 Indices = NDArray[np.intp]
 Mask = NDArray[np.bool_]
 Simulate = Callable[[Sequence[Array], Sequence[int]], Iterable[Sequence[Array]]]
-"""What a model at each point of the unit cube leaves of the runs with these numbers, (n,) each, means and all."""
+"""The residuals of a model at each point of the unit cube on the runs with these numbers, (n,) each, means included."""
 
 
 @dataclass(frozen=True)
@@ -128,7 +128,8 @@ def out_of_fold(
 def _of_short_steps(
     point: Array, steps: Sequence[Array], held: Sequence[Sequence[int]], simulate: Simulate
 ) -> dict[int, Sequence[Array]]:
-    """By its number what each fold leaves of its runs where one linearisation is trusted, and its model is stable."""
+    """By its number the residuals of each fold on its runs, where one linearisation is trusted and its model is
+    stable."""
     short: dict[tuple[int, ...], list[int]] = {}
     for fold, step in enumerate(steps):
         if not len(step) or np.abs(step).max() <= CRITERIA.cross_validation.max_step:

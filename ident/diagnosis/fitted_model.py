@@ -49,7 +49,7 @@ class FittedModel:
 
     @cached_property
     def held_out(self) -> OutOfFold:
-        """What it leaves of stretches, or of whole runs, that were left out in turn."""
+        """Its residuals on stretches, or on whole runs, that were left out of the fit in turn."""
         lengths = [run.length for run in self.fitness.runs]
         return self._residuals(out_of_fold(self.point, self.local, self._left_of, self._seen, lengths))
 
@@ -60,7 +60,7 @@ class FittedModel:
 
     @cached_property
     def residuals_fitted(self) -> Residuals:
-        """What it leaves of the runs with nothing left out: to compare models of as many parameters, at once."""
+        """Its residuals on the runs that it was fitted to: they compare models of as many parameters, at once."""
         every = range(len(self.fitness.runs))
         fitted = self._residuals(next(self._left_of([self.point], every)))
         return Residuals(fitted.residuals, self.records.bands, fitted.levels)
@@ -95,7 +95,7 @@ class FittedModel:
         return adds_up(own, run.length / anchoring.window, anchoring.memory > 0) + of_parameters
 
     def _left_of(self, points: Sequence[Array], numbers: Sequence[int]) -> Iterator[list[Array]]:
-        """What the model at each point leaves of some runs, means and all."""
+        """The residuals of the model at each point on some runs, means included."""
         runs = tuple(self.fitness.runs[number] for number in numbers)
         for outputs in self.fitness.part(runs).outputs_of_points(points):
             yield [run.measured - outputs[run.id] for run in runs]
@@ -136,12 +136,13 @@ class FittedModel:
 
     @property
     def finite(self) -> bool:
-        """Whether the model is stable on every run, and leaves there what it promises."""
+        """Whether the model is stable on every run, and its residual there is the one that it promises."""
         return self.stable and self._simulation_confirms
 
     @cached_property
     def _simulation_confirms(self) -> bool:
-        """Whether a simulation from the first states that were found leaves what their linear correction promises.
+        """Whether a simulation from the first states that were found has the residual that their linear correction
+        promises.
 
         A model that is not linear in them may look good where no first state at all leads.
         """
@@ -172,7 +173,7 @@ class FittedModel:
     def on_verify(self) -> float | None:
         """Eq. (17) averaged over the runs to verify; None where there are none, or the model is unstable on one.
 
-        Of what it leaves there once their first states are found, as a comparison shows it: what is linear in these
+        Of its residual there once their first states are found, as a comparison shows it: what is linear in these
         would flatter a model that is not.
         """
         found = self._verified
@@ -180,7 +181,7 @@ class FittedModel:
 
     @cached_property
     def _verified(self) -> _Simulated | None:
-        """What a simulation of the runs to verify leaves; None where there are none."""
+        """The residuals of a simulation of the runs to verify; None where there are none."""
         runs = self.fitness.matrix.of_use("verify")
         return _Simulated.of(self.fitness.fresh(runs), self.point, self._offsets) if runs else None
 
@@ -251,7 +252,7 @@ class FittedModel:
 
     @cached_property
     def on_verify_runs(self) -> tuple[list[Array], Array | None]:
-        """What it leaves of the runs to verify as eq. (17) sees it, (n,) each, and their means that count, (runs,).
+        """Its residuals on the runs to verify by eq. (17), (n,) each, and their means that count, (runs,).
 
         The means are less the offset of their transducer, and zero of a run whose mean does not count. None where none
         does, or the model is fitted over windows.
@@ -307,7 +308,7 @@ class FittedModel:
 
 @dataclass(frozen=True)
 class _Simulated:
-    """What a simulation leaves of runs: eq. (17) averaged over them.
+    """The error and residuals of a simulation of runs: eq. (17) averaged over them.
 
     `with_mean` is RMS(x − x_m)/std(x_m) of whole runs, `rmse` RMS(x − x_m), averaged as the error is;
     `unstable` are the ids of the runs on which the model is.

@@ -27,7 +27,7 @@ def error_budget(matrix: Matrix, fit: FitResult) -> Budget | None:
 
 
 def next_run(matrix: Matrix, found: Diagnosis, custom: Sequence[Effect] = ()) -> NextRun | None:
-    """The run that tells most of what a diagnosis leaves in question; None where no run can be proposed."""
+    """The run that says most of what is in question after a diagnosis; None where no run can be proposed."""
     try:
         proposal = propose(competing_models(found, custom), matrix, found.seed)
     except Unusable as error:

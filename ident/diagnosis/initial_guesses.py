@@ -87,7 +87,7 @@ def _guesses_of(base: FittedModel, parameter: Parameter, space: Space, known: Ma
 def spectral_lines(base: FittedModel, lower: float, upper: float) -> tuple[float, ...]:
     """The frequencies (1/s) between the bounds at which the residual's rate beats with the motion's, clearest first.
 
-    A gain that pulsates leaves of each line of the motion two neighbours. Times the motion itself these fall together
+    A gain that pulsates makes two neighbours of each line of the motion. Times the motion itself these fall together
     into one line, at the frequency of the pulsation, and all else is spread.
     """
     fitness, outputs = base.fitness, base.fitness.outputs(base.point)

@@ -1,4 +1,4 @@
-"""Two fitted models compared by what they leave of data that neither was fitted to.
+"""Two fitted models compared by their residuals on data that neither was fitted to.
 
 What the answers mean, and by which numbers, stands in :mod:`ident.diagnosis.evidence.comparison`.
 """
@@ -49,19 +49,19 @@ def is_improvement_on_the_whole(
 
 
 def better(before: FittedModel, after: FittedModel) -> bool:
-    """Whether the second of two models with as many effects is more likely, beyond what the data leave open."""
+    """Whether the second of two models with as many effects is more likely, beyond chance."""
     return _is_finite(after) and (not _is_finite(before) or comparison.better(evidence(before, after)))
 
 
 def dominated(worse: FittedModel, best: FittedModel) -> bool:
-    """Whether the first model is worse than the second beyond chance, by a share that matters of what it leaves."""
+    """Whether the first model is worse than the second beyond chance, by a share of its residual that matters."""
     if worse is best or not _is_finite(best):
         return False
     return not _is_finite(worse) or comparison.dominated(evidence(best, worse))
 
 
 def indistinguishable(first: FittedModel, second: FittedModel) -> bool:
-    """Whether the data leave open which of two models is right."""
+    """Whether two models are indistinguishable."""
     return first is second or (
         _is_finite(first) and _is_finite(second) and comparison.indistinguishable(evidence(first, second))
     )
@@ -93,5 +93,5 @@ def bar(models: CandidateModels, base: FittedModel) -> float:
 
 
 def _is_finite(model: FittedModel) -> bool:
-    """Whether the model leaves something finite of every run."""
+    """Whether the residual of the model is finite on every run."""
     return bool(np.isfinite(model.held_out.error))

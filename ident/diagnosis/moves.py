@@ -215,7 +215,8 @@ class Moves:
         """Take out what the model can do without, but the `latest`; true where that leads back to an earlier set.
 
         What the records themselves show stays.
-        What enters and leaves in a circle is of use in one company and of none in another: the best of it stays.
+        Effects that are added and taken out in a circle help beside some effects and not beside others: of the sets in
+        the circle the best stays.
         """
         removable = [name for name in selection.added if name != latest and not self.models.is_shown(name)]
         while removable:
@@ -299,7 +300,8 @@ class Moves:
         return self.exchange_pass(selection) if self.models.at_floor(selection.fitted) else None
 
     def global_restart(self, selection: Selection) -> Selection | None:
-        """Where the first effect leaves more than noise: restart the leading effects from the whole search space.
+        """Where the residual with the first effect is above the noise: restart the leading effects from the whole
+        search space.
 
         A model that went far astray without an effect makes another one look better from where it is.
         """

@@ -1,6 +1,6 @@
 """The operating point of a machine that integrates: a constant of its drive, which drifts without end.
 
-Where a constant force or bias is missing, every window of a record is left with a drift, whatever else the model has.
+Where a constant force or bias is missing, the residual drifts in every window of a record, whatever else the model has.
 Structures are compared, and their effects ranked, about that point: beside a drift that none of them has, what each of
 them explains hardly shows.
 """

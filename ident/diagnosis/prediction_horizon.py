@@ -37,7 +37,7 @@ def longer_horizon(moves: Moves, report: Report) -> LongerHorizon | None:
 
     SetGains are the finalists of the first ranking over the fitted windows, refitted over longer ones, and what ranks
     first of whole runs. More likely than by the fitted model they are to be beyond chance for the best of all that was
-    looked at. None where the fitted windows stay, or leave nothing to explain. Raises TimeIsUp.
+    looked at. None where the fitted windows stay, or their residual is noise. Raises TimeIsUp.
     """
     base, models = moves.base, moves.models
     horizons = longer(base.fitness, base.point)

@@ -242,7 +242,7 @@ def _is_incumbent(base: FittedModel, prediction: Prediction, incumbent: FittedMo
 
 
 def _comes_below(candidate: Candidate, error: float) -> bool:
-    """Whether the first refit of a candidate leaves less than so much."""
+    """Whether the error of a candidate's first refit is below this one."""
     return candidate.trial is not None and candidate.trial.local.error < error
 
 

@@ -28,7 +28,8 @@ class RefittedSets:
     best: dict[frozenset[str], FittedModel] = field(default_factory=dict)
 
     def met(self, models: Iterable[FittedModel]) -> None:
-        """Keep what leaves less of held-out data than was known of the same effects; not what goes astray there."""
+        """Keep each model whose held-out error is below that known of the same effects; not one that runs away
+        there."""
         for model in models:
             added = frozenset(model.effects) - frozenset(self.base.effects)
             best = self.best.get(added)

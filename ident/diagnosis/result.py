@@ -142,7 +142,7 @@ class Explanation:
 
 @dataclass(frozen=True)
 class Verdict:
-    """What to add, what the data cannot tell apart, whose label is doubted, and whether something is left.
+    """What to add, what the data cannot tell apart, whose label is doubted, and whether the residual is unexplained.
 
     `standing` says how sure the effects are, see :data:`ident.diagnosis.verification.Standing`; None where it was not
     asked. `contradicted_by` are those with which the error rises on runs to verify, `at_bound` those whose strength
@@ -215,7 +215,7 @@ class Diagnosis(Shown):
     are terms that no list holds, of as many that were `looked_at`: they are no part of the verdict. `terms_left_out` of
     these no model can hold, or they are not finite. None is what an earlier version did not tell. `matrix` holds the
     data, where the diagnosis was made here. `effect_sets` are all sets of effects that were refitted, `most_nats` the
-    gain of a model that leaves nothing but the noise. `missing_inputs` are the stretches in which an input acted that
+    gain of a model whose residual is the noise. `missing_inputs` are the stretches in which an input acted that
     is not recorded: run, from, to (s, or samples) and evidence; where a run to fit has one, no effect was looked for.
     `oscillation` has the runs that swing by themselves: run, frequency, growth (Hz and 1/s, or 1/sample), cause.
     `max_effects` is how many effects could be added.

@@ -63,7 +63,7 @@ class Prediction:
 
     @property
     def remaining(self) -> float:
-        """The part of the error that is left."""
+        """The error after the step over the error before it."""
         return self.after.error / self.before.error
 
     @property
@@ -220,7 +220,7 @@ class _Trial:
 
 
 _Promise = tuple[_Trial, PredictedFit, Array]
-"""A trial, what it would leave, and the step to there."""
+"""A trial, the fit that it predicts, and the step to there."""
 
 
 @dataclass(frozen=True)
@@ -277,7 +277,8 @@ class _EffectResponses:
     responses: Responses
 
     def predicted_fits(self) -> Iterator[_Promise]:
-        """What was simulated, what is left with a share of its response, and the step to there."""
+        """The trials that were simulated, the fit predicted with a share of the response of each, and the step to
+        there."""
         shown = [i for i in range(len(self.trials)) if self._power(i) > 0]
         for few in (
             shown[first : first + CRITERIA.screening.batch] for first in range(0, len(shown), CRITERIA.screening.batch)
@@ -377,7 +378,8 @@ class _Records:
 def _after(
     gram: Array, means: Array, records: _Records, point: Array, fitted: int
 ) -> Iterator[tuple[PredictedFit, Array]]:
-    """What is left after the best step of the `fitted` parameters and, where there is one, the strength's share.
+    """The fit predicted after the best step of the `fitted` parameters and, where there is one, of the strength's
+    share.
 
     Of n problems side by side: `gram` (n, runs, p+1, p+1), `means` (n, runs, p+1); the residual is last.
     """

@@ -163,7 +163,7 @@ def _falls(
 def _remaining(
     complete: bool, limit: int | None, probabilities: Mapping[str, float], in_band: bool, floor: float | None
 ) -> Iterator[Message]:  # fmt: skip
-    """That something is left, and why it may be noise or a further effect."""
+    """That the error is above the noise floor, and why the residual may be noise or a further effect."""
     examined = complete and limit is None
     yield _probable("verdict.unlisted" if examined else "verdict.remains", "unlisted", probabilities)
     if limit is not None:

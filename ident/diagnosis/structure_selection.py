@@ -1,9 +1,10 @@
 """Which machine fits, where no model is named: those that the channels allow, compared on held-out data.
 
-Where the first of them leaves more than noise, something is missing, and a machine with more parameters may have made
-up for a part of it. So another with no more parameters comes before it where, each with one effect of the catalogue,
-the first is improbable among them; and one with fewer that leaves as little. Of the first, where the data ask for a
-value of a parameter beyond its bound, it is known that it is another machine: then one that leaves less comes before.
+Where the residual of the first exceeds the noise, an effect is missing, and a machine with more parameters may have
+made up for a part of it. So the models are compared with one effect of the catalogue each. Another with no more
+parameters then comes before the first where the first is improbable among them; and so does one with fewer parameters
+and as small an error. A first model of which a parameter ends at its bound is the wrong machine: one with a smaller
+error comes before it.
 """
 
 from __future__ import annotations
@@ -61,7 +62,8 @@ def compared_structures(
     """The models in question, the one to take first: the simplest whose held-out error is not worse.
 
     Of a machine that moves along a way the simplest that is not a motor, where one is no worse. Before it comes one
-    with no more parameters where the first is improbable, each with one effect; or with fewer that leaves as little.
+    with no more parameters where the first is improbable, each with one effect; or one with fewer parameters and as
+    small an error.
 
     Raises Unusable where the channels allow none.
     """
@@ -107,7 +109,7 @@ def _probabilities(compared: Sequence[_JudgedStructure]) -> dict[str, float]:
     sound = [model for model in compared if model.best.finite]
     if len(sound) < 2:
         return {}
-    sound.sort(key=lambda model: -model.error)  # the reference is what leaves most
+    sound.sort(key=lambda model: -model.error)  # the reference has the largest error
     residuals = [model.best.residuals_held_out for model in sound]
     disturbance = common_disturbance(residuals)
     gains = [gain(residuals[0], of, disturbance) for of in residuals]
@@ -120,7 +122,7 @@ def _with_an_effect_each(
 ) -> dict[str, _JudgedStructure]:
     """The first model and those with no more parameters, each with the effect that helps it most.
 
-    But the first alone, and as it is, where it is the only one or leaves nothing that an effect could explain.
+    But the first alone, and as it is, where it is the only one or its residual is noise.
     """
     simple = [one for one in tried if one.parameters <= first.parameters]
     if len(simple) == 1 or not first.refit.finite or not first.models.residual_above_noise(first.refit):
@@ -134,9 +136,9 @@ def _preferred(
 ) -> tuple[_JudgedStructure, Message]:  # fmt: skip
     """The one to take of models with an effect each, and why: the first, or a simpler one that says as much or more.
 
-    Where the first is improbable among them, the simplest of the most probable ones comes before it. So does one that
-    leaves less, whose parameters have values in their bounds where those of the first have not; and one that leaves as
-    little, and no more than by chance, and is not strange where the first is not.
+    Where the first is improbable among them, the simplest of the most probable ones comes before it. Where a parameter
+    of the first is at its bound, one with a smaller error and no parameter at a bound comes before it. So does a
+    simpler one whose error is not larger but by chance, unless that one alone is strange.
     """
     if probable.get(first.machine, 1.0) < CRITERIA.structure.improbable:
         most = max(probable.values())
@@ -159,7 +161,7 @@ def _preferred(
 
 
 def _simplest(models: Collection[_JudgedStructure]) -> _JudgedStructure:
-    """The one with the fewest parameters of those that leave least."""
+    """The one with the fewest parameters of those with about the smallest error."""
     least = min(one.error for one in models)
     return min((one for one in models if one.error <= CRITERIA.structure.worse * least), key=lambda one: one.parameters)
 
@@ -167,8 +169,8 @@ def _simplest(models: Collection[_JudgedStructure]) -> _JudgedStructure:
 def _judged(fitted: Sequence[_FittedStructure]) -> tuple[float | None, list[_JudgedStructure]]:
     """The models by one measure for all, and over which time, s: the longest windows of one that is fitted so.
 
-    What a machine integrated meanwhile is no matter of its structure. But where one that settles leaves less of whole
-    runs than any leaves of windows, each begun anew where it was measured, nothing was integrated: whole runs count.
+    What a machine has integrated before a window says nothing of its structure. But where the error of one that settles
+    is smaller over whole runs than that of any over windows, nothing was integrated: then whole runs count.
     """
     windows = [one.fit.window for one in fitted if one.fit.window]
     longest = max(windows, key=lambda window: window.horizon, default=None)
@@ -310,7 +312,7 @@ class _JudgedStructure:
 
     @property
     def error(self) -> float:
-        """What it leaves of held-out data; infinite where it cannot be followed."""
+        """Its error on held-out data; infinite where a simulation runs away."""
         return _held_out(self.best)
 
     @property

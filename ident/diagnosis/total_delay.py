@@ -69,7 +69,7 @@ def total_delay(models: CandidateModels, base: FittedModel, refit: FittedModel) 
 
 
 def _alike(first: FittedModel, second: FittedModel) -> bool:
-    """Whether the data of the fit leave open which of two models of as many parameters is right."""
+    """Whether two models of as many parameters are indistinguishable by the data of the fit."""
     return comparison.indistinguishable(comparison.compare(first.residuals_fitted, second.residuals_fitted))
 
 

@@ -1,9 +1,10 @@
 """Where a parameter rests that the data do not determine: where the fewest steps a sample follow the model.
 
-A mode that is over within a small part of a sample shows in no record. A search leaves it anywhere, often at a bound:
-there every simulation takes as many steps as there are, and the error is so flat that no later search, with an effect
-that changes what the data determine, leaves it again. So it stays where it rests, also with effects: a step along what
-is flat would lead it astray again. Only a model with which another place promises a smaller error is free to move it.
+A mode that is over within a small part of a sample shows in no record. A search ends with it anywhere, often at a
+bound: there every simulation takes as many steps as there are, and the error is so flat that no later search, with an
+effect that changes what the data determine, comes away from it. So it stays where it rests, also with effects: a step
+along what is flat would lead it astray again. Only a model with which another place promises a smaller error is free to
+move it.
 """
 
 from __future__ import annotations

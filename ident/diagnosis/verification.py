@@ -23,8 +23,8 @@ from ident.words.message import Message, message
 
 Array = NDArray[np.float64]
 Standing = Literal["found", "stand_in", "contradicted", "nothing"]
-"""found: the error is at the floor; stand_in: it fell, something is left, or may be, for a strength ended at the bound
-of its search; contradicted: it rises on verify runs."""
+"""found: the error is at the floor; stand_in: it fell, but is above the floor, or may be, for a strength ended at the
+bound of its search; contradicted: it rises on verify runs; nothing: no effect is named."""
 
 
 @dataclass(frozen=True)
@@ -90,7 +90,7 @@ class VerifyChange:
     def due(self) -> float:
         """By how much the error that was fitted falls if the effect acts as it was fitted.
 
-        What the model then leaves has nothing to do with what the effect shows: before² = shown² + after².
+        The residual with the effect is then uncorrelated with what the effect shows: before² = shown² + after².
         """
         first = self.with_mean[0] if self.with_mean else self.before
         return first - float(np.sqrt(max(first**2 - self.shown**2, 0.0)))
@@ -176,7 +176,7 @@ def with_free_run(over_windows: VerifyChange, before: FreeRun, after: FreeRun) -
 
 
 def _unstable(runs: Sequence[Run], left: Sequence[Array]) -> tuple[str, ...]:
-    """The ids of the runs on which a model is unstable, by what it leaves of each."""
+    """The ids of the runs on which a model is unstable, by its residual on each."""
     with np.errstate(over="ignore", invalid="ignore"):
         errors = [float(np.sqrt(np.mean(r**2)) / np.std(run.measured)) for run, r in zip(runs, left, strict=True)]
     return tuple(run.id for run, error in zip(runs, errors, strict=True) if not error < UNSTABLE)

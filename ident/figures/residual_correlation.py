@@ -1,4 +1,4 @@
-"""Whether what is left of a run is noise: its correlation with itself and with the command, in bands of chance."""
+"""Whether the residual of a run is noise: its correlation with itself and with the command, in bands of chance."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A stretch of one run in time: command, measured, model, and what is left (the paper's Fig. 15)."""
+"""A stretch of one run in time: command, measured, model and residual (the paper's Fig. 15)."""
 
 from __future__ import annotations
 

@@ -75,7 +75,7 @@ class Fitness(Protocol):
         ...
 
     def shown_on(self, runs: tuple[Run, ...], point: Array) -> Local:
-        """What the model at a point leaves of other runs."""
+        """The objective of the model at a point on other runs."""
         ...
 
 

@@ -203,7 +203,7 @@ class LinearFitness:
         return replace(self, runs=runs, evaluations=0, unstable=0, _reduced=[])
 
     def shown_on(self, runs: tuple[Run, ...], point: Array) -> Local:
-        """What the model at a point leaves of other runs."""
+        """The objective of the model at a point on other runs."""
         return self.fresh(runs).exact(point, sensitivities=False)
 
     def _observed(self, run: Run) -> tuple[tuple[int, ...], Pattern]:

@@ -118,7 +118,7 @@ class NormalMatrices:
         return np.asarray(np.linalg.solve(shape / size / size[:, None] + ridge, towards / size) / size)
 
     def as_begun(self) -> NormalMatrices:
-        """The same with the error that the first states leave as they are, where better ones only promise less."""
+        """The same with the error of the first states as they are, where better ones only promise a smaller one."""
         if not self.promises:
             return self
         gram = self.gram.copy()
@@ -188,7 +188,7 @@ class NormalMatrices:
 
     def sums_about(self, offset: float) -> Array:
         """Σ of the residual less an offset over each block, the other nuisances taken off, (b,)."""
-        own = 0.0 if self.mean_power else 1.0  # what is left about the mean, or about the offset already
+        own = 0.0 if self.mean_power else 1.0  # the residual is about its mean, or about the offset, already
         return np.asarray(
             (self.blocks @ (self.remove[:, -1] + own * self._level * (self.means[-1] - offset))) @ self._level
         )

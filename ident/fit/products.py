@@ -70,7 +70,7 @@ def _completed(sums: Array, factors: Array) -> Array:
 
 
 def removal(gram: Array, p: int, totals: Array) -> Array:
-    """What takes the nuisances N and 1 off J and r, (runs, q, p+1): Rᵀ G R are the products of what is left.
+    """What takes the nuisances N and 1 off J and r, (runs, q, p+1): Rᵀ G R are the products of their remainders.
 
     `gram` (runs, q, q) holds G, Σ of products of [J, N, 1, r], `totals` (runs,) Σ (x_m − mean)². Each column is one of
     [J, r] less its least-squares share of the nuisances; the share of the constant stands in the last row but one.

@@ -57,7 +57,7 @@ class Undetermined:
 class TransducerOffset:
     """What the transducer of a channel reads above the model, one number for all of its runs, in `unit`.
 
-    A `large` one is the larger part of what the model leaves, so that every error is told with it.
+    A `large` one is the larger part of the residual, so that every error is said with it.
     """
 
     value: float

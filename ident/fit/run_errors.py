@@ -1,4 +1,4 @@
-"""The errors of one run as a result keeps them, bounded, and the size of what is left in the unit of the output."""
+"""The errors of one run as a result keeps them, bounded, and the size of the residual in the unit of the output."""
 
 from __future__ import annotations
 

@@ -14,13 +14,13 @@ Array = NDArray[np.float64]
 ROUNDS = 20
 """Rounds at most in which the first states of a model are found."""
 _DAMPING = 1e-6  # of the first step that is damped
-_LESS = 1e-3  # by which what is left has to fall for a round to count
+_LESS = 1e-3  # by which the residual has to fall for a round to count
 _IN_VAIN = {False: 1, True: 4}  # rounds of one kind of steps that do not, by whether much is promised
 
 
 @dataclass(frozen=True)
 class Least:
-    """The first states (n,) that least is left of a run with, what was found there, and the damping of a step.
+    """The first states (n,) with the smallest residual of a run, what was found there, and the damping of a step.
 
     `vain` rounds have passed since that counted; the steps go `back` to there once straight ones led nowhere.
     """
@@ -36,9 +36,9 @@ class Least:
 class Settling:
     """The runs that settle, by their ids, with the `least` so far.
 
-    Gauss and Newton's steps often lead to where the model is straight over a place where it is not, and are gone on
-    with whatever is left on the way. A run that they lead nowhere, and that much is promised of, goes on from where
-    least is left of it, by steps that shrink (Levenberg and Marquardt).
+    Gauss and Newton's steps often lead to where the model is straight over a place where it is not, so the residual may
+    rise on the way. A run on which they fail, though much is promised, goes on from its smallest residual, by steps
+    that shrink (Levenberg and Marquardt).
     """
 
     least: dict[str, Least] = field(default_factory=dict)
@@ -61,7 +61,7 @@ class Settling:
 
 
 def better(ends: Sequence[Least]) -> Least:
-    """Of where guesses led that with which less is left of a run; of those that are as good, that with less offset.
+    """Of the ends of several guesses that with the smallest residual of a run; of those as good, that with less offset.
 
     In saturation a position that is shifted changes nothing else.
     """

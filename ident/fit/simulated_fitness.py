@@ -146,7 +146,7 @@ class SimulatedFitness(SimulatedRuns):
         return replace(self, runs=runs, starts=dict(self.known), evaluations=0, unstable=0)
 
     def shown_on(self, runs: tuple[Run, ...], point: Array) -> Local:
-        """What the model at a point leaves of other runs, each begun where of all guesses least is left of it."""
+        """The objective of the model at a point on other runs, each begun at the guess with the smallest residual."""
         fresh = self.fresh(runs)
         fresh.settle({name: float(value[0]) for name, value in self.space.values(point[None]).items()})
         return fresh.exact(point, sensitivities=False)

@@ -42,7 +42,7 @@ BegunOver = tuple[float, float | None]
 _TOGETHER = 1024  # lanes simulated in one go: what is done once for all of them costs little
 _BLOCKS = 32  # of a record: see ident.fit.normal_matrices
 _REACH = 1e-3  # of a state's size, for sensitivities to the first state
-_BLOCK = 512  # samples simulated at a time: what they leave stays near the core
+_BLOCK = 512  # samples simulated at a time: their residuals stay in the cache of the core
 _FIRST = 16  # samples that tell where a record begins: the fewest of a window
 _BOUND = 1e3  # times all other samples of a record count these: what drifts later does not move its beginning
 
@@ -230,7 +230,7 @@ class SimulatedRuns:
             yield anchored(rows), first, last
 
     def left(self, run: Run, output: Array) -> Array:
-        """What an output (n, …) leaves of a run: less its mean, which eq. (17) does not see, or over windows."""
+        """The residual of an output (n, …) on a run: less its mean, which eq. (17) does not see, or over windows."""
         residual = run.measured.reshape(-1, *[1] * (output.ndim - 1)) - output
         return residual - residual.mean(axis=0) if self.horizon is None else self.shown(run, residual)
 
@@ -331,7 +331,7 @@ class SimulatedRuns:
             self.starts |= over.starts
 
     def _guesses(self, run: Run, values: Mapping[str, float]) -> list[Array]:
-        """First states (n,) of the linear model at `values`: that least is left of a run with, first.
+        """First states (n,) of the linear model at `values`: the one with the smallest residual of a run first.
 
         Its best ones, and those that stand still at what is measured first where the chain is not linear: what a linear
         model makes of a machine in saturation may lie where no step leads back from. The offset counts with what is

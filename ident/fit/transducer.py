@@ -1,7 +1,7 @@
 """The offset of a transducer: what it reads where the model says zero, one number for all of its runs.
 
-A record is y(θ) + b and what is left. Of run j, with its first states taken off, let r̄ be the mean of x_m − y, J̄ that
-of ∂y/∂θ, n the number of samples that tell the mean, and P the sum of squares that is left about the mean. Then
+A record is y(θ) + b and the residual. Of run j, with its first states taken off, let r̄ be the mean of x_m − y, J̄ that
+of ∂y/∂θ, n the number of samples that tell the mean, and P the sum of squares of the residual about its mean. Then
 
     error_j(b)² = (P + n (r̄ − b)²) / Σ (x_m − mean)²,      F(θ, b) = mean over runs of error_j(b),
 
@@ -35,7 +35,7 @@ _SETTLED = 1e-13  # of the largest mean: a step that changes nothing
 class Offset:
     """What a transducer reads above the model, in the unit of its channel, and its standard error.
 
-    It is `stated` where the runs say ``zeroed: false``, `large` where it is the larger part of what the model leaves.
+    It is `stated` where the runs say ``zeroed: false``, `large` where it is the larger part of the residual.
     """
 
     value: float

@@ -33,7 +33,7 @@ def beyond_bounds(
     found: Optimum, searched: Fitness, objective: Fitness, given: Collection[str], report: Report,
     drawn: Iterable[Array] = (),
 ) -> Optimum:  # fmt: skip
-    """The optimum of an objective, or the one beyond the bounds that it ended at, where that leaves less.
+    """The optimum of an objective, or the one beyond the bounds that it ended at, where its error is smaller.
 
     `given` are parameters whose bounds somebody set, by the equations' names. Those of the machine that a paper's
     bounds were stated for, and of a user's effects, are set as well. `drawn` are points of the unit cube, (p,), from

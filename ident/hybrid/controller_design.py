@@ -1,4 +1,5 @@
-"""A fit in, a controller out: designed on the linear part, with its margins and with what the fit leaves open."""
+"""A fit in, a controller out: designed on the linear part, with its margins and with their uncertainty by that of the
+fit."""
 
 from __future__ import annotations
 

@@ -28,7 +28,7 @@ class Spread(Protocol):
 
 @dataclass(frozen=True)
 class Covariance:
-    """What the data of a fit leave open: N(value, D R D), D the standard errors and R the correlation."""
+    """The uncertainty of a fit's parameters: N(value, D R D), D the standard errors and R the correlation."""
 
     def __str__(self) -> str:
         return "the covariance of the fit"

@@ -44,7 +44,7 @@ MOTION = 0.2  # of the sensor's noise: a lag or a way that is less shows nothing
 FLOOR = 1e-12  # of the sensor's variance, added to that of y each sample: it never becomes 0
 WINDOW = 512  # samples that are judged together
 MOST_NIS, MOST_COLOUR = 2.0, 0.5  # of a sound window: mean normalised innovation squared, correlation of neighbours
-LEAST_NIS = 0.05  # below which what is left drowns in the noise, whatever its colour
+LEAST_NIS = 0.05  # below which the residual drowns in the noise, whatever its colour
 _SERIES = 0.1  # of pΔt, below which series are quicker than the exponential and lose no digits
 
 

@@ -1,9 +1,9 @@
 """What of a residual could not be foretold from its own past: its innovations.
 
-    e[k] = Σ a_j e[k−j] + ν[k]      j = 1 … p, with the a_j that leave least of ν (Ljung 1999, 4.2)
+    e[k] = Σ a_j e[k−j] + ν[k]      j = 1 … p, with the a_j that make ν smallest (Ljung 1999, 4.2)
 
 Noise of any colour, a sensor that drifts and what an integrator summed up of disturbances are foretold from sample to
-sample, so that half the logarithm of how much less is left of ν counts in nats whatever the residual remembers.
+sample, so that half the logarithm of the ratio of two powers of ν is in nats whatever the residual remembers.
 """
 
 from __future__ import annotations

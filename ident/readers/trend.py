@@ -15,7 +15,7 @@ TRENDS = ("none", "mean", "line")
 ABSOLUTE = ("pressure_a", "pressure_b", "supply_pressure", "vertical_load", "temperature")
 """Channels whose level is physics: a valve's flow follows from the pressures themselves. They keep it."""
 LEFT = 1e-12
-"""Share of the largest sample below which what is left of a signal is rounding; see test_trend.py."""
+"""Share of the largest sample below which a signal without its trend is rounding; see test_trend.py."""
 
 
 def without_trend(run: Run, trend: str, outputs: Sequence[str]) -> Run:

@@ -1,4 +1,4 @@
-"""Is what a model leaves noise: the residual's correlation with itself and with the command (Ljung 1999, section 16.6).
+"""Is the residual of a model noise: its correlation with itself and with the command (Ljung 1999, section 16.6).
 
 With e = x_m − x without its mean and u the command without its own,
 

@@ -36,7 +36,7 @@ class Whiteness:
 def p_value(compared: RunComparison, lags: int | None = None) -> float:
     """The share of white residuals of the run's length that are as correlated, over `lags` or the usual number.
 
-    1 where nothing is left.
+    1 where the residual is zero.
     """
     from scipy.special import chdtrc  # noqa: PLC0415 - scipy is loaded where it is first used
 

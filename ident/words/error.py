@@ -18,7 +18,7 @@ MEAN_COUNTS = 1.5
 """The ratio of the error with the mean counted to that without, 1, beyond which both stand wherever the error does.
 
 From there on the offset is larger than what eq. (17) sees, √(1.5² − 1) = 1.12 times: the error without the mean is the
-smaller part of what the model leaves.
+smaller part of the residual.
 """
 _NAMED = 3  # runs that are called by name; of more the first ones, with their number
 

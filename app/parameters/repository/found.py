@@ -35,7 +35,7 @@ FEW = 20_000
 _SAMPLE = 1000  # of the newest, which tell whether it is worth while to look through so many
 _MOST: BindParameter[int] = bindparam("most", type_=Integer)
 _LAST = select(func.max(SET))
-_TESTED = 1000  # of those that were collected, tested at once for what is left
+_TESTED = 1000  # of those that were collected, tested at once for whether they remain
 
 
 def numbers(session: Session, wanted: Wanted, before: int | None, limit: int) -> list[int]:

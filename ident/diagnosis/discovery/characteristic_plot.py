@@ -34,7 +34,7 @@ def characteristic_view(term: Term, preset: Preset, typical: Signals) -> str:
 
 
 def _explained_share(values: Array, by: Array, straight: bool) -> float:
-    """The share of what a line, or a constant, leaves of the values that a curve against a signal takes."""
+    """The share that a curve against a signal explains of the deviation of values from a line, or from a constant."""
     line = np.polynomial.Polynomial.fit(by, values, 1 if straight else 0)(by)
     left = values - line
     edges = np.quantile(by, np.linspace(0, 1, CRITERIA.discovery.bins + 1)[1:-1])

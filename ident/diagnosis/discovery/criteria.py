@@ -45,7 +45,7 @@ class Discovery:
     pairs_seen: int = 200
     """[pairs] Of which those are taken that are distinguishable. Why: the rest explains far less."""
     cancelled: float = 1e-6
-    """[of the power of both] That a pair of terms is to leave. Why: a pair that leaves less is none."""
+    """[of the power of both] Below which the difference of a pair of terms is nothing. Why: the two are one term."""
     may_win: float = 0.5
     """[of the best's reduction] That a term whose shape is to be moved promises. Why: a shape that is not yet where
     it belongs keeps that much."""
@@ -65,7 +65,7 @@ class Discovery:
     """[of the gains] That the runs may lose where few gain. Why: a stop that only some runs reach loses nothing
     elsewhere. Test: discovery/test_term_evidence.py::test_all_runs_gain_or_some_gain_much_and_none_loses"""
     absorbed: float = 1e-4
-    """[of a term's power] That the parameters are to leave. Why: less, and they do what it does."""
+    """[of a term's power] That the parameters must not explain. Why: below it they do what the term does."""
     same_class: float = 0.999
     """[cosine] Of two terms that are one class. Why: the data cannot tell them apart."""
     digits: int = 8

@@ -14,7 +14,7 @@ from ident.words.message import message, said
 
 @dataclass(frozen=True, kw_only=True)
 class RejectedTerm:
-    """The best term that stayed below the bar, beside which effects, and the errors that it would leave."""
+    """The best term that stayed below the bar, beside which effects, and the errors with it."""
 
     equation: str
     log_likelihood_gain: float
@@ -54,7 +54,8 @@ class DiscoveryResult:
     complete: bool = True
 
     def or_rejected(self, other: DiscoveryResult) -> DiscoveryResult:
-        """The same where something was found; else with what would leave less of what two searches refused.
+        """The same where something was found; else of the terms that two searches refused the one with the smaller
+        error.
 
         Their nats count from different models.
         """

@@ -1,4 +1,4 @@
-"""One linear regression for all terms: which of them, beside the parameters, explain what is left.
+"""One linear regression for all terms: which of them, beside the parameters, explain the residual.
 
 A small term φ at a place changes the output by the response of the linearised chain to it, T * φ. With J what
 parameters and first states do and r the residual,

@@ -93,7 +93,7 @@ class TermSearch:
         )  # fmt: skip
 
     def _drawn(self, begun: TermSearch) -> None:
-        """One free curve beside the terms or, where it leaves no more without them, in the place of all of them."""
+        """One free curve, with the terms; or in the place of all of them, where the residual is no larger then."""
         terms = self.found
         self._added(curves=True)
         begun.looked_at, begun.left_out = self.looked_at, self.left_out
@@ -160,8 +160,8 @@ class TermSearch:
     ) -> list[RefittedTerm]:
         """The refits with the candidates that come first after a rough one.
 
-        What is strong moves the signals that terms are of: where the best leaves more than noise, what could be in its
-        place is sought once more, with the signals of the model that has it.
+        A strong term moves the signals that terms are of. So where the residual of the best exceeds the noise, the
+        terms in its place are sought once more, with the signals of the model that has it.
         """
 
         def refits(candidates: Sequence[TermCandidate], least: float = np.inf) -> list[RefittedTerm]:
@@ -299,7 +299,7 @@ def _gone_on(tried: RefittedTerm, way: Way) -> RefittedTerm:
 
 
 def _chosen(base: FittedModel, tried: Sequence[RefittedTerm], runs: Sequence[Run]) -> RefittedTerm:
-    """The simplest of those that leave as little of some runs, or of what was held out where there are none.
+    """The simplest of those with as small an error on some runs, or on held-out data where there are none.
 
     Where all of them gain little over the base one that is as good to within some per cent may gain nothing.
     """

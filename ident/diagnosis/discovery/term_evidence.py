@@ -1,6 +1,6 @@
 """By how much a term makes runs more likely that it was not fitted to, whatever the colour of the noise.
 
-With the periodograms of what is left before and after, averaged over m neighbouring frequencies within the band,
+With the periodograms of the residual before and after, averaged over m neighbouring frequencies within the band,
 
     nats = Σ m ln(S_before / S_after)
 

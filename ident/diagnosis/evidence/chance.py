@@ -85,7 +85,7 @@ def _orthonormal(columns: Array) -> Array:
 
 
 def _unit(columns: Array, before: Array) -> Array:
-    """Columns of length 1, without those of which the sensitivities leave nothing."""
+    """Columns of length 1, without those that the sensitivities explain whole."""
     size, whole = np.linalg.norm(columns, axis=0), np.linalg.norm(before, axis=0)
     independent = (whole > 0) & (size > np.sqrt(EVIDENCE_CRITERIA.dependent) * whole)
     return np.asarray(columns[:, independent] / size[independent])

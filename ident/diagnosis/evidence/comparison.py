@@ -101,13 +101,14 @@ class Evidence:
 
     @property
     def explainable(self) -> float:
-        """The power that the first model leaves above the noise."""
+        """The residual power of the first model above the noise."""
         return max(self.before - self.noise, 0.0)
 
 
 @dataclass(frozen=True, eq=False)
 class Residuals:
-    """What a model leaves of data that it was not fitted to: `series` (n,) of each run, in the unit of the outputs.
+    """The residuals of a model on data that it was not fitted to: `series` (n,) of each run, in the unit of the
+    outputs.
 
     They are less their mean where the zero is not known; `levels` (runs,), over the outputs' standard deviations, are
     then what is known of the means: less what the runs have in common. `bands` are those of all models that are
@@ -148,7 +149,7 @@ class Residuals:
         """The variance of the noise of each run over the power of its output, if this is the best of the models.
 
         As stated; of a periodic test what does not repeat; else what the past does not predict, which is less than the
-        noise where that is coloured. Never above what is left.
+        noise where that is coloured. Never above the residual power.
         """
         found, energies = [], self.energies.sum(axis=0)
         for run, record, residual in zip(self.bands.runs, self.bands.records, self.scaled, strict=True):
@@ -251,7 +252,7 @@ def worth_adding(
 
 
 def better(evidence: Evidence, criteria: EvidenceCriteria = EVIDENCE_CRITERIA) -> bool:
-    """Whether the second of two models with as many parameters is more likely, beyond what the data leave open."""
+    """Whether the second of two models with as many parameters is more likely, beyond chance."""
     differences = (evidence.difference, evidence.level_difference)
     gains = evidence.gain >= 0 and any(of.above(0.0, criteria) for of in differences)
     return gains and not indistinguishable(evidence, criteria) and runs_freely(evidence, criteria)
@@ -263,10 +264,10 @@ def runs_freely(evidence: Evidence, criteria: EvidenceCriteria = EVIDENCE_CRITER
 
 
 def indistinguishable(evidence: Evidence, criteria: EvidenceCriteria = EVIDENCE_CRITERIA) -> bool:
-    """Whether the data leave open which model is right: as good but for chance, and outputs near to each other.
+    """Whether the models are indistinguishable: as good but for chance, and outputs near to each other.
 
-    Near is what the noise does not separate, or a twentieth of what the better one leaves above the noise; the means of
-    the runs are to be as near as nobody cares about.
+    Near is what the noise does not separate, or a twentieth of the residual power of the better one above the noise;
+    the means of the runs are to be as near as nobody cares about.
     """
     if not both_probable(evidence, criteria):
         return False
@@ -287,7 +288,7 @@ def both_probable(evidence: Evidence, criteria: EvidenceCriteria = EVIDENCE_CRIT
 
 
 def dominated(evidence: Evidence, criteria: EvidenceCriteria = EVIDENCE_CRITERIA) -> bool:
-    """Whether the second model is worse than the first beyond chance, by a share that matters of what it leaves.
+    """Whether the second model is worse than the first beyond chance, by a share of its residual power that matters.
 
     Never where the noise hides what lies between the two.
     """
@@ -304,7 +305,7 @@ def gain(before: Residuals, after: Residuals, disturbance: Disturbance) -> float
 
 
 def most(before: Residuals, disturbance: Disturbance) -> float:
-    """The gain of a model that leaves nothing but the noise, as far as that is known for sure."""
+    """The gain of a model whose residual is the noise, as far as that is known for sure."""
     bands, levels = disturbance.bands, before.level_squares
     noise = _level_noise(disturbance.floors / bands.lengths, bands.criteria)
     of_levels = _level_gain(levels, noise if noise.sum() < levels.sum() else levels, bands.criteria)
@@ -312,7 +313,7 @@ def most(before: Residuals, disturbance: Disturbance) -> float:
 
 
 def _level_noise(expected: Array, criteria: EvidenceCriteria) -> Array:
-    """The squares of the means, (runs,), that noise of the `expected` ones leaves, but for chance: χ² of runs − 1."""
+    """The squares of the means, (runs,), of noise with the `expected` ones, but for chance: χ² of runs − 1."""
     others = len(expected) - 1
     return expected * float(chdtri(others, criteria.chance)) / others if others else expected
 

@@ -80,8 +80,8 @@ class EvidenceCriteria:
     three quarters of them stay for the noise between.
     Test: test_evidence.py::test_five_periods_and_a_hundred_give_the_same_evidence_against_a_wrong_model"""
     dependent: float = 1e-09
-    """[of the largest column] What is left of a response below which the sensitivities explain all of it. Why:
-    rounding of products of ten thousand samples; its root for a norm.
+    """[of the largest column] Size of the unexplained part of a response below which the sensitivities explain all of
+    it. Why: rounding of products of ten thousand samples; its root for a norm.
     Test: test_evidence.py::test_the_bar_is_passed_by_chance_as_often_as_it_says"""
     surrogates_at_once: int = 25
     """[residuals] Surrogates that lie in memory together. Why: records may have a hundred thousand samples: 25 of
@@ -89,7 +89,7 @@ class EvidenceCriteria:
     Test: test_evidence.py::test_the_bar_is_passed_by_chance_as_often_as_it_says"""
     share: float = 0.01
     """[1] Share of the explainable power that matters: an effect takes more, no part of the data loses as much, a
-    dominated model leaves as much more. Why: less is not worth a parameter, however certain.
+    the residual power of a dominated model is larger by as much. Why: less is not worth a parameter, however certain.
     Test: test_evidence.py::test_a_gain_of_less_than_a_hundredth_of_the_explainable_power_does_not_improve"""
     least_gain: float = 3.4
     """[nats] Gain that an effect has to make whatever the bar. Why: a likelihood thirty times as large is what Jeffreys
@@ -99,8 +99,8 @@ class EvidenceCriteria:
     """[of the standard deviation] Root mean square of the means of the runs that matters. Why: less is nobody's
     concern. Test: test_evidence.py::test_an_effect_that_moves_the_means_of_the_runs_alone_matters"""
     separation: float = 0.05
-    """[1] Power between two outputs over the power that the better one leaves above the noise. Why: what is missing
-    from both may have turned the order of two outputs so near to each other.
+    """[1] Power of the difference of two outputs over the residual power of the better one above the noise. Why: what
+    is missing from both may have turned the order of two outputs so near to each other.
     Test: test_evidence.py::test_two_models_that_leave_as_much_but_look_different_are_told_apart"""
     resolution: float = 36.0
     """[noise variances] Energy between two outputs that white noise does not tell apart. Why: outputs f, g are
@@ -116,14 +116,14 @@ class EvidenceCriteria:
     of docs/decisions/evidence.md and frozen.
     Test: test_evidence.py::test_probabilities_are_frozen"""
     unlisted_share: float = 0.8
-    """[1] Share of what is left to be gained that something unlisted is credited with. Why: a listed effect explains
+    """[1] Share of the gain still possible that something unlisted is credited with. Why: a listed effect explains
     in detail what it explains, something unlisted only that there is something; single effects do not tell it, and
-    with a larger share several effects that leave nothing but noise would lose to it.
+    with a larger share several effects that explain all but the noise would lose to it.
     Test: test_evidence.py::test_several_effects_that_leave_only_noise_do_not_lose_to_something_unlisted"""
     reaches: float = 0.5
     """[1] Share of the gain that can be reached, which passes whatever the bar. Why: where a residual has few
-    harmonics a random phase is often met by some candidate, and the bar comes near to all that can be gained; what
-    gains half of that, in the logarithm, leaves little to anything else.
+    harmonics a random phase is often met by some candidate, and the bar comes near to all that can be gained; after
+    half of that gain, in the logarithm, little is to be gained by anything else.
     Test: test_evidence.py::test_what_reaches_the_noise_passes_where_one_harmonic_is_all_there_is"""
     unlisted_prior: float = 6.5
     """[1] By how much the logarithm of a model's weight falls with something unlisted. Why: fitted to the training

@@ -1,8 +1,9 @@
 """One disturbance spectrum, common to all models that are compared, and the loss that it weighs.
 
 What no model explains, a drift of the sensor or a term that no list holds, must not decide between models. Its energy
-in each band is what the best of them leaves there, and at least the noise. To it a part of the mean level comes of what
-could be explained: else the kinks of a useful model, in bands that hold nothing, would outweigh what it explains.
+in each band is the residual energy of the best of them there, and at least the noise. To it a part of the mean level
+comes of what could be explained: else the kinks of a useful model, in bands that hold nothing, would outweigh what it
+explains.
 
     S_b = max(min_m E_b(m), F_b) + ε X c_b / Σ c      X = Σ_b max(E_b(reference) − F_b, 0), of each condition
     V(m) = Σ_b c_b max(E_b(m), F_b) / S_b / Σ c      1/ν = 1/Σ c + 1/ν_max
@@ -64,7 +65,7 @@ class Disturbance:
         return float(self.counted.sum())
 
     def loss(self, energies: Array) -> float:
-        """V of a model by its energies (bands,): 1 or less where it leaves nothing but the disturbance."""
+        """V of a model by its energies (bands,): 1 or less where its residual is the disturbance."""
         shares = np.maximum(energies, self.noise) / np.where(self.energy > 0, self.energy, 1.0)
         return float(self.counted @ shares) / self._all
 
@@ -80,6 +81,6 @@ class Disturbance:
         return replace(self, energy=np.where(remaining > 0, remaining * self.energy, 0.0), noise=remaining * self.noise)
 
     def most(self, before: Array) -> float:
-        """The gain of a model that leaves nothing but the noise, as far as that is known for sure."""
+        """The gain of a model whose residual is the noise, as far as that is known for sure."""
         surely = self.bands.criteria.floor_margin**2 * self.noise
         return self.gain(np.maximum(before, surely), surely)

@@ -27,7 +27,7 @@ NOTHING: Effects = frozenset()
 
 @dataclass(frozen=True)
 class SetGains:
-    """The gains (nats) of sets of effects over the model without any of them, and of one that leaves only the noise.
+    """The gains (nats) of sets of effects over the model without any of them, and of one whose residual is the noise.
 
     All are under one disturbance spectrum. The model without any effect is among them, with a gain of 0.
     """
