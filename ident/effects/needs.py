@@ -55,16 +55,6 @@ def speed_measured(matrix: Matrix) -> bool:
     return all(run.output == "velocity" for run in matrix.runs)
 
 
-def rectified(matrix: Matrix) -> bool:
-    """Whether a speed stays on one side of zero although its command does not."""
-    speeds = all(run.output == "velocity" and "command" in run.channels for run in matrix.runs)
-    return (
-        speeds
-        and all(one_sided(run.measured) for run in matrix.runs)
-        and not any(one_sided(run.command) for run in matrix.runs)
-    )
-
-
 def one_sided(samples: NDArray[np.float64]) -> bool:
     """Whether samples stay on one side of zero."""
     lowest, highest = float(samples.min()), float(samples.max())

@@ -7,7 +7,8 @@ from dataclasses import replace
 import numpy as np
 
 from ident.effects.effect import Effect
-from ident.effects.needs import rectified
+from ident.effects.needs import one_sided
+from ident.matrix import Matrix
 from ident.parameter import Parameter
 from ident.run import Run, Samples
 
@@ -17,16 +18,33 @@ SHORTEST, LONGEST, LAGS = 0.5, 0.05, 16
 Neighbours are half as long again: a sign is then wrong near the zeros alone. Test: tests/effects/test_rectified.py"""
 
 
+def rectified(matrix: Matrix) -> bool:
+    """Whether speeds stay on one side of zero, in all runs the same, although in each the machine is driven both ways.
+
+    Noise of a command passes zero, too. It drives nothing, so the command behind the machine's lag is asked.
+    """
+    if not all(run.output == "velocity" and "command" in run.channels for run in matrix.runs):
+        return False
+    speeds = np.concatenate([run.measured for run in matrix.runs])
+    return one_sided(speeds) and not any(one_sided(followed(run)) for run in matrix.runs)
+
+
 def with_sign(run: Run) -> Run:
-    """The run with the sign that its command tells: that of the command behind the lag with the most alike size."""
-    followed = [_behind(run.command, lag) for lag in np.geomspace(SHORTEST, LONGEST * run.length, LAGS)]
-    best = max(followed, key=lambda x: np.corrcoef(np.abs(x), run.measured)[0, 1])
-    return replace(run, channels={**run.channels, run.output: np.where(best < 0, -run.measured, run.measured)})
+    """The run with the sign that its command tells behind the machine's lag."""
+    sign = followed(run)
+    return replace(run, channels={**run.channels, run.output: np.where(sign < 0, -run.measured, run.measured)})
+
+
+def followed(run: Run) -> Samples:
+    """The command (n,) behind the lag with which its size is most like that of the speed."""
+    lagged = [_behind(run.command, lag) for lag in np.geomspace(SHORTEST, LONGEST * run.length, LAGS)]
+    speed = np.abs(run.measured)
+    return max(lagged, key=lambda x: np.corrcoef(np.abs(x), speed)[0, 1])
 
 
 def _behind(u: Samples, lag: float) -> Samples:
     """A command behind a lag of the first order of so many samples."""
-    from scipy.signal import lfilter  # noqa: PLC0415 - dear to load, and asked for of a rectified speed alone
+    from scipy.signal import lfilter  # noqa: PLC0415 - dear to load, and asked for of a speed on one side alone
 
     kept = np.exp(-1.0 / lag)
     return np.asarray(lfilter([1.0 - kept], [1.0, -kept], u), np.float64)
