@@ -91,10 +91,13 @@ def contradicts(change: VerifyChange, criteria: Criteria = CRITERIA) -> bool:
 def shows_nothing(change: VerifyChange, criteria: Criteria = CRITERIA) -> bool:
     """Whether runs to verify show nothing of an effect that they would show if it acted as it was fitted.
 
-    The error there does not fall beyond chance, and beyond chance it falls by less than is due.
+    The error there does not fall beyond chance, with its mean or without; and beyond chance it falls by less than is
+    due. A mean that the model does not explain may hide an effect that the rest of the record shows.
     """
-    chance, fall = criteria.verification.deviations * change.std_error, -change.rise
-    return not contradicts(change, criteria) and fall <= chance < change.due - fall
+    deviations, fall = criteria.verification.deviations, -change.rise
+    chance = deviations * change.std_error
+    is_shown_without_mean = change.tabled_fall > deviations * change.tabled_std_error
+    return not contradicts(change, criteria) and not is_shown_without_mean and fall <= chance < change.due - fall
 
 
 def contradiction(change: VerifyChange | None) -> Contradiction | None:

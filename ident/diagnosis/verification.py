@@ -74,7 +74,8 @@ class VerifyChange:
     are those of eq. (17), that tables show.
     `after` is None where the model is `unstable` on these runs with the effect, and was not without. Of a `free_run`
     that is driven away they are the errors with its mean, and that it is more than chance has been asked. `shown` is
-    by how much the model differs on these runs with the effect, as an error of the same kind.
+    by how much the model differs on these runs with the effect, as an error of the same kind. `tabled_std_error` is
+    the standard error of the difference of the errors in tables, where the mean counts.
     """
 
     effect: str
@@ -85,6 +86,7 @@ class VerifyChange:
     free_run: bool = False
     with_mean: tuple[float, float] | None = None
     shown: float = 0.0
+    tabled_std_error: float = 0.0
 
     @property
     def due(self) -> float:
@@ -94,6 +96,11 @@ class VerifyChange:
         """
         first = self.with_mean[0] if self.with_mean else self.before
         return first - float(np.sqrt(max(first**2 - self.shown**2, 0.0)))
+
+    @property
+    def tabled_fall(self) -> float:
+        """By how much the error without the mean falls, where the mean counts; 0 where it does not."""
+        return 0.0 if self.with_mean is None or self.after is None else self.before - self.after
 
     @property
     def rise(self) -> float:
@@ -134,8 +141,8 @@ def verify_change(
     shown = _error(runs, [first - last for first, last in zip(*counted, strict=True)])
     if means is None:
         return VerifyChange(effect, *with_mean, std_error, shown=shown)
-    tabled = _error(runs, before), _error(runs, after)
-    return VerifyChange(effect, *tabled, std_error, with_mean=with_mean, shown=shown)
+    tabled, tabled_std_error = (_error(runs, before), _error(runs, after)), _error_of_difference(runs, before, after)
+    return VerifyChange(effect, *tabled, std_error, with_mean=with_mean, shown=shown, tabled_std_error=tabled_std_error)
 
 
 def _raised(residuals: Sequence[Array], means: Array) -> list[Array]:

@@ -63,7 +63,11 @@ SHOWS_NOTHING = VerifyChange("lag", 0.1, 0.0999, 0.001, shown=0.06)  # due if it
         (replace(SHOWS_NOTHING, std_error=0.02), ("lead", "lag")),  # nobody knows
         (replace(SHOWS_NOTHING, after=0.103), ("lead", "lag")),  # contradicted, which is said of what is named
         (replace(SHOWS_NOTHING, before=0.05, after=0.0499, with_mean=(0.1, 0.097)), ("lead", "lag")),
-        (replace(SHOWS_NOTHING, before=0.05, after=0.02, with_mean=(0.1, 0.0999)), ("lead",)),
+        (replace(SHOWS_NOTHING, before=0.05, after=0.0499, with_mean=(0.1, 0.0999), tabled_std_error=0.001), ("lead",)),
+        (
+            replace(SHOWS_NOTHING, before=0.05, after=0.02, with_mean=(0.1, 0.0999), tabled_std_error=0.001),
+            ("lead", "lag"),
+        ),
     ],
 )
 def test_what_was_added_last_is_not_named_where_validation_data_would_show_it_and_do_not(change, named):
