@@ -21,7 +21,7 @@ from ident.diagnosis.model_comparison import better
 from ident.diagnosis.operating_point import at_operating_point
 from ident.diagnosis.ranking import rank
 from ident.effects import CATALOGUE
-from ident.effects.effect import undone
+from ident.effects.effect import undoable, undone
 from ident.errors import Unusable
 from ident.fit.identification import Identification, StepwiseFit, completed
 from ident.fit.result import FitResult, Structure, Window
@@ -210,18 +210,17 @@ def choose_structure(
     that is switched off.
     """
     matrix = screen(matrix, preprocessing)
-    without = undone(matrix, CATALOGUE)  # a structure shows in what the records would be without such an effect
-    found, fit = _compared(without, report, preprocessing)
-    fit = fit if without is matrix else None
+    shown = undoable(matrix, CATALOGUE)
+    found, fit = _compared(undone(matrix, shown), report, preprocessing)
+    fit = None if shown else fit  # of records that the matrix does not hold
     first, *others = found
     usual = first.machine in (Settings().model, matrix.machine) and not others
     if usual and (matrix.machine or not told_by_following(preset(first.machine), matrix.runs)):
         return StructureChoice(matrix, found, fit)
     compared = [message("structure.of", machine=one.machine, why=one.why) for one in found]
     notice = str(message("structures", models=compared) if others else message("structures.one", why=first.why))
-    if without is not matrix:
-        shown = [title(effect.name) for effect in CATALOGUE if effect.undone is not None and effect.suits(matrix)]
-        notice = f"{notice} {message('structures.undone', effects=shown)}"
+    if shown:
+        notice = f"{notice} {message('structures.undone', effects=[title(effect.name) for effect in shown])}"
     return StructureChoice(replace(matrix, notices=(notice, *matrix.notices)), found, fit and noticed(fit, notice))
 
 

@@ -92,7 +92,7 @@ def shows_nothing(change: VerifyChange, criteria: Criteria = CRITERIA) -> bool:
     """Whether runs to verify show nothing of an effect that they would show if it acted as it was fitted.
 
     The error there does not fall beyond chance, with its mean or without; and beyond chance it falls by less than is
-    due. A mean that the model does not explain may hide an effect that the rest of the record shows.
+    due. A mean that the model does not explain may hide an effect that the residual about the mean shows.
     """
     deviations, fall = criteria.verification.deviations, -change.rise
     chance = deviations * change.std_error

@@ -119,12 +119,17 @@ class Effect:
         return names
 
 
+def undoable(matrix: Matrix, effects: Iterable[Effect]) -> tuple[Effect, ...]:
+    """The effects that a matrix may have and that can be undone in its records."""
+    return tuple(effect for effect in effects if effect.undone is not None and effect.suits(matrix))
+
+
 def undone(matrix: Matrix, effects: Iterable[Effect]) -> Matrix:
     """The matrix with each run as it would be without the effects, of those that can be undone in it."""
     runs = matrix.runs
-    for effect in effects:
-        if effect.undone is not None and effect.suits(matrix):
-            runs = tuple(map(effect.undone, runs))
+    for effect in undoable(matrix, effects):
+        assert effect.undone is not None
+        runs = tuple(map(effect.undone, runs))
     return replace(matrix, runs=runs) if runs is not matrix.runs else matrix
 
 

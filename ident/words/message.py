@@ -91,11 +91,12 @@ KINDS: Mapping[str, Callable[[Any], str]] = {
 
 
 class _Words(string.Formatter):
-    """Values by kind."""
+    """Values by kind; a list for which the text names none has all of its items."""
 
     def format_field(self, value: Any, format_spec: str) -> str:
         """The value in words."""
-        return KINDS[format_spec](value) if format_spec in KINDS else format(value, format_spec)
+        kind = "all" if isinstance(value, list | tuple) and not format_spec else format_spec
+        return KINDS[kind](value) if kind in KINDS else format(value, format_spec)
 
 
 _WORDS = _Words()

@@ -35,7 +35,7 @@ def test_a_counter_without_a_sign_is_named_whatever_the_command(monkeypatch):
     matrix = Matrix(Actuator("COUNTER"), runs)
     choice = choose_structure(matrix)
     assert choice.structures[0].machine == "motor"
-    assert "compared by what they would be without" in choice.matrix.notices[0]
+    assert "The records show rectified sensor. The models were compared" in choice.matrix.notices[0]
     fit = identify(matrix, Settings(model="motor", options={"population": 24.0, "generations": 8.0, "elite": 4.0}))
     assert (fit.error["fit"] or 0.0) > 0.5
     found = diagnose(matrix, fit, propose=False)

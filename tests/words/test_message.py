@@ -194,6 +194,11 @@ def test_a_value_is_put_into_words_by_its_kind_and_may_be_a_message():
     )
 
 
+def test_a_list_of_no_kind_has_all_of_its_items(monkeypatch):
+    monkeypatch.setitem(MESSAGES, "shown", "The records show {effects}.")
+    assert str(message("shown", effects=["play", "lag"])) == "The records show play and lag."
+
+
 def test_a_share_has_a_space_before_its_unit():
     """As every number of the program has: Python's own form of per cent sets none."""
     assert KINDS["share"](0.694) == "69 %"

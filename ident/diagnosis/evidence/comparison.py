@@ -224,9 +224,14 @@ def improves(evidence: Evidence, bar: Callable[[], float], criteria: EvidenceCri
 
 
 def matters(evidence: Evidence, criteria: EvidenceCriteria = EVIDENCE_CRITERIA) -> bool:
-    """Whether the second model explains a share of the explainable power, or of the runs' means, that matters."""
+    """Whether the second model explains a share of the explainable power, or of the runs' means, that matters.
+
+    It does so beyond the error of the share, or beyond that of the difference. The first is small where every block
+    gains the same share, the second where some blocks, or some runs, gain more of it than others.
+    """
     of_levels = evidence.level > criteria.level and evidence.level_share.above(criteria.share, criteria)
-    return of_levels or evidence.share.above(criteria.share, criteria)
+    of_difference = evidence.difference.above(criteria.share * evidence.explainable, criteria)
+    return of_levels or of_difference or evidence.share.above(criteria.share, criteria)
 
 
 def generalises(evidence: Evidence, criteria: EvidenceCriteria = EVIDENCE_CRITERIA) -> bool:
