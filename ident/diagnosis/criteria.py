@@ -1,7 +1,7 @@
 """Every number that decides in a diagnosis, by the stage that it decides in.
 
-Below each number stand [its unit], what it is (read: value, unit, meaning), why it is so, and the test below
-tests/diagnosis that holds it; a number without one is held by no test of its own yet.
+Below each number stand [its unit], its meaning (read: value, unit, meaning), the reason for it, and the test in
+tests/diagnosis that holds it; a number without a test name has no test of its own yet.
 """
 
 from __future__ import annotations
@@ -15,17 +15,17 @@ from ident.fit.levenberg_marquardt import Way
 TINY: float = 1e-300
 """[1] A logarithm's or a quotient's argument is kept above it. Why: the smallest normal number is 2e-308."""
 EPSILON: float = 1e-12
-"""[of a size] A relative error below it is taken as this. Why: rounding of a sum of ten thousand terms."""
+"""[of a size] Least relative error that is used. Why: rounding of a sum of ten thousand terms."""
 
 
 @dataclass(frozen=True)
 class Estimation:
-    """How far the parameters of one model are refined, and what counts as a refit."""
+    """How far the parameters of one model are refined, and which refits are valid."""
 
     full: Way = Way(1e-7, 20, rough=1e-5)
     """[Way] Effort of a refit to every sample. Why: 20 steps end within a hundredth of a tie."""
     behind: Way = Way(1e-4, 20, rough=1e-4)
-    """[Way] The same of one that was behind the best on trial. Why: a tie more or less is not what it lacks.
+    """[Way] Effort of a full refit of a finalist that was behind the best on trial. Why: it lacks far more than a tie.
     Test: test_ranking.py::test_a_finalist_that_is_far_behind_is_not_refined_as_the_best_is"""
     trial: Way = Way(1e-4, 10, rough=1e-4)
     """[Way] Effort of a refit on trial. Why: a trial only has to rank to within a tie, and is refined if it is among
@@ -33,13 +33,13 @@ class Estimation:
     far_trial: Way = Way(1e-4, 20, rough=1e-4)
     """[Way] Effort of the leader of several starts far away. Why: from far away ten steps do not arrive."""
     screen: Way = Way(1e-5, 3)
-    """[Way] Effort of first steps from many starts. Why: three steps tell which start leads.
+    """[Way] Effort of first steps from many starts. Why: after three steps the best start is known.
     Test: test_fitted_model.py::test_of_first_steps_the_eight_that_leave_least_go_on"""
     trial_samples: int = 131_072
     """[samples] Of all runs in a trial. Why: enough for a ranking; the finalists take every sample."""
     global_samples: int = 32_768
-    """[samples] Of all runs by which points of the whole space are judged, and on which refits from far away set out.
-    Why: 128 points are to cost about as much as one trial, and one of many starts is gone on with."""
+    """[samples] Of all runs by which points of the whole space are judged, and on which refits from far away begin.
+    Why: 128 points are to cost about as much as one trial, and only one of many starts is continued."""
     global_points: int = 128
     """[points] Of a Sobol sample of the whole search space. Why: a model has up to about ten parameters."""
     global_starts: int = 4
@@ -55,11 +55,11 @@ class Estimation:
     """[ratio of errors] Below which a refit is a new optimum. Why: refits of one optimum end far closer
     together."""
     no_change: float = 1e-4
-    """[of an error] Change that is none, when a parameter is moved that the data do not determine. Why: a hundredth
-    of what makes another optimum.
+    """[of an error] Change that counts as none, when a parameter is moved that the data do not determine. Why: a
+    hundredth of the difference between two optima.
     Test: test_undetermined.py::test_a_mass_that_no_record_shows_rests_where_steps_are_few"""
     places_of_rest: int = 65
-    """[places] Along its range, at which such a parameter is looked at. Why: eight a decade of an eight-decade range.
+    """[places] Along its range, at which such a parameter is tried. Why: eight a decade of an eight-decade range.
     Test: test_undetermined.py::test_a_mass_that_no_record_shows_rests_where_steps_are_few"""
     convergence_rounds: int = 5
     """[refits] To continue with while each is a new optimum. Why: in a long narrow valley one refit stops on its
@@ -70,7 +70,7 @@ class Estimation:
     Test: test_selection.py::test_two_that_only_together_explain_the_data_are_found_where_a_third_came_first"""
     simulation_excess: float = 1.03
     """[ratio of errors] Of a simulation over its linear prediction that is still a result. Why: a model that is not
-    linear in its first states may look good where none leads.
+    linear in its initial states may look good at states that no simulation confirms.
     Test: test_fitted_model.py::test_what_no_first_state_leads_to_is_no_refit"""
     off_strength: float = 0.01
     """[of the largest strength] Below which an effect is as good as off. Why: less is not seen in the output.
@@ -89,9 +89,10 @@ class Noise:
     one phase differ where a motion jumps between two of them.
     Test: test_free_shapes.py::test_a_floor_that_a_fitted_model_comes_below_is_none"""
     floor_deviations: float = 3.0
-    """[standard deviations] Of the noise floor that the error may exceed it by. Why: one in 700 by chance."""
+    """[standard deviations] Of the noise floor, by which the error may exceed it. Why: one in 700 by chance."""
     bench_excess: float = 0.25
-    """[of the floor] The same of the records of a bench. Why: a reading that rests is off for long."""
+    """[of the floor] By which an error on the records of a bench may exceed it. Why: the error of a reading that stands
+    still lasts long."""
     noise_correlation: float = 0.5
     """[correlation] Of neighbouring residuals that noise may have where no floor is known. Why: above it the
     residual has a memory. Test: test_diagnose.py::test_repeats_tell_that_what_is_left_is_noise_in_the_band"""
@@ -106,13 +107,13 @@ class StructureSelection:
     another parameter. Test: test_structure_selection.py::test_of_equals_the_one_with_fewer_parameters_is_taken"""
     improbable: float = 0.01
     """[probability] Of the first machine with its best effect, below which the most probable one comes before it. Why:
-    a machine with more parameters may have made up for a part of what is missing; the usual order gives way to nothing
-    less sure. Test: test_structure_selection.py::test_more_parameters_do_not_make_up_for_an_effect"""
+    a machine with more parameters may have made up for a part of a missing effect; the usual order changes only where
+    it is that sure. Test: test_structure_selection.py::test_more_parameters_do_not_make_up_for_an_effect"""
     longer_gain: float = 10.0
-    """[log-likelihood] That longer windows gain over the fitted ones, beyond the logarithm of the number of models.
-    Why: one in 20,000 by chance."""
+    """[log-likelihood] Gain of longer windows over the fitted ones, beyond the logarithm of the number of models. Why:
+    one in 20,000 by chance."""
     carried_models: int = 4
-    """[models] Taken to the next longer windows. Why: the likeliest of each set of effects.
+    """[models] Taken to the next longer windows. Why: the most probable of each set of effects.
     Test: test_prediction_horizon.py::test_another_gain_each_way_is_judged_over_whole_runs"""
 
 
@@ -128,27 +129,27 @@ class Screening:
     weak_strengths: tuple[float, ...] = (1e-4, 3e-4, 1e-3, 3e-3)
     """[of the way to each bound] In addition, for a machine of unknown size. Why: its bounds are wide."""
     many_shapes: int = 10
-    """[initial guesses] Of shapes, above which each is simulated at fewer strengths. Why: their number multiplies
-    that of the strengths."""
+    """[initial guesses] Of shapes, above which each is simulated at fewer strengths. Why: the simulations are as many
+    as shapes times strengths."""
     strengths_of_many: tuple[float, ...] = (0.3,)
     """[of the way to each bound] At which each of many shapes is simulated. Why: the middle of the range by its
     logarithm."""
     strengths_of_stop: tuple[float, ...] = (1.02, 1.08, 1.2, 1.4, 1.7)
-    """[of the inverse of the way that was covered] At which a stop is simulated. Why: one that gives way was passed.
+    """[of the inverse of the way that was covered] At which a stop is simulated. Why: a stop that gives way was passed.
     Test: test_initial_guesses.py::test_a_stop_that_gives_way_lies_before_the_end_of_the_way"""
     elsewhere: int = 3
-    """[places] Of its shapes from which a refit begins again, in addition to the one that promises most. Why: of four
-    places along a range. Test: test_free_shapes.py::test_an_end_above_its_prediction_is_begun_again"""
+    """[places] Of its shapes from which a refit begins again, in addition to the one with the best prediction. Why:
+    there are four places along a range. Test: test_free_shapes.py::test_an_end_above_its_prediction_is_begun_again"""
     max_scaling: float = 2.0
     """[ratio of strengths] By which a response may be scaled. Why: beyond it the response would be another
     strength's."""
     max_step: float = 0.1
-    """[of an axis] That a parameter is moved at most by the prediction. Why: one that hardly matters may be sent
-    anywhere by a linearisation."""
+    """[of an axis] That a parameter is moved at most by the prediction. Why: a linearisation may move a parameter that
+    hardly matters anywhere."""
     step_shares: tuple[float, ...] = (1.0, 0.5, 0.2, 0.05, 0.01)
     """[of the predicted step] From where a refit may begin. Why: a prediction may be too bold."""
     strength_powers: tuple[float, ...] = (0.67, 0.33, 0.0)
-    """[exponent of the scaling] Of further starts, between the scaled and the simulated strength. Why: what has a
+    """[exponent of the scaling] Of further starts, between the scaled and the simulated strength. Why: an effect with a
     threshold needs the simulated strength."""
     threshold_growth: float = 300.0
     """[ratio of powers] Of two neighbouring responses between which a threshold lies. Why: a proportional response
@@ -159,7 +160,7 @@ class Screening:
     between: tuple[float, ...] = (0.2, 0.4, 0.6, 0.8)
     """[exponent of the step] Of strengths tried where a threshold lies. Why: equal steps of the logarithm."""
     score_tolerance: float = 1e-9
-    """[of a score] By which nothing is better. Why: rounding."""
+    """[of a score] Difference that makes no score better. Why: rounding."""
     reweighting_rounds: int = 3
     """[rounds] Of weighting each run by its residual. Why: the weights settle within three."""
     batch: int = 64
@@ -182,15 +183,16 @@ class InitialGuesses:
     """[of an axis] Where a searched shape begins. Why: a width is felt over about a fifth of four decades.
     Test: test_free_shapes.py::test_two_searches_from_other_places_end_alike"""
     finely: int = 24
-    """[places] Where a searched shape begins that the output jumps with. Why: over two decades each is a fifth longer
-    than the one before, about what a sample tells of a play.
+    """[places] Where a searched shape begins with which the output jumps. Why: over two decades each is a fifth longer
+    than the one before, about the resolution of a play in a sample.
     Test: test_friction_behind_play.py::test_a_play_before_the_friction_is_named_with_its_width_and_its_contact"""
     spring_shares: tuple[float, ...] = (0.3, 0.6)
-    """[of the machine's spring] That an effect has taken over which is a spring at first. Why: from either the refit
-    of a Bouc-Wen oscillator arrives, from none and from all of it does not.
+    """[of the machine's spring] Share that an effect which is a spring at first has taken over. Why: from either share
+    the refit of a Bouc-Wen oscillator reaches its optimum, from none and from all of the spring it does not.
     Test: test_free_loops.py::test_an_oscillator_that_hardens_is_named_with_the_shape_of_its_loop"""
     amplitude: float = 1.414
-    """[of the motion's deviation] At which it then yields. Why: that of a sine: it has yielded at the turning points.
+    """[of the motion's deviation] Amplitude at which such an effect yields at first. Why: the amplitude of a sine: it
+    has yielded at the turning points.
     Test: test_free_loops.py::test_an_oscillator_that_hardens_is_named_with_the_shape_of_its_loop"""
     spectrum_points: int = 4
     """[points] Of a spectrum for each that the record resolves. Why: a peak between two is not missed.
@@ -203,21 +205,21 @@ class FreeWidths:
 
     agrees: float = 0.01
     """[of an error] Within which two ends are one optimum: a search from two starts has converged. Why: ends of one
-    optimum differ by less than 1e-4, optima of what acts in jumps by some per cent.
+    optimum differ by less than 1e-4, optima of an effect that acts in jumps by some per cent.
     Test: test_free_shapes.py::test_two_searches_from_other_places_end_alike"""
     missed: float = 1.1
     """[ratio of errors] Of a refit over its prediction, above which it is begun again elsewhere. Why: a prediction is
     a step towards an optimum. Test: test_free_shapes.py::test_an_end_above_its_prediction_is_begun_again"""
     short_steps: int = 50_000
     """[simulation steps] Of all runs below which widths are free from the start and refits begin again. Why: a single
-    test has a tenth of the samples of a test matrix, and tells less of where to begin.
+    test has a tenth of the samples of a test matrix, and determines the initial guesses less.
     Test: test_free_shapes.py::test_where_records_are_long_widths_keep_their_usual_values_at_first"""
     counted_steps: int = 8
     """[steps a sample] That count at most for a short record. Why: a base whose mass ended next to nothing asks for 32,
     and no model that explains the records does.
     Test: test_free_shapes.py::test_a_mass_next_to_nothing_makes_no_record_long"""
     tried: int = 3
-    """[effects] That promise most with free widths and are refitted. Why: each is refitted from several places."""
+    """[effects] Refitted with free widths, the best predictions first. Why: each is refitted from several places."""
 
 
 @dataclass(frozen=True)
@@ -233,17 +235,17 @@ class Ranking:
     """[simulation steps] Of all runs below which a matrix is quick. Why: every prediction and every finalist can
     then be tried. Test: test_ranking.py::test_what_leaves_as_much_as_the_last_finalist_is_one_in_a_small_matrix"""
     near_best: float = 1.3
-    """[ratio of predicted errors] To the best of a contender for a further effect. Why: a prediction is that far
-    off. Test: test_ranking.py::test_where_the_boldest_promise_is_not_kept_more_is_tried"""
+    """[ratio of predicted errors] To the best, of a contender for a further effect. Why: a prediction is that far off.
+    Test: test_ranking.py::test_where_the_boldest_promise_is_not_kept_more_is_tried"""
     finalists: int = 5
-    """[candidates] Refitted to every sample. Why: the table of the first five is told in full.
+    """[candidates] Refitted to every sample. Why: the table shows the first five in full.
     Test: test_ranking.py::test_what_leaves_as_much_as_the_last_finalist_is_one_in_a_small_matrix"""
     close_trial: float = 1.05
-    """[ratio of trial errors] To the best of one that is a finalist too. Why: the trial sees only the beginnings of
-    the records."""
+    """[ratio of trial errors] To the best, up to which a candidate is a finalist, too. Why: a trial takes only the
+    beginnings of the records."""
     found_again: float = 0.98
-    """[ratio of errors] Below which a known model found again is at another optimum. Why: what acts in jumps has
-    many optima.
+    """[ratio of errors] Below which a known model that is refitted is at another optimum. Why: an effect that acts in
+    jumps has many optima.
     Test: test_local_optima.py::test_a_model_that_is_known_is_found_anew_where_that_leads_to_a_better_optimum"""
     multistart_finalists: int = 2
     """[finalists] Refitted from other strengths, too. Why: they decide what is added."""
@@ -256,13 +258,13 @@ class Ranking:
     multistart_rounds: int = 4
     """[rounds] Of continuing from a better optimum. Why: each begins around the last."""
     promising: float = 3e-3
-    """[relative reduction] Of the score that is worth a refit. Why: three tenths of what is asked in the end
+    """[relative reduction] Of the score that is worth a refit. Why: three tenths of the share that is needed in the end
     (evidence.share)."""
     offset_gain: float = 3.0
-    """[log-likelihood] Predicted gain of the runs' offsets that is worth a refit. Why: about what the prior of an
-    effect asks for in the end. Test: test_diagnose.py::test_a_null_bias_is_found_by_the_offsets"""
+    """[log-likelihood] Predicted gain of the runs' offsets that is worth a refit. Why: about the gain that the prior of
+    an effect needs in the end. Test: test_diagnose.py::test_a_null_bias_is_found_by_the_offsets"""
     told_at_once: int = 5
-    """[effects] Told as soon as they are predicted. Why: a page shows five."""
+    """[effects] Reported as soon as they are predicted. Why: a page shows five."""
 
 
 @dataclass(frozen=True)
@@ -270,30 +272,32 @@ class CrossValidationFolds:
     """Stretches of records, or whole runs, that take turns in being left out of a fit."""
 
     whole_runs: int = 4
-    """[runs] From which on whole runs are left out. Why: what only tells runs apart is then seen; of fewer a fit
-    without one knows too little.
+    """[runs] Least number for which whole runs are held out. Why: an effect that only distinguishes runs then shows; a
+    fit of fewer runs without one of them is too poor.
     Test: test_cross_validation.py::test_of_four_runs_whole_ones_are_left_out_of_fewer_stretches"""
     folds: int = 4
-    """[folds] A quarter of the runs is left out at a time. Why: the fit without a fold is close to the fit of all.
+    """[folds] A quarter of the runs is held out at a time. Why: the fit without a fold is close to the fit of all.
     Test: test_cross_validation.py::test_residuals_out_of_fold_are_those_of_fits_without_each_fold"""
     stretches: int = 8
-    """[stretches] Of a single run, of which each is left out; half as many of each of two or three. Why: as many fits
-    as there are of many runs, twice, and each stretch long beside the machine's memory.
+    """[stretches] Of a single run, each held out in turn; half as many of each of two or three runs. Why: twice as many
+    fits as for many runs, and each stretch is longer than the machine's memory.
     Test: test_cross_validation.py::test_of_four_runs_whole_ones_are_left_out_of_fewer_stretches"""
     seed: int = 0
     """[seed] By which runs are dealt to folds. Why: a matrix lists its runs in an order of its own."""
     max_step: float = 0.01
-    """[of an axis] That one linearisation is trusted over. Why: what acts in jumps is far from linear beyond.
+    """[of an axis] Step over which one linearisation is trusted. Why: an effect that acts in jumps is far from linear
+    beyond.
     Test: test_cross_validation.py::test_a_step_stays_in_the_cube_and_the_rest_makes_up_for_it"""
     longest_step: float = 0.1
-    """[of an axis] That a fold moves any parameter. Why: one that the other folds do not determine would go to a bound.
+    """[of an axis] Longest step of any parameter in a fold. Why: a parameter that the other folds do not determine
+    would go to a bound.
     Test: test_cross_validation.py::test_a_step_that_is_too_long_is_shortened"""
     step_shares: tuple[float, ...] = (1.0, 0.5, 0.2, 0.05)
-    """[of the step] Tried of a longer one, until the other folds are explained better. Why: each is a simulation,
-    and less than a twentieth moves nothing.
+    """[of the step] Shares of a longer step that are tried until the other folds are explained better. Why: each is a
+    simulation, and less than a twentieth moves nothing.
     Test: test_cross_validation.py::test_a_step_that_is_too_long_is_shortened"""
     least_offset: float = 1e-9
-    """[of the standard deviation] Of an offset in a score. Why: a logarithm needs one."""
+    """[of the standard deviation] Least offset in a score. Why: a logarithm needs one."""
     conditions_of_an_octave: float = 2.0
     """[steps] Of the size and the period of a command, by which tests are of one condition. Why: repetitions of a test
     differ by less, levels of a test matrix by more."""
@@ -316,26 +320,27 @@ class Selection:
     """The search over sets of effects."""
 
     most: int = 6
-    """[effects] Added at most. Why: more cannot be told apart by a test matrix.
+    """[effects] Added at most. Why: a test matrix does not distinguish more.
     Test: test_diagnose.py::test_more_effects_than_there_are_places_for_are_refused"""
     usual: int = 4
     """[effects] Added where the user says nothing. Why: machines of the trials lack up to three."""
     exchanged: int = 3
-    """[effects] Up to which each is compared with everything in its place every time. Why: more take long."""
+    """[effects] Up to which each is compared with all others in its place every time. Why: more take long."""
     rounds: int = 3
-    """[rounds] Of exchange, and of looking farther. Why: effects that are added and taken out in a circle come to an
+    """[rounds] Of exchange, and of the wider search. Why: effects that are added and taken out in a circle come to an
     end.
     Test: test_selection.py::test_of_effects_that_enter_and_leave_in_a_circle_the_best_set_stays"""
     global_restarts: int = 8
-    """[effects] Of the first ranking started from the whole search space. Why: a model that went far astray makes
-    another effect look better. Test: test_selection.py::test_one_effect_from_anywhere_takes_the_place_of_the_first"""
+    """[effects] Of the first ranking started from the whole search space. Why: a local optimum far from the true one
+    makes another effect look better. Test:
+    test_selection.py::test_one_effect_from_anywhere_takes_the_place_of_the_first"""
     companions: int = 2
     """[effects] That by themselves improve the model and worsen a part of the data, each of which is tried with all
     others. Why: each costs a ranking, and more than the leading ones seldom act.
     Test: test_free_run.py::test_friction_and_a_constant_force_are_found_that_only_together_run_freely"""
     runners_up: int = 2
     """[sets] Of as many effects as were selected, from which the search continues where it ends above the noise floor.
-    Why: each costs a ranking, and of two lags that one stands for either leads to both.
+    Why: each costs a ranking, and where one lag imitates two, either of the two leads to both.
     Test: test_selection.py::test_two_of_which_neither_helps_beside_what_stands_for_both_are_found"""
     pair_finalists: int = 5
     """[finalists] Tried two at a time. Why: two lags look like a delay, one at a time.
@@ -344,45 +349,43 @@ class Selection:
 
 @dataclass(frozen=True)
 class Ambiguity:
-    """What the data cannot tell apart."""
+    """Effects that the data cannot tell apart."""
 
     alternatives: int = 3
-    """[effects] Of one other model that are told. Why: a sentence holds no more."""
+    """[effects] Of one other model that are named. Why: a sentence has room for no more."""
     worth_saying: float = 0.05
-    """[probability] Below which an effect is not worth a word as a rival of one that is named. Why: one in 20 is
-    the custom of the field. Test: test_sentences.py::
-    test_effects_that_are_nearly_as_probable_as_the_named_one_are_said"""
+    """[probability] Below which an effect is not mentioned as an alternative to a named one. Why: one in 20 is the
+    custom of the field. Test: test_sentences.py:: test_effects_that_are_nearly_as_probable_as_the_named_one_are_said"""
     delay_near: float = 1.05
-    """[ratio of errors] Above which another lag in its place is given up. Why: what cannot come below it is not
+    """[ratio of errors] Above which the refit with another lag in its place ends. Why: a lag with a larger error is not
     equal."""
     pair_near: float = 1.01
-    """[ratio of trial errors] Above which another pair of lags is given up. Why: a pair with a larger error is
+    """[ratio of trial errors] Above which the trial of another pair of lags ends. Why: a pair with a larger error is
     distinguishable. Test: test_total_delay.py::test_two_lags_that_two_others_stand_for_as_well_are_told_as_pairs"""
     delay_effort: Way = Way(1e-4, 12, rough=1e-3)
-    """[Way] Of a refit with another lag. Why: only whether it is equal is asked."""
+    """[Way] Effort of a refit with another lag. Why: it only has to show whether the lag is equal."""
     delay_models: int = 2
-    """[models] Of the path, the last first, of which the total delay is asked. Why: the last effect may hold the
-    lag in its place."""
+    """[models] Of the path, the last first, whose total delay is compared. Why: the last effect may fix the lag."""
 
 
 @dataclass(frozen=True)
 class Verification:
-    """What runs that no fit saw say."""
+    """The comparison on validation data."""
 
     deviations: float = 2.0
-    """[standard errors] By which the error rises where runs to verify contradict an effect; and by which it falls by
-    less than is due where they show nothing of it. Why: one in 40 by chance: it only takes the word found away, or
-    the last name. Test: test_verification.py::test_chance_contradicts_seldom"""
+    """[standard errors] Rise of the validation error that contradicts an effect; and the shortfall of its fall at which
+    validation data show nothing of an effect. Why: one in 40 by chance, and it only takes away the word found, or the
+    last name. Test: test_verification.py::test_chance_contradicts_seldom"""
     chunk_length: float = 10.0
     """[correlation times] In a chunk of the bootstrap. Why: chunks are then independent (Künsch 1989).
     Test: test_verification.py::test_chance_contradicts_seldom"""
     least_chunks: int = 4
-    """[chunks] Of a run at least. Why: fewer have no scatter."""
+    """[chunks] Fewest of a run. Why: the scatter of fewer is not known."""
     resamples: int = 400
     """[resamples] Of the bootstrap. Why: the standard error is then known to 4 %."""
     rise: float = 1.1
-    """[ratio of verify errors] Of the last model to the best on the path, from which on it is told. Why: less is a
-    matter of chance.
+    """[ratio of validation errors] Of the last model to the best on the path, from which on it is reported. Why: less
+    is a matter of chance.
     Test: test_sentences.py::test_a_smaller_error_on_verify_runs_on_the_way_is_told_with_what_was_added_since"""
 
 
@@ -394,25 +397,26 @@ class LabelChecks:
     """[robust standard deviations] Of the runs' errors beyond which a run is checked. Why: one in two million by
     chance. Test: test_diagnose.py::test_a_wrong_label_is_named_with_what_should_stand_there"""
     least_excess: float = 1.15
-    """[ratio of errors] To the usual one, whatever the deviations are. Why: runs differ by some per cent anyway."""
+    """[ratio of errors] Least ratio to the usual error, whatever the deviations are. Why: runs differ by some per cent
+    anyway."""
     explained: float = 0.5
-    """[of the excess power] That a changed label has to take away. Why: otherwise it is not that label.
+    """[of the excess power] Share that a changed label has to remove. Why: otherwise the label is not the cause.
     Test: test_diagnose.py::test_a_wrong_label_is_named_with_what_should_stand_there"""
     factors: tuple[float, ...] = (0.1, 0.2, 0.33, 0.5, 0.67, 0.8, 0.9, 1.1, 1.25, 1.5, 2.0, 3.0, 5.0, 10.0)
     """[of the stated value] Tried on a label. Why: from a tenth to ten times."""
     rounds: int = 3
     """[rounds] Of refining a label's value. Why: each narrows the range by four."""
     most: float = 0.2
-    """[of the runs] That may stand out. Why: where more do, it is not their labels."""
+    """[of the runs] Most that may be outliers. Why: where more are, their labels are not the cause."""
     fewest_runs: int = 5
-    """[runs] From which on labels are checked. Why: the scatter of fewer is not known."""
+    """[runs] Least number for which labels are checked. Why: the scatter of fewer is not known."""
     reach: float = 0.15
-    """[of the value or of the change] Around the best value that is searched first. Why: the factors are that far
+    """[of the value or of the change] Range around the best value that is searched first. Why: the factors are that far
     apart."""
     points: int = 9
     """[values] In a round. Why: with the narrowing by four no value is missed."""
     narrowing: float = 4.0
-    """[ratio] Of the range from round to round. Why: nine points over the range overlap."""
+    """[ratio] By which the range narrows from round to round. Why: nine points over the range overlap."""
     least_spread: float = 1e-3
     """[of the logarithm] Added to the deviation of the runs' errors. Why: equal errors have none."""
     shift_rounds: int = 5
@@ -424,15 +428,15 @@ class Conclusion:
     """What a report says, and which models it says are in question."""
 
     competing: int = 3
-    """[models] Between which the next run is to decide. Why: more make no better experiment."""
+    """[models] That the next run is to distinguish. Why: more make no better experiment."""
     simpler_terms: float = 1.05
-    """[ratio of errors] Up to which terms alone come before terms beside the effects that were added. Why: they need
-    one effect less. Test: test_stages.py::test_terms_of_the_first_search_stay_where_there_is_no_time_for_the_second"""
+    """[ratio of errors] Up to which terms alone come before terms in addition to the added effects. Why: they need one
+    effect less. Test: test_stages.py::test_terms_of_the_first_search_stay_where_there_is_no_time_for_the_second"""
 
 
 @dataclass(frozen=True)
 class Criteria:
-    """All of them, a section a stage."""
+    """All criteria, a section for each stage."""
 
     estimation: Estimation = Estimation()
     noise: Noise = Noise()
@@ -454,4 +458,4 @@ class Criteria:
 
 
 CRITERIA = Criteria()
-"""Those that a diagnosis goes by."""
+"""The criteria of a diagnosis."""

@@ -5,9 +5,9 @@
 The blocks of a short record are shorter, so that there are enough of them to tell their scatter. Whether a mean is
 above a value is one question with one answer: t is the point that chance passes on that side.
 
-With a fixed number of blocks that is the limit of the studentised mean of any stationary series, whatever its
-spectrum (Kiefer and Vogelsang 2005; Ibragimov and Müller 2010). So the mean difference of the losses of two models is
-judged, nested or not, of which both may be wrong (Vuong 1989).
+With a fixed number of blocks Student's t is the limit of the studentised mean of any stationary series, whatever its
+spectrum (Kiefer and Vogelsang 2005; Ibragimov and Müller 2010). The mean difference of the losses of two models is
+judged by it. The models may be nested or not, and both may be wrong (Vuong 1989).
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class BlockMean:
-    """A mean, its standard error, and of how many blocks. One block has no error: it is infinite."""
+    """A mean, its standard error, and the number of blocks. The error of one block is infinite."""
 
     mean: float
     error: float
@@ -53,10 +53,11 @@ def block_mean(series: Sequence[Array], criteria: EvidenceCriteria) -> BlockMean
 
 
 def block_ratio(part: Sequence[Array], whole: Sequence[Array], criteria: EvidenceCriteria) -> BlockMean:
-    """The mean of one series over that of another, with the error of a ratio (Cochran 1977, 6.4).
+    """The mean of one series over the mean of another, with the error of a ratio (Cochran 1977, 6.4).
 
-    That is the error of the mean of part − ratio × whole, over that of the whole: blocks of another size, in which the
-    same share is taken, add none to it. It is infinite where the whole has no mean above zero.
+    The error of the ratio is the error of the mean of part − ratio × whole, over the mean of the whole: blocks of
+    another size, in which the same share is taken, add nothing to it. It is infinite where the whole has no mean above
+    zero.
     """
     blocks = _blocks(part, criteria)
     (parts, weights), (wholes, _) = _means(part, blocks), _means(whole, blocks)
@@ -68,7 +69,7 @@ def block_ratio(part: Sequence[Array], whole: Sequence[Array], criteria: Evidenc
 
 
 def correlation_time(series: Array) -> float:
-    """1 + 2 Σ ρ_k in samples, at least 1: the sum ends at so many times itself (Sokal 1997)."""
+    """1 + 2 Σ ρ_k in samples, at least 1: the sum ends at `correlation_window` times itself (Sokal 1997)."""
     n, centred = len(series), series - np.mean(series)
     length = 1 << (2 * n - 1).bit_length()
     correlation = np.fft.irfft(np.abs(np.fft.rfft(centred, length)) ** 2, length)[: max(n // 2, 1)]
@@ -80,7 +81,7 @@ def correlation_time(series: Array) -> float:
 
 
 def _blocks(series: Sequence[Array], criteria: EvidenceCriteria) -> list[int]:
-    """Into how many blocks the series of each run is cut."""
+    """The number of blocks of the series of each run."""
     if len(series) >= criteria.whole_runs:
         return [1] * len(series)
     least, most = max(2, -(-criteria.least_blocks // len(series))), criteria.most_blocks
@@ -90,14 +91,14 @@ def _blocks(series: Sequence[Array], criteria: EvidenceCriteria) -> list[int]:
 
 
 def _length_of_a_block(series: Array, criteria: EvidenceCriteria) -> float:
-    """That of a block in samples."""
+    """The length of a block in samples."""
     time = correlation_time(series)
     shortest, longest = criteria.least_correlation_times * time, criteria.correlation_times * time
     return float(np.clip(len(series) / criteria.enough_blocks, shortest, longest))
 
 
 def _means(series: Sequence[Array], blocks: Sequence[int]) -> tuple[Array, Array]:
-    """The mean of each block, and its weight: each run counts as much."""
+    """The mean of each block, and its weight: all runs have the same weight."""
     parts = [np.array_split(run, n) if n > 1 else [run] for run, n in zip(series, blocks, strict=True)]
     means = [float(np.mean(part)) for of_run in parts for part in of_run]
     weights = [len(part) / len(run) / len(series) for run, of_run in zip(series, parts, strict=True) for part in of_run]

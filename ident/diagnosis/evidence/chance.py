@@ -1,11 +1,11 @@
-"""What the best of many candidates gains by chance: the bar that a gain has to pass.
+"""The gain of the best of many candidates by chance: the bar that a gain has to pass.
 
-Surrogates of a residual have its energy in every spectral line or harmonic, and phases drawn at random: what a
-candidate explains of them is chance. The candidates are screened as they are first looked at, linearly: in addition to
-the sensitivities to the fitted parameters, which are taken off, each response is fitted by itself, weighted by the
-disturbance, and the one that explains most gains G. The bar is the 95 % point of that over 200 surrogates. However many
+Surrogates of a residual have its energy in every spectral line or harmonic, and phases drawn at random: a candidate
+explains a part of them by chance alone. The candidates are screened linearly, as in the first screening. The
+sensitivities to the fitted parameters are taken off; then each response is fitted by itself, weighted by the
+disturbance, and the one that explains most gains G. The bar is the 95 % point of G over 200 surrogates. However many
 candidates there are, and however similar, they cost a product of matrices. This is the correction for the number of
-models looked at (Westfall and Young 1993).
+models compared (Westfall and Young 1993).
 """
 
 from __future__ import annotations
@@ -28,10 +28,10 @@ def bar(
     residuals: Sequence[Array], sensitivities: Sequence[Array], candidates: Sequence[Array], disturbance: Disturbance,
     seed: int = 0,
 ) -> float:  # fmt: skip
-    """The gain (nats) that the best of the candidates makes by chance, but for one in twenty.
+    """The gain (nats) that the best of the candidates exceeds by chance in one case of twenty.
 
-    Of each run the residual (n,) of the model that may be extended, its sensitivities (n, p) to the parameters, and the
-    responses (n, k) of its output to each candidate. Without a candidate there is nothing to choose: 0.
+    Each run has the residual (n,) of the model that may be extended, its sensitivities (n, p) to the parameters, and
+    the responses (n, k) of its output to each candidate. Without a candidate the gain is 0.
     """
     if not candidates or not candidates[0].shape[1]:
         return 0.0
@@ -67,7 +67,7 @@ def bar(
 
 
 def _weights(disturbance: Disturbance) -> Array:
-    """c_b / S_b, of a band without anything 1."""
+    """c_b / S_b; 1 for a band without energy."""
     there = disturbance.energy > 0
     return np.where(there, disturbance.counted / np.where(there, disturbance.energy, 1.0), 1.0)
 
@@ -85,7 +85,7 @@ def _orthonormal(columns: Array) -> Array:
 
 
 def _unit(columns: Array, before: Array) -> Array:
-    """Columns of length 1, without those that the sensitivities explain whole."""
+    """Columns of length 1, without the columns that the sensitivities explain wholly."""
     size, whole = np.linalg.norm(columns, axis=0), np.linalg.norm(before, axis=0)
     independent = (whole > 0) & (size > np.sqrt(EVIDENCE_CRITERIA.dependent) * whole)
     return np.asarray(columns[:, independent] / size[independent])

@@ -1,26 +1,26 @@
-"""The one comparison of two fitted models, and what it lets one say.
+"""The one comparison of two fitted models, and the statements that follow from it.
 
-Compared are the residuals of free simulations (over the prediction horizon where a machine integrates) on data that the
-fits did not see: blocks or whole runs that were left out in turn. Three questions are asked of a difference.
+The comparison takes the residuals of free simulations (over the prediction horizon where a machine integrates) on data
+that the fits did not see: blocks or whole runs that were held out in turn. It asks three questions of a difference.
 
 *Is it real?* The gain, in nats, is that of a coarsened likelihood (Miller and Dunson 2019) under one disturbance
 spectrum common to all models (:mod:`ident.diagnosis.evidence.disturbance`),
 
     G = ν/2 ln(V before / V after)
 
-where ν counts what is distinct, never samples: five and a hundred periods of one sine have the same ν. The means of the
-runs, to which a waveform is blind, add (runs − 1)/2 ln(Σ before / Σ after) of their squares. It has to pass the bar,
-the 95 % point of the largest gain that any candidate makes of residuals with the same spectrum and random phases
-(:mod:`ident.diagnosis.evidence.chance`), or half of all that can be gained: that is the correction for the number of
-models looked at. Of four runs or more it has to pass without the run that gains most, too: what one run alone asks for
-is a doubt about that run.
+where ν counts distinct degrees of freedom, never samples: five and a hundred periods of one sine have the same ν. The
+means of the runs, to which a waveform is blind, add (runs − 1)/2 ln(Σ before / Σ after) of their squares. It has to
+pass the bar, the 95 % point of the largest gain that any candidate makes of residuals with the same spectrum and random
+phases (:mod:`ident.diagnosis.evidence.chance`), or half of all that can be gained. The bar is the correction for the
+number of models compared. With four runs or more the gain has to pass without the run that gains most, too: an effect
+that one run alone asks for is a warning about that run.
 
-*Does it matter?* The share of the explainable power, that above the noise, which the change takes,
+*Does it matter?* The explainable power is the residual power above the noise. The change takes the share
 
     ρ = (P before − P after) / (P before − P noise)
 
-with P the power of the error over that of the output, averaged over runs: what a user is shown, squared. Its error
-comes from blocks of ten correlation times of the difference, or from whole runs
+with P the power of the error over the power of the output, averaged over runs: the square of the error that a user is
+shown. The error of ρ comes from blocks of ten correlation times of the difference, or from whole runs
 (:mod:`ident.diagnosis.evidence.blocks`).
 
 *Does it hold everywhere?* No condition of the tests, and neither half of the records, may lose beyond its error and by
@@ -50,25 +50,26 @@ from ident.noise.effective_sample_size import independent_samples
 
 Array = NDArray[np.float64]
 NO_DIFFERENCE = BlockMean(0.0, 0.0, 1)
-"""What is known of the means of two runs or one: nothing."""
+"""The difference of the means of two runs or one: their scatter is not known."""
 HALVES = ("first half", "second half")
 
 
 @dataclass(frozen=True)
 class Evidence:
-    """What speaks for the model `after` against the model `before`, on data that neither was fitted to.
+    """The evidence for the model `after` against the model `before`, on data that neither was fitted to.
 
-    `gain` is G (nats), `without` the same without the run that gains most, `most` the gain of a model that left nothing
-    but the noise, `distinct` ν. `before`, `after` and `noise` are powers of the error over that of the output, averaged
-    over runs; `difference` is before − after and `share` ρ, with their errors; `by_part` works out `parts`, the
-    differences on each condition and each half. `apart` is the power between the two outputs, `resolved` that which the
-    noise would tell apart.
+    `gain` is G (nats), `without` is G without the run that gains most, `most` is the gain of a model whose residual is
+    the noise, `distinct` is ν. `before`, `after` and `noise` are powers of the error over the power of the output,
+    averaged over runs; `difference` is before − after and `share` ρ, with their errors; `by_part` works out `parts`,
+    the differences on each condition and each half. `apart` is the power of the difference of the two outputs,
+    `resolved` the power of the least difference that the noise does not hide.
 
-    The means of the runs, less what they have in common, are judged by themselves: `level` is their root mean square
-    before, `levels_apart` that of what lies between the two models, over the outputs' deviations; `level_difference`
-    and `level_share` are of their squares, a run a block.
+    The means of the runs, less their common mean, are judged by themselves. `level` is their root mean square before,
+    and `levels_apart` is the root mean square of the difference of the two models' means, both over the outputs'
+    deviations; `level_difference` and `level_share` are of their squares, a run a block.
 
-    Of a machine that is fitted over windows `by_free_run` works out the free runs of both models; None of others.
+    `by_free_run` works out the free runs of both models for a machine that is fitted over windows; it is None for
+    others.
     """
 
     gain: float
@@ -110,9 +111,8 @@ class Residuals:
     """The residuals of a model on data that it was not fitted to: `series` (n,) of each run, in the unit of the
     outputs.
 
-    They are less their mean where the zero is not known; `levels` (runs,), over the outputs' standard deviations, are
-    then what is known of the means: less what the runs have in common. `bands` are those of all models that are
-    compared.
+    Where the zero is not known the mean of each series is subtracted; `levels` (runs,) are then the means less their
+    common mean, over the outputs' standard deviations. `bands` are the energy bands of all models that are compared.
     """
 
     series: tuple[Array, ...]
@@ -121,7 +121,7 @@ class Residuals:
 
     @cached_property
     def energies(self) -> Array:
-        """Those of each run in each band, (runs, bands)."""
+        """The energies of each run in each band, (runs, bands)."""
         return self.bands.by_run(self.series)
 
     @property
@@ -136,20 +136,21 @@ class Residuals:
 
     @cached_property
     def power(self) -> float:
-        """That of the error over that of the output, averaged over runs."""
+        """The power of the error over the power of the output, averaged over runs."""
         return float(np.mean([np.mean(r**2) for r in self.scaled]))
 
     @cached_property
     def independent(self) -> float:
-        """How many of the samples tell something new."""
+        """The number of independent samples."""
         return max(sum(map(independent_samples, self.scaled)), 1.0)
 
     @cached_property
     def floors(self) -> Array:
         """The variance of the noise of each run over the power of its output, if this is the best of the models.
 
-        As stated; of a periodic test what does not repeat; else what the past does not predict, which is less than the
-        noise where that is coloured. Never above the residual power.
+        The stated variance; the variance that does not repeat from period to period in a periodic test; else the
+        variance of the innovations, which is less than the noise where the noise is coloured. Never above the residual
+        power.
         """
         found, energies = [], self.energies.sum(axis=0)
         for run, record, residual in zip(self.bands.runs, self.bands.records, self.scaled, strict=True):
@@ -164,7 +165,7 @@ class Residuals:
 
 
 def common_disturbance(compared: Sequence[Residuals]) -> Disturbance:
-    """The spectrum common to models, the first of which is the reference: the model without any of the effects."""
+    """The spectrum common to the compared models; the first is the reference, the model without any of the effects."""
     energies = np.array([residuals.energies.sum(axis=0) for residuals in compared])
     best = compared[int(np.argmin(energies.sum(axis=1)))]
     return Disturbance.of_energies(best.bands, energies, best.floors)
@@ -176,8 +177,8 @@ def compare(
 ) -> Evidence:  # fmt: skip
     """Compare two models by their residuals.
 
-    `disturbance` is the spectrum common to all models that are looked at, of which the two are members; without one
-    these two are all. Raises ValueError where the residuals are not of the same runs.
+    `disturbance` is the spectrum common to all compared models, the two among them; without it the spectrum is common
+    to these two. Raises ValueError where the residuals are not of the same runs.
     """
     if not len(before.series) == len(after.series) == len(before.bands.records):
         raise ValueError(f"residuals of {len(before.series)} and {len(after.series)} runs")
@@ -210,12 +211,11 @@ def compare(
 
 
 def improves(evidence: Evidence, bar: Callable[[], float], criteria: EvidenceCriteria = EVIDENCE_CRITERIA) -> bool:
-    """Whether the second model explains more than chance does, and a share that matters, beyond its error.
+    """Whether the second model explains more than chance and, beyond the error of the share, a share that matters.
 
-    The gain is to be worth a parameter, and to pass the `bar` of :func:`ident.diagnosis.evidence.chance.bar`, asked for
-    where nothing else decides. Where a
-    residual has few harmonics a random phase is often met by some candidate, and the bar comes near to all that can be
-    gained: what gains half of that passes, too.
+    The gain has to be worth a parameter, and to pass the `bar` of :func:`ident.diagnosis.evidence.chance.bar`, which is
+    worked out only where it decides. Where a residual has few harmonics some candidate often matches a random phase,
+    and the bar comes near to the largest possible gain: half of the largest possible gain passes, too.
     """
     gain = min(evidence.gain, evidence.without)
     if not matters(evidence, criteria) or gain <= criteria.least_gain:
@@ -240,7 +240,7 @@ def generalises(evidence: Evidence, criteria: EvidenceCriteria = EVIDENCE_CRITER
 
 
 def losing_part(evidence: Evidence, criteria: EvidenceCriteria = EVIDENCE_CRITERIA) -> Hashable | None:
-    """The first condition or half that loses so; None where none does."""
+    """The first condition or half that loses beyond its error by a share that matters; None where none does."""
     least, each = -criteria.share * evidence.explainable, criteria.of_several(len(evidence.parts))
     return next((name for name, part in evidence.parts.items() if part.below(least, each)), None)
 
@@ -269,10 +269,10 @@ def runs_freely(evidence: Evidence, criteria: EvidenceCriteria = EVIDENCE_CRITER
 
 
 def indistinguishable(evidence: Evidence, criteria: EvidenceCriteria = EVIDENCE_CRITERIA) -> bool:
-    """Whether the models are indistinguishable: as good but for chance, and outputs near to each other.
+    """Whether the models are indistinguishable: as good within chance, and outputs near to each other.
 
-    Near is what the noise does not separate, or a twentieth of the residual power of the better one above the noise;
-    the means of the runs are to be as near as nobody cares about.
+    Two outputs are near where the noise hides their difference, or where its power is below a twentieth of the residual
+    power of the better model above the noise. The means of the runs have to be nearer than the level that matters.
     """
     if not both_probable(evidence, criteria):
         return False
@@ -284,10 +284,9 @@ def indistinguishable(evidence: Evidence, criteria: EvidenceCriteria = EVIDENCE_
 
 
 def both_probable(evidence: Evidence, criteria: EvidenceCriteria = EVIDENCE_CRITERIA) -> bool:
-    """Whether of two models, one of which is right, each is more probable than chance.
+    """Whether each of two models, one of which is right, is more probable than chance.
 
-    That their difference lies within its error does not say so: one block alone may set two models apart, and it makes
-    both the difference and its error.
+    A difference within its error does not imply this: one block alone may make both the difference and its error.
     """
     return abs(evidence.gain) * criteria.learning_rate <= math.log(1.0 / criteria.chance - 1.0)
 
@@ -295,7 +294,7 @@ def both_probable(evidence: Evidence, criteria: EvidenceCriteria = EVIDENCE_CRIT
 def dominated(evidence: Evidence, criteria: EvidenceCriteria = EVIDENCE_CRITERIA) -> bool:
     """Whether the second model is worse than the first beyond chance, by a share of its residual power that matters.
 
-    Never where the noise hides what lies between the two.
+    Never where the noise hides the difference of the two outputs.
     """
     excess = max(evidence.after - evidence.noise, 0.0)
     by_levels = evidence.levels_apart > criteria.level and evidence.level_difference.below(0.0, criteria)
@@ -310,7 +309,7 @@ def gain(before: Residuals, after: Residuals, disturbance: Disturbance) -> float
 
 
 def most(before: Residuals, disturbance: Disturbance) -> float:
-    """The gain of a model whose residual is the noise, as far as that is known for sure."""
+    """The gain of a model whose residual is the noise, as far as the noise is known for sure."""
     bands, levels = disturbance.bands, before.level_squares
     noise = _level_noise(disturbance.floors / bands.lengths, bands.criteria)
     of_levels = _level_gain(levels, noise if noise.sum() < levels.sum() else levels, bands.criteria)
@@ -318,13 +317,14 @@ def most(before: Residuals, disturbance: Disturbance) -> float:
 
 
 def _level_noise(expected: Array, criteria: EvidenceCriteria) -> Array:
-    """The squares of the means, (runs,), of noise with the `expected` ones, but for chance: χ² of runs − 1."""
+    """The squares of the means (runs,) that noise with the `expected` ones exceeds by chance: χ² of runs − 1."""
     others = len(expected) - 1
     return expected * float(chdtri(others, criteria.chance)) / others if others else expected
 
 
 def _level_gain(before: Array, after: Array, criteria: EvidenceCriteria) -> float:
-    """(runs − 1)/2 ln(Σ before / Σ after) of squares of the means, (runs,): the zero is one of as many observations."""
+    """(runs − 1)/2 ln(Σ before / Σ after) of squares of the means, (runs,): the common mean takes one degree of
+    freedom."""
     if len(before) < 2:
         return 0.0
     least = len(before) * criteria.level**2
@@ -332,7 +332,7 @@ def _level_gain(before: Array, after: Array, criteria: EvidenceCriteria) -> floa
 
 
 def _without_best(before: Array, after: Array, criteria: EvidenceCriteria) -> tuple[Array, Array]:
-    """Squares of the means, (runs,), without the run that gains most; of few runs all of them."""
+    """Squares of the means, (runs,), without the run that gains most; all of them where there are few runs."""
     if len(before) < criteria.whole_runs:
         return before, after
     best = int(np.argmax(before - after))
@@ -340,7 +340,8 @@ def _without_best(before: Array, after: Array, criteria: EvidenceCriteria) -> tu
 
 
 def _without(disturbance: Disturbance, before: Array, after: Array) -> float:
-    """The gain without the run that gains most, of the energies (runs, bands); of few runs that of all."""
+    """The gain without the run that gains most, by the energies (runs, bands); the gain of all runs where they are
+    few."""
     if len(before) < disturbance.bands.criteria.whole_runs:
         return disturbance.gain(before.sum(axis=0), after.sum(axis=0))
     weights = np.where(disturbance.energy > 0, disturbance.counted / np.maximum(disturbance.energy, TINY), 0.0)

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 
 @dataclass(frozen=True)
 class EvidenceCriteria:
-    """The comparison of two fitted models: what is distinct, what is chance, what matters, how sure it is."""
+    """The comparison of two fitted models: which data are distinct, which gain is chance, and which gain matters."""
 
     degrees_of_a_band: float = 30.0
     """[degrees of freedom] Most of the degrees of freedom of a band that count as distinct. Why: an unmodelled term
@@ -15,8 +15,8 @@ class EvidenceCriteria:
     the corpus of docs/decisions/evidence.md.
     Test: test_evidence.py::test_what_lies_in_a_few_lines_is_not_lost_among_those_of_a_long_record"""
     degrees_in_all: float = 100.0
-    """[degrees of freedom] Most of the degrees of freedom of all bands together that count as distinct. Why: what
-    no model has is not independent from band to band and run to run either; 30 to 300 are as well calibrated on the
+    """[degrees of freedom] Most of the degrees of freedom of all bands together that count as distinct. Why: an
+    unmodelled term is not independent from band to band and run to run either; 30 to 300 are as well calibrated on the
     corpus, none at all is not.
     Test: test_evidence.py::test_a_hundred_times_the_samples_are_no_hundred_times_the_evidence"""
     bands_of_an_octave: float = 4.0
@@ -28,25 +28,25 @@ class EvidenceCriteria:
     freedom scatters by more than half of itself.
     Test: test_evidence.py::test_bands_are_a_quarter_of_an_octave_and_have_eight_degrees_of_freedom_at_least"""
     harmonics: int = 40
-    """[harmonics] Most harmonics of a periodic test that are told apart; the others count with the noise. Why: dry
+    """[harmonics] Most harmonics of a periodic test that have a band each; the others count with the noise. Why: dry
     friction under a sine has 1 % of its power beyond the fortieth.
     Test: test_evidence.py::test_five_periods_and_a_hundred_give_the_same_evidence_against_a_wrong_model"""
     tolerance: float = 0.1
-    """[1] Least level of the disturbance, over the mean level of what could be explained. Why: without it the kinks
-    of a useful model, in bands that hold nothing, outweigh what it explains; 0.01 to 1 rank alike on the corpus of
+    """[1] Least level of the disturbance, over the mean level of the explainable energy. Why: without it the kinks of a
+    useful model, in empty bands, outweigh the energy that it explains; 0.01 to 1 rank alike on the corpus of
     docs/decisions/evidence.md.
     Test: test_evidence.py::test_a_model_that_explains_most_gains_though_its_kinks_reach_into_empty_bands"""
     floor_margin: float = 1.02
-    """[1] Error over its noise floor up to which it may be noise alone. Why: neither repeats nor spectra tell a
-    floor nearer than 2 % (docs/diagnosis.md, step 7).
+    """[1] Ratio of the error to its noise floor up to which it may be noise alone. Why: neither repeats nor spectra
+    give a floor to better than 2 % (docs/diagnosis.md, step 7).
     Test: test_evidence.py::test_an_error_within_two_per_cent_of_the_floor_leaves_nothing_to_gain"""
     surrogates: int = 200
     """[residuals] Residuals with random phases, of which the largest gains give the bar. Why: the 95 % point of so
     many is known to three points of a per cent.
     Test: test_evidence.py::test_the_bar_hardly_hangs_on_the_random_phases"""
     chance: float = 0.05
-    """[1] How often chance may pass the bar, or a difference the value that it is to exceed. Why: the custom of the
-    field; corrected for the number of candidates, as the bar is that of the largest gain.
+    """[1] Probability that chance passes the bar, or that a difference exceeds its limit by chance. Why: the custom of
+    the field; it is corrected for the number of candidates, because the bar is for the largest gain.
     Test: test_evidence.py::test_the_bar_is_passed_by_chance_as_often_as_it_says"""
     correlation_times: float = 10.0
     """[correlation times] Length of a block. Why: means of blocks so long are independent to a tenth of their
@@ -54,15 +54,15 @@ class EvidenceCriteria:
     Test: test_blocks.py::test_the_error_of_a_difference_holds_for_correlated_residuals"""
     least_correlation_times: float = 4.0
     """[correlation times] Shortest length of a block. Why: means of blocks so long are independent to a quarter of
-    their variance: the error is one eighth too small, which Student's value of more blocks more than makes up for.
+    their variance: the error is one eighth too small, and Student's value for more blocks falls by more than that.
     Test: test_blocks.py::test_the_error_of_a_difference_holds_for_a_record_of_twenty_correlation_times"""
     enough_blocks: int = 12
-    """[blocks] Of a record, up to which its blocks may be shorter than ten correlation times. Why: Student's value of
-    twelve is 1.8, one tenth above that of many; that of four is 2.4, and their scatter is hardly known.
+    """[blocks] Number in a record up to which its blocks may be shorter than ten correlation times. Why: Student's
+    value is 1.8 for twelve blocks, one tenth more than for many; it is 2.4 for four, whose scatter is hardly known.
     Test: test_blocks.py::test_a_record_of_forty_correlation_times_has_more_blocks_than_ten_of_them_would_give"""
     whole_runs: int = 4
-    """[runs] Runs from which on whole runs are the blocks. Why: what differs from run to run shows between runs
-    only; of fewer than four their scatter tells nothing.
+    """[runs] Least number for which whole runs are the blocks. Why: a difference from run to run shows between runs
+    only, and the scatter of fewer than four runs is hardly known.
     Test: test_evidence.py::test_what_only_one_of_many_runs_asks_for_does_not_improve"""
     least_blocks: int = 4
     """[blocks] Fewest blocks of all runs together. Why: with two Student's value is 6.3, and nothing matters.
@@ -72,12 +72,12 @@ class EvidenceCriteria:
     safer.
     Test: test_blocks.py::test_the_error_of_a_difference_holds_for_correlated_residuals"""
     correlation_window: float = 5.0
-    """[correlation times] Over which the correlations of a series are summed to its correlation time. Why: the
-    automatic window of Sokal (1997): fewer leave out a part of the sum, more add noise.
+    """[correlation times] Length over which the correlations of a series are summed to its correlation time. Why: the
+    automatic window of Sokal (1997): a shorter sum lacks a part, a longer one adds noise.
     Test: test_blocks.py::test_the_error_of_a_difference_holds_for_correlated_residuals"""
     samples_of_a_harmonic: int = 8
-    """[samples] Of a record for each harmonic that is told apart. Why: a harmonic has two degrees of freedom: so
-    three quarters of them stay for the noise between.
+    """[samples] Least number in a record for each harmonic that has a band. Why: a harmonic has two degrees of freedom,
+    and three quarters of all stay for the noise between the harmonics.
     Test: test_evidence.py::test_five_periods_and_a_hundred_give_the_same_evidence_against_a_wrong_model"""
     dependent: float = 1e-09
     """[of the largest column] Size of the unexplained part of a response below which the sensitivities explain all of
@@ -88,58 +88,58 @@ class EvidenceCriteria:
     them take 40 MB.
     Test: test_evidence.py::test_the_bar_is_passed_by_chance_as_often_as_it_says"""
     share: float = 0.01
-    """[1] Share of the explainable power that matters: an effect takes more, no part of the data loses as much, a
-    the residual power of a dominated model is larger by as much. Why: less is not worth a parameter, however certain.
+    """[1] Share of the explainable power that matters: an effect takes more, no part of the data loses as much, the
+    residual power of a dominated model is larger by as much. Why: less is not worth a parameter, however certain.
     Test: test_evidence.py::test_a_gain_of_less_than_a_hundredth_of_the_explainable_power_does_not_improve"""
     least_gain: float = 3.4
-    """[nats] Gain that an effect has to make whatever the bar. Why: a likelihood thirty times as large is what Jeffreys
-    (1961) calls very strong; how probable the effect then is, another number says (learning_rate).
+    """[nats] Gain that an effect has to make whatever the bar. Why: Jeffreys (1961) calls a likelihood thirty times as
+    large very strong evidence; the probability of the effect follows from another number (learning_rate).
     Test: test_evidence.py::test_a_gain_below_the_least_adds_nothing_however_low_the_bar"""
     level: float = 3e-4
-    """[of the standard deviation] Root mean square of the means of the runs that matters. Why: less is nobody's
-    concern. Test: test_evidence.py::test_an_effect_that_moves_the_means_of_the_runs_alone_matters"""
+    """[of the standard deviation] Root mean square of the means of the runs that matters. Why: a smaller mean is of no
+    use to anyone. Test: test_evidence.py::test_an_effect_that_moves_the_means_of_the_runs_alone_matters"""
     separation: float = 0.05
-    """[1] Power of the difference of two outputs over the residual power of the better one above the noise. Why: what
-    is missing from both may have turned the order of two outputs so near to each other.
+    """[1] Power of the difference of two outputs over the residual power of the better one above the noise. Why: an
+    effect that both lack may have turned the order of two outputs so near to each other.
     Test: test_evidence.py::test_two_models_that_leave_as_much_but_look_different_are_told_apart"""
     resolution: float = 36.0
-    """[noise variances] Energy between two outputs that white noise does not tell apart. Why: outputs f, g are
-    three standard deviations apart where |f − g|² = 36 σ²: half of |f − g| over σ is the deviation of the
-    likelihood ratio, taken from either side.
+    """[noise variances] Energy of the difference of two outputs up to which white noise hides it. Why: outputs f, g are
+    three standard deviations apart where |f − g|² = 36 σ²: |f − g| / (2 σ) is the deviation of the likelihood ratio.
     Test: test_evidence.py::test_two_models_whose_outputs_the_noise_hides_are_indistinguishable"""
     learning_rate: float = 0.24
     """[1] Factor of a gain in the logarithm of a model's weight. Why: fitted to the training seeds of
     docs/decisions/evidence.md and frozen.
     Test: test_evidence.py::test_probabilities_are_frozen"""
     effect_prior: float = 5.1
-    """[1] By how much the logarithm of a model's weight falls with each effect. Why: fitted to the training seeds
-    of docs/decisions/evidence.md and frozen.
+    """[1] Fall of the logarithm of a model's weight with each effect. Why: fitted to the training seeds of
+    docs/decisions/evidence.md and frozen.
     Test: test_evidence.py::test_probabilities_are_frozen"""
     unlisted_share: float = 0.8
-    """[1] Share of the gain still possible that something unlisted is credited with. Why: a listed effect explains
-    in detail what it explains, something unlisted only that there is something; single effects do not tell it, and
-    with a larger share several effects that explain all but the noise would lose to it.
+    """[1] Share of the gain still possible that something unlisted is credited with. Why: a listed effect predicts the
+    waveform of the residual that it explains, something unlisted only its power. Trials with single effects do not
+    determine the share. With a larger share several effects that explain all but the noise would lose to something
+    unlisted.
     Test: test_evidence.py::test_several_effects_that_leave_only_noise_do_not_lose_to_something_unlisted"""
     reaches: float = 0.5
-    """[1] Share of the gain that can be reached, which passes whatever the bar. Why: where a residual has few
-    harmonics a random phase is often met by some candidate, and the bar comes near to all that can be gained; after
-    half of that gain, in the logarithm, little is to be gained by anything else.
+    """[1] Share of the largest possible gain that passes whatever the bar. Why: where a residual has few harmonics some
+    candidate often matches a random phase, and the bar comes near to the largest possible gain; after half of that
+    gain, in the logarithm, any further effect gains little.
     Test: test_evidence.py::test_what_reaches_the_noise_passes_where_one_harmonic_is_all_there_is"""
     unlisted_prior: float = 6.5
-    """[1] By how much the logarithm of a model's weight falls with something unlisted. Why: fitted to the training
-    seeds of docs/decisions/evidence.md, with true effects taken off the list.
+    """[1] Fall of the logarithm of a model's weight with something unlisted. Why: fitted to the training seeds of
+    docs/decisions/evidence.md, with true effects taken off the list.
     Test: test_evidence.py::test_probabilities_are_frozen"""
     unlisted_beside_listed: float = 2.5
-    """[1] By how much less something unlisted is charged where a listed effect acts. Why: what lacks one thing often
+    """[1] Amount by which this fall is smaller where a listed effect acts. Why: a model that lacks one effect often
     lacks another; fitted to the same seeds, with one of several true effects off the list.
     Test: test_evidence.py::test_probabilities_are_frozen"""
 
     def of_several(self, count: int) -> EvidenceCriteria:
-        """The same, with chance divided among so many questions of which one may fail by it (Šidák 1967)."""
+        """These criteria with the chance of one question so small that it holds for `count` together (Šidák 1967)."""
         return replace(self, chance=1.0 - (1.0 - self.chance) ** (1.0 / max(count, 1)))
 
 
 EVIDENCE_CRITERIA = EvidenceCriteria()
-"""Those that two models are compared by."""
+"""The criteria by which two models are compared."""
 OF_SHOWN = replace(EVIDENCE_CRITERIA, least_gain=0.0)
-"""Those of an effect that the records themselves show. Why: it is no longer one of many, each as improbable as any."""
+"""The criteria for an effect that the records themselves show. Why: it is no longer one of many equally improbable."""

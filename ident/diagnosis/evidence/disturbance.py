@@ -1,16 +1,16 @@
-"""One disturbance spectrum, common to all models that are compared, and the loss that it weighs.
+"""One disturbance spectrum, common to all models that are compared, and the loss that is weighted by it.
 
-What no model explains, a drift of the sensor or a term that no list holds, must not decide between models. Its energy
-in each band is the residual energy of the best of them there, and at least the noise. To it a part of the mean level
-comes of what could be explained: else the kinks of a useful model, in bands that hold nothing, would outweigh what it
-explains.
+A disturbance that no model explains, a drift of the sensor or an unlisted term, must not decide between models. Its
+energy in each band is the least residual energy of all models in that band, and at least the noise. A part of the mean
+level of the explainable energy is added: else the kinks of a useful model, in empty bands, would outweigh the energy
+that it explains.
 
     S_b = max(min_m E_b(m), F_b) + ε X c_b / Σ c      X = Σ_b max(E_b(reference) − F_b, 0), of each condition
     V(m) = Σ_b c_b max(E_b(m), F_b) / S_b / Σ c      1/ν = 1/Σ c + 1/ν_max
 
-with E_b the energies, c_b what is distinct (:mod:`ident.diagnosis.evidence.energy_bands`), F_b = f d_b the energy of
-the noise. It is the likelihood of Whittle (1953) with a fitted discrepancy. The logarithm is of all bands at once: the
-level of the disturbance is not known.
+with E_b the energies, c_b the distinct degrees of freedom (:mod:`ident.diagnosis.evidence.energy_bands`), F_b = f d_b
+the energy of the noise. It is the likelihood of Whittle (1953) with a fitted discrepancy. The logarithm is taken of the
+sum over all bands, because the level of the disturbance is not known.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Disturbance:
-    """The spectrum: expected energies (bands,) of it, and of the noise alone, over the `bands`.
+    """The spectrum: the expected energies (bands,) of the disturbance and of the noise alone, over the `bands`.
 
     `floors` are the variances of the noise of each run over the power of its output, (runs,).
     """
@@ -39,7 +39,7 @@ class Disturbance:
 
     @classmethod
     def of_energies(cls, bands: EnergyBands, energies: Array, floors: Array, reference: int = 0) -> Disturbance:
-        """That of models by their energies (models, bands)."""
+        """The disturbance spectrum of models by their energies (models, bands)."""
         noise = bands.white(floors)
         explainable = np.maximum(energies[reference] - noise, 0.0)
         conditions = int(bands.condition.max()) + 1
@@ -51,12 +51,12 @@ class Disturbance:
 
     @property
     def counted(self) -> Array:
-        """c_b of the bands in which there is anything, (bands,)."""
+        """c_b of the bands that have energy, 0 of the others, (bands,)."""
         return np.where(self.energy > 0, self.bands.distinct, 0.0)
 
     @property
     def distinct(self) -> float:
-        """ν: how much of the data is distinct."""
+        """ν: the number of distinct degrees of freedom of the data."""
         return self._all / (1.0 + self._all / self.bands.criteria.degrees_in_all)
 
     @property
@@ -70,17 +70,18 @@ class Disturbance:
         return float(self.counted @ shares) / self._all
 
     def gain(self, before: Array, after: Array) -> float:
-        """G = ν/2 ln(V before / V after) of the energies (bands,) of two models, in nats; 0 where there are none."""
+        """G = ν/2 ln(V before / V after) of the energies (bands,) of two models, in nats; 0 where no band has
+        energy."""
         losses = (self.loss(before), self.loss(after)) if self.distinct > 0 else (1.0, 1.0)
         return 0.5 * self.distinct * float(np.log(losses[0] / losses[1])) if min(losses) > 0 else 0.0
 
     def without(self, run: int) -> Disturbance:
-        """That of the other runs alone."""
+        """The disturbance spectrum of the other runs alone."""
         own = self.bands.runs[run].degrees(self.bands.size)
         remaining = 1.0 - own / np.maximum(self.bands.degrees, 1.0)
         return replace(self, energy=np.where(remaining > 0, remaining * self.energy, 0.0), noise=remaining * self.noise)
 
     def most(self, before: Array) -> float:
-        """The gain of a model whose residual is the noise, as far as that is known for sure."""
+        """The gain of a model whose residual is the noise, as far as the noise is known for sure."""
         surely = self.bands.criteria.floor_margin**2 * self.noise
         return self.gain(np.maximum(before, surely), surely)

@@ -5,13 +5,14 @@ A residual r (n,) of a run whose output has the standard deviation s is cut into
     r / s = Σ_b r_b,      E_b = Σ_t r_b²,      expected of white noise of variance f s²:  f d_b
 
 with d_b the degrees of freedom of a band. The mean is a band of one. A test with a period of T samples (any real
-number) has a band of two for each harmonic h / T, and one for all that does not repeat; other records have bands of a
-quarter of an octave. Runs of one condition are pooled: a test which is cut in two, or repeated, stays one.
+number) has a band of two for each harmonic h / T, and one band for the part that does not repeat; other records have
+bands of a quarter of an octave. Runs of one condition are pooled: a test which is cut in two, or repeated, stays one
+test.
 
-How much of it is distinct is another thing: a term that no model has repeats itself in every period, and in every
-sample of a band. A harmonic has two distinct degrees of freedom however many periods were measured; with them, or with
-the d_b of any other band, c_b = 1 / (1/d_b + 1/α) are distinct: all of a few, at most α of many, as a coarsened
-likelihood counts samples (Miller and Dunson 2019).
+Not all degrees of freedom are distinct: a term that no model has repeats itself in every period, and in every sample of
+a band. So d_b is at most 2 for a harmonic, however many periods were measured. c_b = 1 / (1/d_b + 1/α) degrees of
+freedom are then distinct: nearly all of a few, at most α of many, as a coarsened likelihood counts samples (Miller and
+Dunson 2019).
 """
 
 from __future__ import annotations
@@ -33,12 +34,12 @@ Indices = NDArray[np.intp]
 
 @dataclass(frozen=True)
 class Record:
-    """What a comparison has to know of a run.
+    """The properties of a run that a comparison needs.
 
-    `size` is the standard deviation of its output, in the output's unit. `condition` is what differs between tests and
-    not between repetitions of one: amplitude, frequency, direction, specimen, sample rate. `period` is that of a
-    periodic test, in samples; None of others. `floor` is the variance of the noise over size², None where it is not
-    known.
+    `size` is the standard deviation of its output, in the output's unit. `condition` names the properties that differ
+    between tests and not between repetitions of one test: amplitude, frequency, direction, specimen, sample rate.
+    `period` is the period of a periodic test in samples, None for other tests. `floor` is the variance of the noise
+    over size², None where it is not known.
     """
 
     size: float
@@ -85,7 +86,7 @@ class EnergyBands:
         return found
 
     def white(self, variances: Array) -> Array:
-        """The energies (bands,) of white noise with so much of the power of each run's output, (runs,)."""
+        """The energies (bands,) of white noise whose variances (runs,) are over the power of each run's output."""
         return sum(
             (f * run.degrees(self.size) for f, run in zip(variances, self.runs, strict=True)), np.zeros(self.size)
         )
@@ -95,7 +96,7 @@ class EnergyBands:
         return np.asarray(self.by_run(residuals).sum(axis=0))
 
     def by_run(self, residuals: Sequence[Array]) -> Array:
-        """The part of each run in these, (runs, bands)."""
+        """The energies of each run in each band, (runs, bands)."""
         found = np.zeros((len(self.records), self.size))
         for i, (run, residual, record) in enumerate(zip(self.runs, residuals, self.records, strict=True)):
             parts = run.coefficients(np.asarray(residual, dtype=np.float64)[:, None] / record.size)[:, 0]
@@ -109,7 +110,7 @@ class EnergyBands:
 
     @cached_property
     def runs(self) -> tuple[_Bands, ...]:
-        """The bands of each run: those of one condition share theirs."""
+        """The bands of each run: runs of one condition have common bands."""
         groups: dict[tuple[Hashable, bool], list[int]] = {}
         for i, record in enumerate(self.records):
             groups.setdefault((record.condition, record.period is not None), []).append(i)
@@ -136,7 +137,7 @@ class EnergyBands:
 
 @dataclass(frozen=True)
 class _Bands:
-    """The bands of a run of n samples: `first` is the place of its first one among those of all conditions."""
+    """The bands of a run of n samples: `first` is the place of its first band among the bands of all conditions."""
 
     n: int
     condition: int
@@ -148,12 +149,12 @@ class _Bands:
 
     @property
     def lines(self) -> int:
-        """The bands of it that are a mean or a harmonic."""
+        """The number of its bands that are a mean or a harmonic."""
         return 1
 
     @cached_property
     def band(self) -> Indices:
-        """The band of each of its coefficients among those of all conditions."""
+        """The band of each of its coefficients among the bands of all conditions."""
         raise NotImplementedError
 
     def coefficients(self, signals: Array) -> Complex:
@@ -161,11 +162,11 @@ class _Bands:
         raise NotImplementedError
 
     def degrees(self, count: int) -> Array:
-        """Its degrees of freedom by band, of `count` bands in all."""
+        """Its degrees of freedom in each of the `count` bands of all conditions."""
         raise NotImplementedError
 
     def _counted(self, lines: Indices, count: int) -> Array:
-        """Two for each complex line, one for those that are real."""
+        """Two degrees of freedom for each complex line, one for the mean."""
         weights = np.full(len(lines), 2.0)
         weights[0] = 1.0
         return np.asarray(np.bincount(lines, weights, count), dtype=np.float64)
@@ -198,7 +199,7 @@ class _Broadband(_Bands):
 
 @dataclass(frozen=True)
 class _Periodic(_Bands):
-    """A test with a period of so many samples: the mean, its harmonics, and what does not repeat."""
+    """A test with a `period` in samples: bands of the mean, of each harmonic, and of the part that does not repeat."""
 
     period: float
     harmonics: int
@@ -256,5 +257,5 @@ def _edges(n: int, criteria: EvidenceCriteria) -> Array:
 
 
 def _harmonics(n: int, period: float, criteria: EvidenceCriteria) -> int:
-    """How many harmonics are separated of n samples: below half the sample rate, with a quarter of the degrees."""
+    """The number of harmonics of n samples: below half the sample rate, with a quarter of the degrees of freedom."""
     return max(1, min(criteria.harmonics, int(np.ceil(period / 2.0)) - 1, n // criteria.samples_of_a_harmonic))

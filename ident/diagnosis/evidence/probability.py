@@ -1,14 +1,14 @@
 """How probable each of some models is, and how probable it is that something unlisted acts.
 
-    ln w = η G − κ k                          of a model with k effects and the gain G over the model without any
-    ln w = η (G + λ G_left) − κ k − κ_u       of the same with something unlisted, G_left what can still be gained
+    ln w = η G − κ k                          of a model with k effects and the gain G over the model without any ln w =
+    η (G + λ G_left) − κ k − κ_u       of the same with something unlisted, G_left the gain still possible
 
-Something unlisted explains everything else, and is charged for it by a share of its gain and by its prior: a listed
-effect has to come as far. So a model that only imitates what is missing loses to something unlisted. A machine that
-lacks a listed effect more often lacks something unlisted, too: κ_u is smaller by δ where k > 0. All gains are under one
-disturbance spectrum, with the model without any effect as its reference: then G + G_left is the same for all. The five
-numbers were fitted on training seeds (docs/decisions/evidence.md) and are frozen: of what is said at p a share p is
-right.
+Something unlisted explains the whole residual above the noise. It is charged by a share λ of its gain and by its prior:
+a listed effect has to explain as much. So a model that only imitates a missing effect loses to something unlisted. A
+machine that lacks a listed effect more often lacks something unlisted, too: κ_u is smaller by δ where k > 0. All gains
+are under one disturbance spectrum, with the model without any effect as its reference: then G + G_left is the same for
+all. The five numbers were fitted on training seeds (docs/decisions/evidence.md) and are frozen: a share p of the
+statements with the probability p is right.
 """
 
 from __future__ import annotations
@@ -27,7 +27,8 @@ NOTHING: Effects = frozenset()
 
 @dataclass(frozen=True)
 class SetGains:
-    """The gains (nats) of sets of effects over the model without any of them, and of one whose residual is the noise.
+    """The gains (nats) of sets of effects over the model without any effect, and of a model whose residual is the
+    noise.
 
     All are under one disturbance spectrum. The model without any effect is among them, with a gain of 0.
     """
@@ -38,33 +39,33 @@ class SetGains:
 
 @dataclass(frozen=True)
 class Probabilities:
-    """Of each set of effects without and with something unlisted; they sum to one."""
+    """The probabilities of each set of effects, without and with something unlisted; they sum to one."""
 
     alone: Mapping[Effects, float]
     with_unlisted: Mapping[Effects, float]
 
     @property
     def unlisted(self) -> float:
-        """That something acts that no list holds."""
+        """The probability that an effect acts that no list has."""
         return sum(self.with_unlisted.values())
 
     @property
     def nothing(self) -> float:
-        """That nothing is missing."""
+        """The probability that nothing is missing."""
         return self.alone[NOTHING]
 
     @property
     def effects(self) -> dict[str, float]:
-        """Of each effect: that of all sets that hold it."""
+        """The probability of each effect: the sum over all sets that have it."""
         return {name: self.of([(name,)]) for name in sorted(set().union(*self.alone))}
 
     @property
     def named(self) -> dict[str, float]:
-        """Those of each effect, of "nothing" and of something "unlisted"."""
+        """The probabilities of each effect, of "nothing" and of something "unlisted"."""
         return {**self.effects, "nothing": self.nothing, "unlisted": self.unlisted}
 
     def of(self, groups: Iterable[Iterable[str]]) -> float:
-        """That an effect of each group acts: of all sets that hold one of each, two of a group that stands twice."""
+        """The probability that an effect of each group acts, or two of a group that is given twice: a sum over sets."""
         asked = Counter(frozenset(group) for group in groups)
         return sum(
             p
@@ -75,7 +76,7 @@ class Probabilities:
 
 
 def probabilities(sets: SetGains, criteria: EvidenceCriteria = EVIDENCE_CRITERIA) -> Probabilities:
-    """The probabilities of sets of effects by their gains. Raises ValueError where that without any is missing."""
+    """The probabilities of sets of effects by their gains. Raises ValueError where the set without any is missing."""
     if NOTHING not in sets.gains:
         raise ValueError("the model without any effect is missing")
     gains = np.array(list(sets.gains.values()))
@@ -91,11 +92,11 @@ def probabilities(sets: SetGains, criteria: EvidenceCriteria = EVIDENCE_CRITERIA
 
 
 def is_improbable(probability: float | None, of_all: Mapping[str, float]) -> bool:
-    """Whether an effect, with all of its group, is less probable than not, and what speaks against it is more probable.
+    """Whether an effect, with all of its group, is less probable than not, and another explanation is more probable.
 
-    That is something unlisted, more probable than not, or that nothing is missing. The median model leaves it out
-    (Barbieri and Berger 2004). Otherwise it is but one of several listed effects that may act. `of_all` has the
-    probabilities of :attr:`Probabilities.named`.
+    The other explanation is something unlisted that is more probable than not, or that nothing is missing. The median
+    model does not have the effect then (Barbieri and Berger 2004). Otherwise the effect is one of several listed ones
+    that may act. `of_all` has the probabilities of :attr:`Probabilities.named`.
     """
     if probability is None or probability >= 0.5:
         return False
@@ -105,7 +106,7 @@ def is_improbable(probability: float | None, of_all: Mapping[str, float]) -> boo
 def structure_probabilities(
     gains: Sequence[float], parameters: Sequence[int], criteria: EvidenceCriteria = EVIDENCE_CRITERIA
 ) -> list[float]:
-    """The probabilities of models of a machine by their gains: a parameter is charged by the gain that is worth one."""
+    """The probabilities of models of a machine by their gains: each parameter costs the gain that is worth one."""
     logs = criteria.learning_rate * (np.array(gains) - criteria.least_gain * np.array(parameters))
     weights = np.exp(logs - logs.max())
     return [float(weight) for weight in weights / weights.sum()]
