@@ -11,6 +11,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from math import sin, sqrt, tanh
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -45,7 +46,8 @@ class Various:
     """One machine and how it was recorded.
 
     `hidden` acts with `strength` (0 to 1, of what would rule the machine); `quick` is in radians a sample, `noise` and
-    `offset` in deviations of the output, `level` the operating point in deviations of the command.
+    `offset` in deviations of the output, the offset of that of the first run, `level` the operating point in deviations
+    of the command.
     """
 
     seed: int
@@ -77,20 +79,21 @@ class Various:
 
     def measured(self, noisy: bool = True) -> Matrix:
         """Two runs to fit and one to verify."""
-        return Matrix(Actuator(f"V-{self.seed}"), tuple(
-            self._run(number, use, noisy) for number, use in enumerate(("fit", "fit", "verify"))
-        ))  # fmt: skip
+        rngs = [np.random.default_rng([169, self.seed, number]) for number in range(3)]
+        commands = [self.command(rng) for rng in rngs]
+        clean = [self.answered(u) for u in commands]
+        runs = []
+        for number, (rng, u, y) in enumerate(zip(rngs, commands, clean, strict=True)):
+            off = self.offset * clean[0].std()  # one transducer
+            seen = y + off + y.std() * self.noise * rng.standard_normal(len(y)) if noisy else y
+            runs.append(self._run(number, ("fit", "fit", "verify")[number], u, seen))
+        return Matrix(Actuator(f"V-{self.seed}"), tuple(runs))
 
-    def _run(self, number: int, use: str, noisy: bool) -> Run:
-        rng = np.random.default_rng([169, self.seed, number])
-        u = self.command(rng)
-        y = self.answered(u)
-        if noisy:
-            y = y + y.std() * (self.offset + self.noise * rng.standard_normal(len(y)))
+    def _run(self, number: int, use: str, u: Array, y: Array) -> Run:
         of_command, output, of_output, _, _ = KINDS[self.kind]
         moved = "displacement" if self.kind == "specimen" else "command"
         units = {moved: "1", output: "1"} if self.unknown else {moved: of_command, output: of_output}
-        stated = {} if self.hold == "band-limited" else {"hold": self.hold}
+        stated: dict[str, Any] = {} if self.hold == "band-limited" else {"hold": self.hold}
         (run,) = from_arrays(
             {moved: u, output: y}, units=units, output=output, sample_rate=f"{RATE} Hz", id=f"{use}-{number}", use=use,
             actuator={"serial": f"V-{self.seed}"}, **stated,
