@@ -9,7 +9,7 @@ from ident.workflows import compare
 from tests.blind.offsets import Off, trial
 
 SPRINGLESS = (171019, 171084, 171090)  # an inertia that is turned: a torque that lasts would turn it as an offset reads
-OTHERS = (171004, 171009, 171031)
+OTHERS = (171004, 171009, 171031, 171174)
 
 
 @pytest.mark.parametrize("seed", [*SPRINGLESS, *OTHERS])
