@@ -92,8 +92,8 @@ def slopes(signal: Array, order: int) -> Array:
 def _lost(signal: Array, smooth: NDArray[np.bool_]) -> Array:
     """What the difference over two samples has beyond the slope, the third derivative less a fifth of the fifth, / 6.
 
-    It is known where third differences, (n − 3,), are `smooth` for two samples on either side. Elsewhere it is zero, and
-    everywhere where noise may make it, of which it has 0.41 of the deviation.
+    It is known where the third differences, (n − 3,), of all samples that it is made of are `smooth`. Elsewhere it is
+    zero, and so it is everywhere where noise may make it, of which it has 0.41 of the deviation.
     """
     n, reach = len(signal), 3
     if n <= 4 * reach:
