@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import threading
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Hashable, Iterable, Iterator, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor, wait
 from contextlib import contextmanager
 from contextvars import copy_context
@@ -19,6 +19,7 @@ from ident.time_budget import check_time
 
 _DEEP = 16  # threads a core: most of them wait for work inside of their work
 Item = TypeVar("Item")
+Key = TypeVar("Key", bound=Hashable)
 Outcome = TypeVar("Outcome")
 
 
@@ -154,3 +155,32 @@ def each(function: Callable[[Item], Outcome], items: Iterable[Item]) -> list[Out
 
     with one_thread():
         return _Work(of, todo).outcomes()
+
+
+class Once(Generic[Key, Outcome]):
+    """Outcomes by key, each worked out once: who asks for one that another thread works out lends its core and waits.
+
+    What a key needs must not ask for the key itself. An outcome that failed is worked out anew when it is asked for
+    again.
+    """
+
+    def __init__(self) -> None:
+        self._lock, self._known = threading.Lock(), dict[Key, Future[Outcome]]()
+
+    def of(self, key: Key, found: Callable[[], Outcome]) -> Outcome:
+        """The outcome of a key; what is not known yet is `found` now. Raises what raised there."""
+        with self._lock:
+            is_new = key not in self._known
+            known = self._known.setdefault(key, Future())
+        if is_new:
+            try:
+                known.set_result(found())
+            except BaseException as failure:
+                with self._lock:
+                    del self._known[key]
+                known.set_exception(failure)
+        elif not known.done():
+            _idle().release()
+            wait([known])
+            _idle().acquire()
+        return known.result()

@@ -160,12 +160,13 @@ def _judged(rivals: Sequence[Rival], experiments: Sequence[Experiment]) -> list[
 
 
 def _run(experiment: Experiment, name: str, like: Run) -> Run:
-    """A run that was not recorded yet."""
+    """A run that was not recorded yet: of its output nothing is known but that it is still."""
     command = experiment.command()
     still = np.zeros(len(command))
     channels = {"command": command, like.output: still, "force": still}
     return Run(name, "", experiment.sample_rate, channels, like.units, like.time_unit, experiment.specimen,
-               experiment.gain, kind=KINDS[experiment.signal], hold=like.hold, output=like.output)  # fmt: skip
+               experiment.gain, kind=KINDS[experiment.signal], hold=like.hold, output=like.output,
+               assumed_beginning="at rest")  # fmt: skip
 
 
 def _sound(y: Array, run: Run) -> bool:
@@ -175,7 +176,9 @@ def _sound(y: Array, run: Run) -> bool:
 
 def _recorded(runs: Sequence[Run], outputs: Mapping[str, Array]) -> list[Run]:
     """The runs as if a model were the machine."""
-    return [replace(run, channels={**run.channels, run.output: outputs[run.id]}) for run in runs]
+    return [
+        replace(run, channels={**run.channels, run.output: outputs[run.id]}, assumed_beginning=None) for run in runs
+    ]
 
 
 def _pairs(

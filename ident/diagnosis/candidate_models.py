@@ -33,7 +33,7 @@ from ident.fit.space import search_space
 from ident.fit.wider_bounds import ROUNDS, wider_at
 from ident.matrix import Matrix
 from ident.noise.floor import Floors, noise_floors
-from ident.parallel import each
+from ident.parallel import Once, each
 from ident.preprocessing import prepare
 from ident.presets import Preset
 from ident.presets import preset as preset_named
@@ -80,7 +80,7 @@ class CandidateModels:
     _records: dict[int, tuple[Run, ...]] = field(default_factory=dict)
     _compared: dict[int, ComparedRecords] = field(default_factory=dict)
     _recent: RecentMoments = field(default_factory=RecentMoments, repr=False)
-    bars: dict[tuple[str, ...], float] = field(default_factory=dict)
+    bars: Once[tuple[str, ...], float] = field(default_factory=Once, repr=False)
     contradicted: frozenset[str] = frozenset()
     resting: Resting = field(default_factory=Resting)
 
@@ -120,14 +120,16 @@ class CandidateModels:
 
     def without(self, runs: Iterable[str]) -> CandidateModels:
         """The same models, fitted to fewer runs."""
-        return replace(self, left_out=self.left_out | frozenset(runs), _known={}, _records={}, _compared={}, bars={})
+        return replace(
+            self, left_out=self.left_out | frozenset(runs), _known={}, _records={}, _compared={}, bars=Once()
+        )
 
     def doubting(self, fitted: FittedModel) -> CandidateModels:
         """The same models, without the noise floors that a fitted model comes below."""
         floors, ratio = self.floors.by_run, CRITERIA.noise.floor_contradicted
         left = {run.id: found.error for run, found in zip(fitted.fitness.runs, fitted.local.runs, strict=True)}
         contradicted = frozenset(run for run, error in left.items() if (floor := floors[run]) and floor > ratio * error)
-        return replace(self, contradicted=contradicted, _known={}, _compared={}, bars={}) if contradicted else self
+        return replace(self, contradicted=contradicted, _known={}, _compared={}, bars=Once()) if contradicted else self
 
     def with_effects(self, effects: Mapping[str, Effect], given: Settings) -> CandidateModels:
         """The models of other effects, and of what is given of these."""
@@ -135,7 +137,7 @@ class CandidateModels:
 
     def with_shapes(self, effects: Mapping[str, Effect]) -> CandidateModels:
         """The same models, their effects with other shapes: what the best takes by chance is another, too."""
-        return replace(self, effects=effects, _known={}, bars={})
+        return replace(self, effects=effects, _known={}, bars=Once())
 
     def with_given(self, given: Settings) -> CandidateModels:
         """The same models, with other values held fixed or bounded."""
@@ -143,7 +145,7 @@ class CandidateModels:
 
     def over_windows(self, horizon: float | None, memory: float | None) -> CandidateModels:
         """The same models, fitted over other windows."""
-        return replace(self, horizon=horizon, memory=memory, _known={}, _compared={}, bars={})
+        return replace(self, horizon=horizon, memory=memory, _known={}, _compared={}, bars=Once())
 
     def model(self, effects: Iterable[str]) -> Preset:
         """The preset with these effects, in the order of the catalogue."""

@@ -87,9 +87,8 @@ def verified_change(effect: str, less: FittedModel, more: FittedModel) -> Verify
 
 def bar(models: CandidateModels, base: FittedModel) -> float:
     """The gain (nats) that the best of all effects beside those of a model makes by chance, but for one in twenty."""
-    if base.effects not in models.bars:
-        models.bars[base.effects] = gain_by_chance(models, base, [n for n in models.effects if n not in base.effects])
-    return models.bars[base.effects]
+    others = [name for name in models.effects if name not in base.effects]
+    return models.bars.of(base.effects, lambda: gain_by_chance(models, base, others))
 
 
 def _is_finite(model: FittedModel) -> bool:

@@ -12,7 +12,7 @@ import scipy.linalg  # noqa: F401  brings its own linear algebra, beside numpy's
 from threadpoolctl import ThreadpoolController
 
 from ident.cached import cached_property
-from ident.parallel import cores, each
+from ident.parallel import Once, cores, each
 
 OWN = 2  # threads that a notebook gave to linear algebra, also on a machine of one core
 
@@ -162,3 +162,28 @@ def test_who_waits_for_the_last_of_the_work_lends_a_core_to_what_is_inside_of_it
         return number + sum(each(lambda one: time.sleep(0.5) or 0 if one == 0 else side_by_side(one), range(3)))
 
     assert sum(each(work, range(2))) == 4
+
+
+def test_what_two_threads_ask_for_at_once_is_worked_out_once() -> None:
+    once, counted = Once[str, int](), list[int]()
+    second = Event()
+
+    def found() -> int:
+        counted.append(1)
+        assert second.wait(30)
+        return len(each(lambda item: item, range(4)))  # work inside, for which the one that waits lends its core
+
+    def ask(is_second: bool) -> int:
+        if is_second:
+            second.set()
+        return once.of("bar", found)
+
+    assert each(ask, [False, True]) == [4, 4] if cores() > 1 else each(ask, [True, False]) == [4, 4]
+    assert len(counted) == 1
+
+
+def test_what_failed_is_worked_out_when_it_is_asked_for_again() -> None:
+    once = Once[str, int]()
+    with pytest.raises(ZeroDivisionError):
+        once.of("bar", lambda: 1 // 0)
+    assert once.of("bar", lambda: 1) == once.of("bar", lambda: 2) == 1

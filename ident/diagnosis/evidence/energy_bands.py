@@ -87,9 +87,12 @@ class EnergyBands:
 
     def white(self, variances: Array) -> Array:
         """The energies (bands,) of white noise whose variances (runs,) are over the power of each run's output."""
-        return sum(
-            (f * run.degrees(self.size) for f, run in zip(variances, self.runs, strict=True)), np.zeros(self.size)
-        )
+        return sum((f * of_run for f, of_run in zip(variances, self._by_run, strict=True)), np.zeros(self.size))
+
+    @cached_property
+    def _by_run(self) -> list[Array]:
+        """The degrees of freedom of each run by band, (bands,)."""
+        return [run.degrees(self.size) for run in self.runs]
 
     def energies(self, residuals: Sequence[Array]) -> Array:
         """E_b (bands,) of the residuals of all runs, in the outputs' unit."""
