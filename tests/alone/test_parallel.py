@@ -171,6 +171,7 @@ def test_what_two_threads_ask_for_at_once_is_worked_out_once() -> None:
     def found() -> int:
         counted.append(1)
         assert second.wait(30)
+        time.sleep(0.05)  # the other one asks meanwhile
         return len(each(lambda item: item, range(4)))  # work inside, for which the one that waits lends its core
 
     def ask(is_second: bool) -> int:
