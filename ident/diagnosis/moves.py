@@ -26,10 +26,10 @@ from ident.progress import Progress, Report
 
 @dataclass
 class Moves:
-    """What the moves of one search need, and the `latest` selection: it stays where the time is over within a move.
+    """The moves of one search, and the `latest` selection, which stays where the time is over within a move.
 
-    At most `most` effects are added. `report` may end the search with TimeIsUp, `listener` is told of each new model;
-    `start` is a model with effects that was fitted before.
+    At most `most` effects are added. `report` may end the search with TimeIsUp, `listener` gets each selection with a
+    new model; `start` is a model with effects that was fitted before.
     """
 
     models: CandidateModels
@@ -59,7 +59,7 @@ class Moves:
         return selection
 
     def step(self, selection: Selection, fitted: FittedModel) -> Selection:
-        """The selection with one more model on its path, refined until it stays."""
+        """The selection with one more model on its path, refined until it converges."""
         selection = self.keep(replace(selection, path=(*selection.path, self.models.converged(fitted))))
         self.refitted_sets.met([selection.fitted])
         self.listener(selection)
@@ -84,9 +84,10 @@ class Moves:
         return self.keep(replace(selection, ranking=tuple(self._recorded(ranking))))
 
     def with_what_was_met(self, selection: Selection) -> Selection:
-        """Rank by what was met on the path: an effect alone, at a better optimum than the ranking found for it.
+        """Rank again with the refits of the path: one effect alone may be at a better optimum there than in the
+        ranking.
 
-        Of a first ranking that was cut off it is how far that came.
+        Where the first ranking was cut off, the candidates that it had are taken.
         """
         selection = self.keep(replace(selection, ranking=selection.ranking or tuple(self._ranking_so_far)))
         with suppress(TimeIsUp):
@@ -112,7 +113,7 @@ class Moves:
         return self._recorded(rank(self.models, base, self._addable(base), self.report, thorough, strong))
 
     def _recorded(self, ranking: list[Candidate]) -> list[Candidate]:
-        """The same ranking, its refits kept with those of all other sets of effects."""
+        """The same ranking; its refits are recorded with the refits of all other sets of effects."""
         self.refitted_sets.met(candidate.refit for candidate in ranking if candidate.refit is not None)
         return ranking
 
@@ -122,7 +123,8 @@ class Moves:
     # Moves -----------------------------------------------------------------------------------------------------
 
     def forward(self, selection: Selection) -> Selection | None:
-        """Add the best effect of the ranking while it improves the model, and take out after each what it replaces."""
+        """Add the best effect of the ranking while it improves the model, and take out after each the effects it
+        replaces."""
         begun = selection
         while len(selection.added) < self.most:
             first = len(selection.path) == 1
@@ -154,7 +156,8 @@ class Moves:
         return None if selection is begun else selection
 
     def _shown(self, ranking: Sequence[Candidate]) -> Candidate | None:
-        """What the records themselves show, where it improves the model and nothing explains more beyond chance."""
+        """An effect that the records themselves show, where it improves the model and no other is better beyond
+        chance."""
         improving = (candidate for candidate in not_dominated(ranking) if candidate.improves)
         return next((candidate for candidate in improving if self.models.is_shown(candidate.effect)), None)
 
@@ -167,9 +170,9 @@ class Moves:
         return self.step(selection, self.start)
 
     def _in_place_of_spring(self, selection: Selection, best: Candidate | None) -> Selection | None:
-        """Begin with what takes the place of a spring, its shapes free, where that is better than the best so far.
+        """Begin with an effect that replaces a spring, its shapes free, where it is better than the best candidate.
 
-        Before others are added to that best: nothing with the usual shapes may lead there.
+        This comes before other effects are added: from the usual shapes no search may arrive at it.
         """
         base, refit = selection.base, None if best is None else best.refit
         names = springs(self.models, base, self._addable(base))
@@ -180,14 +183,15 @@ class Moves:
         return None if freed is None else self._with_its_shapes(selection, freed)
 
     def _with_its_shapes(self, selection: Selection, refit: FittedModel) -> Selection:
-        """The selection with a refit whose last effect has other shapes free, and the models that have these free."""
+        """The selection with a refit whose last effect has further free shapes, and the models with these shapes
+        free."""
         self.models = with_shapes_of(self.models, refit, refit.effects[-1])
         return self.step(replace(selection, models=self.models, rungs=Ladder(self.models)), refit)
 
     def _with_companion(self, selection: Selection, ranking: Sequence[Candidate]) -> Selection | None:
-        """Add an effect that by itself worsens a part of the data with the first other that mends that part.
+        """Add an effect that by itself worsens a part of the data, with the first other effect that corrects that part.
 
-        A condition of the tests may show what another effect does, or the free run what windows do not.
+        A condition of the tests may show the other effect alone, and the free run may show an effect that windows hide.
         """
         worsening = [c.refit for c in ranking if c.worsens_part and c.refit is not None]
         if len(selection.added) + 2 > self.most:
@@ -200,7 +204,7 @@ class Moves:
         return None
 
     def _without_its_effect(self, selection: Selection, refit: FittedModel) -> Selection | None:
-        """Where the model does as well without what was added, that only led to a better optimum: the model there."""
+        """The model without the added effect, where it does as well: the effect only led to a better optimum."""
         name = refit.effects[-1]
         if not self.models.may_be_dispensable(refit, name):
             return None
@@ -212,11 +216,10 @@ class Moves:
         return self.step(replace(selection, base=base), less)
 
     def _backward(self, selection: Selection, latest: str = "") -> tuple[Selection, bool]:
-        """Take out what the model can do without, but the `latest`; true where that leads back to an earlier set.
+        """Take out redundant effects, but not the `latest`; true where that leads back to an earlier set.
 
-        What the records themselves show stays.
-        Effects that are added and taken out in a circle help beside some effects and not beside others: of the sets in
-        the circle the best stays.
+        Effects that the records themselves show stay. Some effects improve the model with some others and not without
+        them, and may be added and taken out in a circle: the best of the sets in the circle stays.
         """
         removable = [name for name in selection.added if name != latest and not self.models.is_shown(name)]
         while removable:
@@ -243,9 +246,9 @@ class Moves:
         return known
 
     def exchange(self, selection: Selection) -> Selection:
-        """Exchange the first added effect for a better one in its place, else name the alternatives of each.
+        """Exchange the first added effect that has a better one in its place, else find the alternatives of each.
 
-        What came with another, to which it showed the way, may be dispensable by now: that is taken out first.
+        An effect that led to a better optimum with another may be redundant now: it is taken out first.
         """
         if len(selection.added) > 1:
             selection, _ = self._backward(selection)
@@ -264,14 +267,15 @@ class Moves:
         return selection
 
     def _is_better(self, fitted: FittedModel, name: str, other: Candidate) -> bool:
-        """Whether another effect is better in the place of one; the same effect found again is at a better optimum."""
+        """Whether another effect is better in the place of `name`; the same effect, refitted, is at a better
+        optimum."""
         assert other.refit is not None
         return other.effect == name or better(fitted, other.refit)
 
     def _in_place_of_each(self, selection: Selection) -> tuple[Selection, list[Sequence[Candidate]]]:
-        """What could stand in the place of each added effect, ranked: for the first what it was chosen from.
+        """The ranked candidates for the place of each added effect; for the first effect alone, the first ranking.
 
-        Nothing stands in the place of one without which the model goes astray.
+        An effect without which the model is unstable has no candidates for its place.
         """
         added, ranking = selection.added, selection.ranking
         if ranking and [*added] == [ranking[0].effect]:
@@ -296,14 +300,14 @@ class Moves:
         return selection
 
     def exchange_pass_at_floor(self, selection: Selection) -> Selection | None:
-        """The same where the error is at the noise floor."""
+        """The exchange pass where the error is at the noise floor."""
         return self.exchange_pass(selection) if self.models.at_floor(selection.fitted) else None
 
     def global_restart(self, selection: Selection) -> Selection | None:
-        """Where the residual with the first effect is above the noise: restart the leading effects from the whole
-        search space.
+        """Restart the leading effects from the whole search space, where the residual with the first is above the
+        noise.
 
-        A model that went far astray without an effect makes another one look better from where it is.
+        A local optimum far from the true one, of a model without the effect, makes another effect look better.
         """
         if not self.above_floor(selection):
             return None
@@ -321,7 +325,7 @@ class Moves:
         return self._best_of(selection, self.models.leading(trials, self.models.trial_error(selection.fitted)))
 
     def _best_of(self, selection: Selection, trials: Sequence[FittedModel]) -> Selection | None:
-        """Continue with the best of some trials, where it is better beyond chance on all records."""
+        """Continue with the best of some trials, where its refit improves the model on all records."""
         best = stable_minimum(trials, lambda trial: trial.local.error) if trials else None
         if best is None or not best.local.error < self.models.trial_error(selection.fitted):
             return None
@@ -345,7 +349,8 @@ class Moves:
     def runner_up(self, selection: Selection) -> Selection | None:
         """Continue from another set of as many effects, where with a further one it improves on the selected set.
 
-        Two lags look like one that is longer: with it neither of them helps, with either of the two the other does.
+        Two lags look like a longer one. Given the longer one, neither of the two improves the model; given either of
+        the two, the other does.
         """
         if len(selection.added) == self.most:
             return None
@@ -359,7 +364,8 @@ class Moves:
     def pair_search(self, selection: Selection) -> Selection | None:
         """Continue from two finalists of the first ranking at once, where these are better beyond chance.
 
-        One at a time may lead astray: two lags look like a delay, and from there to whatever corrects the difference.
+        One effect at a time may lead to a wrong set: two lags look like a delay, and then the search adds effects that
+        correct the difference.
         """
         first = selection.path[1].effects[-1] if len(selection.path) > 1 else ""  # the others were tried with it
         finalists = [c.refit for c in selection.ranking if c.refit is not None and c.effect != first]
@@ -376,7 +382,7 @@ class Moves:
     def free_widths(self, selection: Selection) -> Selection | None:
         """Begin again with an effect whose widths are free, where it is better than any with the usual ones.
 
-        Those that were tried so before others were added have lost to these already.
+        The effects that were tried in place of a spring are not tried again.
         """
         refits = [c.refit for c in selection.ranking if c.refit is not None]
         best = stable_minimum([selection.base, *refits], score)
@@ -387,7 +393,7 @@ class Moves:
         return self._with_its_shapes(replace(selection, changes=selection.changes + 1), refit)
 
     def better_of(self, before: Selection, after: Selection) -> Selection:
-        """The selection after, where it is better beyond chance or has fewer effects and is no worse, else that before.
+        """The selection `after`, where it is better beyond chance, or has fewer effects and is no worse; else `before`.
 
         The search continues with its models.
         """
@@ -399,9 +405,9 @@ class Moves:
     def prune_path(self, selection: Selection) -> Selection | None:
         """End the ladder at the first of its rungs on which the last model does not improve.
 
-        A rung that is refitted from where the search ended may find a better optimum than the model that was added to.
-        Of a model of the path the search has judged: it has to be better, not only as good. Where a model of the path
-        with as few effects is better than that rung, the search goes back to it.
+        A rung that is refitted from the end of the search may reach a better optimum than the model on the path. A rung
+        that is a model of the path was judged already: it has to be better than the last model, not only as good. Where
+        a model of the path with as few effects is better than the rung, the search goes back to it.
         """
         for _, rung in selection.ladder()[1:-1]:
             judged = any(rung is fitted for fitted in selection.path)

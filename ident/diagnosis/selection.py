@@ -1,4 +1,4 @@
-"""A selection of effects: the models from the fitted one to the one that explains the data. No move changes it."""
+"""A selection of effects: the models from the given one to the one that explains the data. No move changes it."""
 
 from __future__ import annotations
 
@@ -14,11 +14,12 @@ from ident.diagnosis.refitted_sets import RefittedSets
 
 @dataclass(frozen=True)
 class Selection:
-    """The models from the fitted one to the one that explains the data, which no move changes: it makes another.
+    """The models from the given one to the one that explains the data. No move changes a selection: it makes another.
 
-    `path` are the fitted models, the given one first; `ranking` is the first ranking; `alternatives` are for each added
+    `path` are the fitted models, the given one first; `ranking` is the first ranking; `alternatives` has for each added
     effect the candidates that are indistinguishable from it, itself included, best first. `changes` counts the moves
-    that call for another round. At most `most` effects are added. Not `complete`, there was no time for all of it.
+    that call for another round. At most `most` effects are added. `complete` is false where there was no time for the
+    whole search.
     """
 
     models: CandidateModels
@@ -44,13 +45,14 @@ class Selection:
 
     @property
     def limit(self) -> int | None:
-        """The number of effects that ended the selection: no more were to be added; None where it did not."""
+        """The largest number of effects, where the selection ended because it was reached; None where it was not."""
         return self.most if self.most and len(self.added) >= self.most else None
 
     def ladder(self) -> Rungs:
-        """From the given model to the last, one effect a step, without the detours: what was added, and the model."""
+        """The rungs from the given model to the last, one effect a step, without detours: the added effect and the
+        model."""
         return self.rungs.rungs(self.path, self.base)
 
     def known_ladder(self) -> Rungs:
-        """The same of what is known, where there is no time for a refit."""
+        """The ladder of the models that are fitted already, where there is no time for a refit."""
         return self.rungs.known(self.path, self.base)

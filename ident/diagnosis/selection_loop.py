@@ -1,10 +1,10 @@
 """The search over sets of effects: one loop over named moves, each from one selection to another.
 
-Forward: the best of the ranking is added while it improves the model beyond chance; backward: what the model can do
-without since is taken out. Then each effect that was added is compared with everything that could stand in its place:
-a better one is exchanged for it, those that are indistinguishable from it are its alternatives. Where all of this ends
-above the noise, further effects are added to the next best sets, strong ones, far from where the search stands, and
-two at a time in the place of one; then it begins again with an effect whose widths are free.
+Forward: the best effect of the ranking is added while it improves the model beyond chance; backward: effects that
+became redundant are taken out. Then each added effect is compared with all others in its place: a better one is
+exchanged for it, and effects that are indistinguishable from it are its alternatives. Where all of this ends above the
+noise, the search continues from the next best sets, from strong effects, and from pairs of effects in the place of one;
+then it begins again with an effect whose widths are free.
 """
 
 from __future__ import annotations
@@ -19,9 +19,9 @@ from ident.errors import TimeIsUp
 
 
 def select(moves: Moves, selection: Selection) -> Selection:
-    """Add, take out and exchange effects until nothing improves the model; above the noise floor look farther.
+    """Add, take out and exchange effects until no move improves the model; above the noise floor the search is wider.
 
-    What was selected when the time is over is returned, not complete.
+    When the time is over the latest selection is returned, not complete.
     """
     with suppress(TimeIsUp):
         selection = add_and_exchange(moves, selection)
@@ -42,7 +42,7 @@ def select(moves: Moves, selection: Selection) -> Selection:
 
 
 def add_and_exchange(moves: Moves, selection: Selection) -> Selection:
-    """Add effects while that improves the model, then exchange one; again, until none is exchanged."""
+    """Add effects while they improve the model, then exchange one; repeat until none is exchanged."""
     before, seen = selection, set[frozenset[str]]()
     selection = replace(selection, alternatives={})
     for _ in range(CRITERIA.selection.rounds):

@@ -1,10 +1,10 @@
-"""Which machine fits, where no model is named: those that the channels allow, compared on held-out data.
+"""The choice of a machine where no model is named: the models that the channels allow, compared on held-out data.
 
-Where the residual of the first exceeds the noise, an effect is missing, and a machine with more parameters may have
-made up for a part of it. So the models are compared with one effect of the catalogue each. Another with no more
-parameters then comes before the first where the first is improbable among them; and so does one with fewer parameters
-and as small an error. A first model of which a parameter ends at its bound is the wrong machine: one with a smaller
-error comes before it.
+Where the residual of the first model exceeds the noise, an effect is missing, and a machine with more parameters may
+have made up for a part of it. So the models are compared with one effect of the catalogue each. Another model with no
+more parameters then comes before the first where the first is improbable among them; and so does a model with fewer
+parameters and as small an error. A first model with a parameter at its bound is the wrong machine: a model with a
+smaller error comes before it.
 """
 
 from __future__ import annotations
@@ -40,9 +40,9 @@ from ident.words.titles import title
 
 @dataclass(frozen=True)
 class StructureChoice:
-    """The models in question, the one to take first; the matrix, with a notice that says why it.
+    """The models in question, the chosen one first; the matrix, with a notice that gives the reason for the choice.
 
-    `fit` is that of the first with usual settings, None where it was the only one, and had not to be fitted.
+    `fit` is the fit of the first model with usual settings, None where it was the only model and needed no fit.
     """
 
     matrix: Matrix
@@ -50,7 +50,7 @@ class StructureChoice:
     fit: FitResult | None = None
 
     def made(self, settings: Settings) -> FitResult | None:
-        """The fit, where these settings ask for the very same."""
+        """The fit, where these settings are the settings of that fit."""
         fit = self.fit
         usual = fit and Settings(model=fit.model, preprocessing=fit.settings.get("preprocessing", {}))
         return fit if fit is not None and settings == usual else None
@@ -59,11 +59,11 @@ class StructureChoice:
 def compared_structures(
     matrix: Matrix, report: Report = silent, preprocessing: Mapping[str, bool] = ALL_ON
 ) -> tuple[Structure, ...]:  # fmt: skip
-    """The models in question, the one to take first: the simplest whose held-out error is not worse.
+    """The models in question, the chosen one first: the simplest whose held-out error is not worse.
 
-    Of a machine that moves along a way the simplest that is not a motor, where one is no worse. Before it comes one
-    with no more parameters where the first is improbable, each with one effect; or one with fewer parameters and as
-    small an error.
+    For a machine that moves along a way, the simplest that is not a motor is chosen, where one is no worse. A model
+    with no more parameters comes before it where it is improbable, each with one effect; or a model with fewer
+    parameters and as small an error.
 
     Raises Unusable where the channels allow none.
     """
@@ -73,7 +73,7 @@ def compared_structures(
 def _compared(
     matrix: Matrix, report: Report, preprocessing: Mapping[str, bool]
 ) -> tuple[tuple[Structure, ...], FitResult | None]:  # fmt: skip
-    """The models in question as :func:`structures` has them, and the fit of the first where more than one was."""
+    """The models in question as :func:`compared_structures` has them, and the fit of the first where several were."""
     models = in_question(matrix.runs, matrix.machine)
     if len(models) == 1:
         only = models[0]
@@ -105,7 +105,7 @@ def _compared(
 
 
 def _probabilities(compared: Sequence[_JudgedStructure]) -> dict[str, float]:
-    """How probable each model is among those that were compared, by its machine; each with its effect if it has one."""
+    """The probability of each compared model, by its machine; each model with its effect if it has one."""
     sound = [model for model in compared if model.best.finite]
     if len(sound) < 2:
         return {}
@@ -120,9 +120,9 @@ def _probabilities(compared: Sequence[_JudgedStructure]) -> dict[str, float]:
 def _with_an_effect_each(
     first: _JudgedStructure, tried: Sequence[_JudgedStructure], report: Report
 ) -> dict[str, _JudgedStructure]:
-    """The first model and those with no more parameters, each with the effect that helps it most.
+    """The first model and the models with no more parameters, each with the effect that improves it most.
 
-    But the first alone, and as it is, where it is the only one or its residual is noise.
+    Only the first, without an effect, is returned where it is the only one or its residual is noise.
     """
     simple = [one for one in tried if one.parameters <= first.parameters]
     if len(simple) == 1 or not first.refit.finite or not first.models.residual_above_noise(first.refit):
@@ -134,11 +134,12 @@ def _preferred(
     first: _JudgedStructure, others: Collection[_JudgedStructure], strange: Collection[str],
     probable: Mapping[str, float],
 ) -> tuple[_JudgedStructure, Message]:  # fmt: skip
-    """The one to take of models with an effect each, and why: the first, or a simpler one that says as much or more.
+    """The chosen one of models with an effect each, and the reason: the first, or another that explains as much or
+    more.
 
-    Where the first is improbable among them, the simplest of the most probable ones comes before it. Where a parameter
-    of the first is at its bound, one with a smaller error and no parameter at a bound comes before it. So does a
-    simpler one whose error is not larger but by chance, unless that one alone is strange.
+    Where the first is improbable among them, the simplest of the most probable models comes before it. Where a
+    parameter of the first is at its bound, a model with a smaller error and no parameter at a bound comes before it. So
+    does a simpler model whose error is not larger beyond chance, unless that model alone is unusual.
     """
     if probable.get(first.machine, 1.0) < CRITERIA.structure.improbable:
         most = max(probable.values())
@@ -161,16 +162,16 @@ def _preferred(
 
 
 def _simplest(models: Collection[_JudgedStructure]) -> _JudgedStructure:
-    """The one with the fewest parameters of those with about the smallest error."""
+    """The model with the fewest parameters among the models with about the smallest error."""
     least = min(one.error for one in models)
     return min((one for one in models if one.error <= CRITERIA.structure.worse * least), key=lambda one: one.parameters)
 
 
 def _judged(fitted: Sequence[_FittedStructure]) -> tuple[float | None, list[_JudgedStructure]]:
-    """The models by one measure for all, and over which time, s: the longest windows of one that is fitted so.
+    """All models judged by one error, and its horizon in s: the longest windows over which one of them is fitted.
 
-    What a machine has integrated before a window says nothing of its structure. But where the error of one that settles
-    is smaller over whole runs than that of any over windows, nothing was integrated: then whole runs count.
+    The state that a machine has integrated before a window has no information on its structure. But where the least
+    error over whole runs is smaller than the least error over windows, nothing was integrated: then whole runs count.
     """
     windows = [one.fit.window for one in fitted if one.fit.window]
     longest = max(windows, key=lambda window: window.horizon, default=None)
@@ -187,7 +188,8 @@ def _judged(fitted: Sequence[_FittedStructure]) -> tuple[float | None, list[_Jud
 def _all_fitted(
     models: Sequence[Preset], matrix: Matrix, report: Report, preprocessing: Mapping[str, bool]
 ) -> dict[str, _FittedStructure]:  # fmt: skip
-    """The models in question, fitted, but for those that a command in closed loop does not allow while others do."""
+    """The models in question, fitted. A model that a command in closed loop does not allow is left out if others
+    remain."""
     fitted, refused = {}, None
     for model in models:
         try:
@@ -204,10 +206,10 @@ def _all_fitted(
 def choose_structure(
     matrix: Matrix, report: Report = silent, preprocessing: Mapping[str, bool] = ALL_ON
 ) -> StructureChoice:  # fmt: skip
-    """The models in question, with a notice of the matrix that says why the first.
+    """The models in question, and the matrix with a notice that gives the reason for the first.
 
-    Nothing is said where it is the usual model and no other could be meant. `preprocessing` has false for each step
-    that is switched off.
+    There is no notice where the first is the usual model and the only one in question. `preprocessing` has false for
+    each step that is switched off.
     """
     matrix = screen(matrix, preprocessing)
     shown = undoable(matrix, CATALOGUE)
@@ -225,7 +227,7 @@ def choose_structure(
 
 
 class CompletedFit:
-    """A fit that was made already, as one that is made a step at a time."""
+    """A fit that was made already, in the form of a fit that is made a step at a time."""
 
     generations = 0
 
@@ -233,11 +235,11 @@ class CompletedFit:
         self._fit = fit
 
     def start(self) -> State:
-        """Nothing is to be searched any more."""
+        """The state of a search that is over."""
         return {"done": True, "history": []}
 
     def finished(self, state: State) -> bool:  # noqa: ARG002  in any state
-        """Always."""
+        """True in every state."""
         return True
 
     def advance(self, state: State, generations: int) -> State:  # noqa: ARG002  there is nothing to advance
@@ -250,7 +252,7 @@ class CompletedFit:
 
 
 class FitWithAlternatives:
-    """A fit of the model that was chosen, a step at a time; its result says what else was tried."""
+    """A fit of the chosen model, a step at a time; its result has the other models that were tried."""
 
     def __init__(self, fit: StepwiseFit, tried: tuple[Structure, ...]) -> None:
         self._fit, self._tried = fit, tried
@@ -273,7 +275,7 @@ class FitWithAlternatives:
         return self._fit.advance(state, generations)
 
     def finish(self, state: State) -> FitResult:
-        """The result, with the structures."""
+        """The result, with the models that were tried."""
         return replace(self._fit.finish(state), structures=self._tried)
 
 
@@ -287,7 +289,7 @@ class _FittedStructure:
         self.settings = replace(self.settings, known_zeros=tuple(self.fit.settings.get("known_zeros", ())))
 
     def judged(self, window: Window | None) -> _JudgedStructure:
-        """By its error on held-out data, over windows where such are given."""
+        """The model judged by its error on held-out data, over the window where one is given."""
         over = (window.horizon, window.memory) if window else (None, None)
         family = CandidateModels.of(self.matrix, self.settings, (), *over)
         start = {family.preset.parameter(name).in_equations: value for name, value in self.fit.values.items()}
@@ -296,7 +298,7 @@ class _FittedStructure:
 
 @dataclass(frozen=True)
 class _JudgedStructure:
-    """A model in question by the measure of all, and with the effect that helps it most."""
+    """A model in question judged by the error of all, and with the effect that improves it most."""
 
     models: CandidateModels
     parameters: int
@@ -306,17 +308,17 @@ class _JudgedStructure:
 
     @property
     def machine(self) -> str:
-        """Its name."""
+        """The name of its machine."""
         return self.models.given.model
 
     @property
     def error(self) -> float:
-        """Its error on held-out data; infinite where a simulation runs away."""
+        """Its error on held-out data; infinite where a simulation diverges."""
         return _held_out(self.best)
 
     @property
     def best(self) -> FittedModel:
-        """With the effect, where there is one."""
+        """The refit with the effect, where there is one, else without."""
         return self.with_effect or self.refit
 
     @property
@@ -325,10 +327,11 @@ class _JudgedStructure:
         return bool(self.best.at_bounds)
 
     def helped(self, report: Report) -> _JudgedStructure:
-        """The same with the effect of the catalogue that helps it most, as it is where none does.
+        """The model with the effect of the catalogue that improves it most; unchanged where none does.
 
-        One that integrates is helped about its operating point: see :mod:`ident.diagnosis.operating_point`.
-        One that no simulation confirms helps nothing: it would make a sound model look worse than any other.
+        Effects are added to a machine that integrates about its operating point: see
+        :mod:`ident.diagnosis.operating_point`. An effect that no simulation confirms is not taken: it would make a
+        sound model look worse than any other.
         """
         if not self.refit.finite:
             return self
@@ -343,7 +346,8 @@ class _JudgedStructure:
         return replace(self, with_effect=min(refits, key=_held_out, default=base if base.effects else None))
 
     def structure(self, over: float | None, more: Message | None, probability: float | None) -> Structure:
-        """What is told of it: its error over so many seconds, None for whole runs, and `more`, why it was taken."""
+        """The facts of the model: its error over the horizon `over` in s, None for whole runs, and `more`, its
+        reason."""
         alone = _held_out(self.refit)
         facts = [
             message("structure.error", error=alone)

@@ -1,20 +1,19 @@
 """The verdict of a diagnosis: a pure function of its findings. The whole rule stands on this page.
 
-What is *named* is what the selection added, but for what is dispensable: with terms that were confirmed the model does
-as well without it; and but for what was added last and is *unconfirmed*: validation data show nothing of it, although
-it would lower their error if it acted. The residual is *unexplained* unless it is noise. A *group* are effects that the
-data cannot tell apart. The verdict stands in one of four ways:
+The *named* effects are the effects that the selection added, without two kinds. A *dispensable* effect is one without
+which the model does as well, given terms that were confirmed. An *unconfirmed* effect was added last, and validation
+data show nothing of it, although it would lower their error if it acted. The residual is *unexplained* unless it is
+noise. A *group* are effects that the data cannot tell apart. The verdict stands in one of four ways:
 
 * *nothing*: no effect is named;
-* *contradicted*: with an effect that is named, the error on runs to verify rises;
-* *stand_in*: something remains or may remain. The residual is unexplained; or a dispensable effect was contradicted; or
-  no noise floor is known and a named strength ended at the bound of its search;
+* *contradicted*: the error on validation data rises with a named effect;
+* *stand_in*: unmodelled dynamics remain or may remain. The residual is unexplained; or a dispensable effect was
+  contradicted; or no noise floor is known and a named strength ended at the bound of its search;
 * *found*: none of these.
 
-Whether the residual is noise is a test of its size, and of its memory where no floor is known. It decides what the
-verdict says. How probable it is that something unlisted acts follows from the gains of the refitted models: the two
-may differ. Runs to verify are not part of a probability: an effect that they contradict may have a
-large one.
+A test of the residual's size, and of its memory where no floor is known, decides whether it is noise; the verdict
+follows this test. The probability that something unlisted acts follows from the gains of the refitted models: the two
+may differ. Validation data are not part of a probability: an effect that they contradict may have a large one.
 """
 
 from __future__ import annotations
@@ -33,11 +32,11 @@ Names = tuple[str, ...]
 
 @dataclass(frozen=True)
 class Residual:
-    """The error on the estimation data and what is known of its noise.
+    """The error on the estimation data, and its noise floor.
 
     `floor` is the error that noise alone makes, None where it is not known, and `spread` its relative standard
-    deviation. `correlation` is that of neighbouring residuals, asked where no floor is known. `excess` is the share of
-    the floor by which the error may exceed it, where that is another than usual: of a bench.
+    deviation. `correlation` is the correlation of neighbouring residuals, which decides where no floor is known.
+    `excess` is the share of the floor by which the error may exceed it, None for the usual share; a bench has its own.
     """
 
     error: float
@@ -49,15 +48,15 @@ class Residual:
 
 @dataclass(frozen=True, kw_only=True)
 class Findings:
-    """What the stages of a diagnosis found, in numbers and names.
+    """The findings of all stages of a diagnosis, in numbers and names.
 
-    `added` are the effects of the selection, in their order; `alternatives` for each the effects that are
-    indistinguishable from it, itself included; `lag_pairs` are two added lags, and the lags two of which do as well.
-    `residual` is None where there was no time to ask whether it is noise; `set_gains` are the gains of all sets of
-    effects that were refitted. `verify` has the change by each added effect;
-    `at_bound` are those whose strength ended at the bound of its search, `dispensable` those that the model does as
-    well without beside confirmed terms. `suspects` are runs whose label is doubted, `elsewhere` what other machines
-    explain as well.
+    `added` are the effects of the selection, in their order; `alternatives` has for each the effects that are
+    indistinguishable from it, itself included; `lag_pairs` are two added lags, and the lags of which any two do as
+    well. `residual` is None where there was no time for the test of noise; `set_gains` are the gains of all sets of
+    effects that were refitted. `verify` has the change of the validation error by each added effect; `at_bound` are
+    effects whose strength ended at the bound of its search, `dispensable` are effects without which the model does as
+    well, given confirmed terms. `suspects` are runs with a doubtful label, `elsewhere` are explanations by other
+    machines that are as good.
     """
 
     added: Names = ()
@@ -75,7 +74,8 @@ class Findings:
 def is_noise(residual: Residual, criteria: Criteria = CRITERIA) -> bool:
     """Whether the error is noise alone.
 
-    It is where it exceeds its floor by less than a share and chance; without a floor, where the residual has no memory.
+    With a floor the error has to exceed it by less than a share and chance; without a floor the residual has to have no
+    memory.
     """
     if residual.floor is None:
         return not residual.correlation > criteria.noise.noise_correlation
@@ -84,15 +84,15 @@ def is_noise(residual: Residual, criteria: Criteria = CRITERIA) -> bool:
 
 
 def contradicts(change: VerifyChange, criteria: Criteria = CRITERIA) -> bool:
-    """Whether runs to verify speak against an effect: the error rises beyond chance, or the model is unstable there."""
+    """Whether validation data contradict an effect: the error rises beyond chance, or the model is unstable there."""
     return change.rise > criteria.verification.deviations * change.std_error
 
 
 def shows_nothing(change: VerifyChange, criteria: Criteria = CRITERIA) -> bool:
-    """Whether runs to verify show nothing of an effect that they would show if it acted as it was fitted.
+    """Whether validation data show nothing of an effect that they would show if it acted as it was fitted.
 
-    The error there does not fall beyond chance, with its mean or without; and beyond chance it falls by less than is
-    due. A mean that the model does not explain may hide an effect that the residual about the mean shows.
+    The validation error does not fall beyond chance, with its mean or without; and its fall is beyond chance less than
+    the fall that is due. A mean that the model does not explain may hide an effect that the residual about it shows.
     """
     deviations, fall = criteria.verification.deviations, -change.rise
     chance = deviations * change.std_error
@@ -101,7 +101,7 @@ def shows_nothing(change: VerifyChange, criteria: Criteria = CRITERIA) -> bool:
 
 
 def contradiction(change: VerifyChange | None) -> Contradiction | None:
-    """That runs to verify contradict what an effect or a term stands for, where they do."""
+    """The contradiction of an effect or a term by validation data; None where they do not contradict it."""
     return None if change is None or not contradicts(change) else change.contradiction()
 
 
@@ -133,26 +133,26 @@ def conclude(found: Findings, criteria: Criteria = CRITERIA) -> Verdict:
 def _probability(
     found: Findings, of_sets: Probabilities, named: Names, groups: Sequence[Names], criteria: Criteria
 ) -> float:
-    """How probable it is that the verdict is right: every name, or one of its group, acts; or what it says of none."""
+    """The probability that every named effect, or one of its group, acts; without a name, of the verdict."""
     if named:
         return of_sets.of(next((group for group in groups if name in group), (name,)) for name in named)
     return of_sets.with_unlisted[NOTHING] if _unexplained(found, criteria) else of_sets.nothing
 
 
 def _of_group(group: Names, of_sets: Probabilities, named: Names) -> float:
-    """How probable it is that as many effects of a group act as are named: one, or two of a lag pair."""
+    """The probability that as many effects of a group act as are named: one, or two of a lag pair."""
     return of_sets.of([group] * max(len({*group} & {*named}), 1))
 
 
 def _unexplained(found: Findings, criteria: Criteria) -> bool:
-    """Whether something remains, whatever was added: nobody knows that it is noise where that was not asked."""
+    """Whether the residual is not known to be noise; it is not known where there was no time for the test."""
     return found.residual is None or not is_noise(found.residual, criteria)
 
 
 def _standing(
     found: Findings, named: Names, against: Names, was_contradicted: bool, criteria: Criteria
 ) -> Standing:  # fmt: skip
-    """How what is named stands; what only a dispensable effect was contradicted by is a stand-in."""
+    """How the named effects stand; they are a stand-in where only a dispensable effect was contradicted."""
     floor_known = found.residual is not None and found.residual.floor is not None
     if not named:
         return "nothing"
@@ -164,9 +164,9 @@ def _standing(
 
 
 def _unconfirmed(found: Findings, criteria: Criteria) -> Names:
-    """The effects at the end of the selection of which runs to verify show nothing.
+    """The effects at the end of the selection of which validation data show nothing.
 
-    One that was added earlier may show itself with what came after it, so it stays.
+    An effect that was added earlier may show only together with later ones, so it stays.
     """
     nothing = {change.effect for change in found.verify if shows_nothing(change, criteria)}
     asked = [name for name in found.added if name not in found.dispensable]
@@ -174,7 +174,7 @@ def _unconfirmed(found: Findings, criteria: Criteria) -> Names:
 
 
 def _groups(found: Findings, unconfirmed: Names) -> tuple[Names, ...]:
-    """Effects that the data cannot tell apart: those of a lag pair count once, each of an effect that is named."""
+    """Groups of effects that the data cannot tell apart, each with a named effect; the lags of a pair are one group."""
     alone = (group for group in found.alternatives if len(group) > 1)
     groups = (*(group for group in alone if not any({*group} <= {*pair} for pair in found.lag_pairs)), *found.lag_pairs)
     return tuple(group for group in groups if not {*group} & {*found.added} & {*found.dispensable, *unconfirmed})

@@ -1,7 +1,7 @@
-"""What runs that no fit saw say of what was named: they may take away the word found, and nothing else.
+"""The comparison of the named effects with validation data, which no fit used: it may take away the word found.
 
-An effect that helps where it was fitted and harms elsewhere stands for something that the catalogue does not hold, or
-that behaves otherwise there.
+An effect that improves the model on estimation data and harms it on validation data imitates an effect that the
+catalogue does not have, or that behaves otherwise there.
 """
 
 from __future__ import annotations
@@ -23,18 +23,19 @@ from ident.words.message import Message, message
 
 Array = NDArray[np.float64]
 Standing = Literal["found", "stand_in", "contradicted", "nothing"]
-"""found: the error is at the floor; stand_in: it fell, but is above the floor, or may be, for a strength ended at the
-bound of its search; contradicted: it rises on verify runs; nothing: no effect is named."""
+"""found: the error is at the floor; stand_in: it fell, but is above the floor, or may be, because a strength ended at
+the bound of its search; contradicted: it rises on validation data; nothing: no effect is named."""
 
 
 @dataclass(frozen=True)
 class Contradiction:
-    """An effect with which the verify error rises, from and to which, and by how many of its standard errors.
+    """An effect with which the validation error rises: the error before and after, and the rise in standard errors.
 
-    `after` and `deviations` are None where the model is `unstable` on these verify runs with it, and was not without.
-    `instead_of` are the effects that the model has which it rises from, where that has others. Of a `free_run` the
-    errors are those with its mean, where windows do not rise. Where the mean counts the errors `with_mean` are what
-    rises, from the first to the second; `before` and `after` are those that tables show.
+    `after` and `deviations` are None where the model is `unstable` on these validation runs with the effect, and was
+    not without it. `instead_of` are the effects of the model with the error `before`, where it has others. With
+    `free_run` the errors are the errors of the free run with its mean, where the error over windows does not rise.
+    Where the mean counts, the errors `with_mean` rise, from the first to the second; `before` and `after` are the
+    errors that tables show.
     """
 
     effect: str
@@ -47,7 +48,7 @@ class Contradiction:
     with_mean: tuple[float, ...] = field(default=(), metadata=WHERE_KNOWN)
 
     def message(self, named: str) -> Message:
-        """What speaks against what is `named`."""
+        """The sentence that contradicts the `named` effect."""
         of = message("effect.in_place", named=named, others=self.instead_of) if self.instead_of else named
         if self.after is None:
             return message("contradicted.unstable", named=of, runs=self.unstable, before=self.before)
@@ -68,14 +69,13 @@ class Contradiction:
 
 @dataclass(frozen=True)
 class VerifyChange:
-    """The error on runs to verify without an effect and with it, and the standard error of the difference.
+    """The error on validation data without an effect and with it, and the standard error of the difference.
 
-    Where the mean counts that of the errors `with_mean` is meant, which decide: they are what was fitted. The others
-    are those of eq. (17), that tables show.
-    `after` is None where the model is `unstable` on these runs with the effect, and was not without. Of a `free_run`
-    that is driven away they are the errors with its mean, and that it is more than chance has been asked. `shown` is
-    by how much the model differs on these runs with the effect, as an error of the same kind. `tabled_std_error` is
-    the standard error of the difference of the errors in tables, where the mean counts.
+    Where the mean counts, the errors `with_mean` decide, because they were fitted, and the standard error is of their
+    difference. `before` and `after` are the errors of eq. (17) that tables show, and `tabled_std_error` that of their
+    difference. `after` is None where the model is `unstable` on these runs with the effect, and was not without it. With
+    `free_run` they are the errors of a free run with its mean, which rise beyond chance. `shown` is the size of the
+    change of the model's output by the effect on these runs, as an error of the same kind.
     """
 
     effect: str
@@ -90,9 +90,10 @@ class VerifyChange:
 
     @property
     def due(self) -> float:
-        """By how much the error that was fitted falls if the effect acts as it was fitted.
+        """The fall of the error that was fitted if the effect acts as it was fitted.
 
-        The residual with the effect is then uncorrelated with what the effect shows: before² = shown² + after².
+        The residual with the effect is then uncorrelated with the change of the output by the effect: before² = shown²
+        + after².
         """
         first = self.with_mean[0] if self.with_mean else self.before
         return first - float(np.sqrt(max(first**2 - self.shown**2, 0.0)))
@@ -104,12 +105,12 @@ class VerifyChange:
 
     @property
     def rise(self) -> float:
-        """By how much the error that was fitted rises; infinite where the model is unstable with the effect."""
+        """The rise of the error that was fitted; infinite where the model is unstable with the effect."""
         first, last = self.with_mean or (self.before, np.inf if self.after is None else self.after)
         return last - first
 
     def contradiction(self) -> Contradiction:
-        """That the runs to verify speak against the effect, with the number of standard errors."""
+        """The contradiction of the effect by validation data, with the number of standard errors."""
         told = self.after is not None and not self.free_run
         deviations = self.rise / max(self.std_error, TINY) if told else None
         return Contradiction(
@@ -124,9 +125,9 @@ def verify_change(
     """How the error over `runs` changes with an effect; None where the model is unstable without it.
 
     `before` and `after` are the residuals of each run without the effect and with it, (n,), less their mean or over
-    windows; `means` are those that count in what was fitted, (runs,) each: the errors with them then decide. The
-    standard error is that of the difference, by a bootstrap over chunks of ten correlation times (Künsch 1989), at
-    least four a run.
+    windows; `means` are the means that the fit counts, (runs,) each: the errors with them then decide. The standard
+    error of the difference comes from a bootstrap over chunks of ten correlation times (Künsch 1989), at least four a
+    run.
     """
     if _unstable(runs, before):
         return None
@@ -171,9 +172,9 @@ def _error_of_difference(runs: Sequence[Run], before: Sequence[Array], after: Se
 
 
 def with_free_run(over_windows: VerifyChange, before: FreeRun, after: FreeRun) -> VerifyChange:
-    """The change over windows; or that of the free run, where it is driven away and no window speaks for the effect.
+    """The change over windows; or that of the free run, where it is driven away and windows do not confirm the effect.
 
-    An effect that windows confirm may act where the record drifts for another reason.
+    Where windows confirm the effect the record may drift for another reason.
     """
     confirmed = -over_windows.rise > CRITERIA.verification.deviations * over_windows.std_error
     if confirmed or not drives_away(before, after):
@@ -190,7 +191,7 @@ def _unstable(runs: Sequence[Run], left: Sequence[Array]) -> tuple[str, ...]:
 
 
 def _chunks(residual: Array) -> list[slice]:
-    """Neighbouring samples that tell together about as much as ten that know nothing of each other."""
+    """Chunks of neighbouring samples, each with about as much information as ten independent samples."""
     n = len(residual)
     length = int(
         np.clip(
