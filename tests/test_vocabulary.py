@@ -25,17 +25,18 @@ GONE = {
 NAMES = {"known": 56, "here": 22, "told": 6, "one": 133, "rest": 19, "left": 17, "kept": 10, "late": 6}
 """Words that say nothing as a name, and how many names are still made of them: fewer from time to time, never more."""
 TEXTS = {
-    "beside": 34,
-    "tell": 26,
-    "tells": 7,
-    "told": 15,
-    "alike": 7,
+    "beside": 14,
+    "tell": 23,
+    "tells": 5,
+    "told": 10,
+    "alike": 6,
     "anew": 2,
-    "doubted": 8,
-    "leave": 1,
-    "leaves": 1,
-    "left": 25,
+    "doubted": 7,
+    "leave": 0,
+    "leaves": 0,
+    "left": 22,
     "rest": 3,
+    "what": 202,
 }
 """The same of words in docstrings."""
 

@@ -1,1 +1,1 @@
-"""Terms that no list holds: what could be missing at each place of a chain, searched for and tried."""
+"""Unlisted terms: terms that may be missing at each place of a chain are searched for and tried."""

@@ -1,7 +1,7 @@
-"""Channels that were recorded beside a machine, of which a term may be: the pressure behind a seal, a temperature.
+"""Auxiliary channels that a term may read: the pressure behind a seal, a temperature.
 
-A term of what the machine itself answers would explain the record by the record. So of a machine with a command only
-what surrounds it counts; a machine that is moved answers with its force alone.
+A term of a response of the machine itself would explain the record by the record. So for a machine with a command only
+the channels of its surroundings count; the only response of a machine that is moved is its force.
 """
 
 from __future__ import annotations
@@ -21,14 +21,14 @@ _FORCES = ("force", "drive_force")
 
 
 def auxiliary_channels(models: CandidateModels) -> tuple[str, ...]:
-    """The channels that every run has, beside what drives the model and what it shows, and that are not the same."""
+    """The channels that every run has, other than the input and the output of the model, and that vary."""
     moved, runs = models.preset.data.driven_by in MOTIONS, models.matrix.runs
     free = [name for name in READABLE if name not in _FORCES] if moved else _SURROUNDS
     return tuple(name for name in free if unmeasured({name}, runs) is None and _varies(name, models.runs))
 
 
 def channels_of(run: Run) -> Mapping[str, NDArray[np.float64]]:
-    """What of a run may be read so, in SI."""
+    """The channels of a run that an equation may read, in SI."""
     return {name: run.channels[name] for name in READABLE if name in run.channels}
 
 

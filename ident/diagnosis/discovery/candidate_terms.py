@@ -1,4 +1,4 @@
-"""What a model that ended above the noise offers to be added at its places."""
+"""The candidate terms for the places of a model whose residual is above the noise."""
 
 from __future__ import annotations
 
@@ -30,16 +30,16 @@ Array = NDArray[np.float64]
 _PLACES = {
     "e": "controller", "dq": "valve", "w": "spool", "Q": "flow", "R": "load", "y_fb": "sensor", "y": "sensor",
 }  # fmt: skip
-_READ, _LOOP = "y_fb", "y_in"  # what the transducer reads is another place than the record where a loop uses it
+_READ, _LOOP = "y_fb", "y_in"  # the transducer's signal is another place than the record where a loop uses it
 _SIGNALS = ("w", "Q", "P", "v", "x", "F")
 _VARIED = ("Kp", "mL", "k")  # conditions of a run
 
 
 @dataclass(frozen=True)
 class CandidateTerms:
-    """The candidates, best first, and how many terms were looked at; samples of the signals they are of, their units.
+    """The candidates, best first, the number of terms `looked_at`, samples of the signals in them, and their units.
 
-    Of the terms so many were `left_out`: what they add cannot be followed to the output, or is not finite there.
+    `left_out` counts the terms whose response of the output is not known or not finite.
     """
 
     candidates: tuple[TermCandidate, ...]
@@ -52,9 +52,9 @@ class CandidateTerms:
 def candidate_terms(
     models: CandidateModels, base: FittedModel, instead_of: Effect | None = None, curves: bool = False
 ) -> CandidateTerms:
-    """Of a model that was refitted to the runs that search; what could be there `instead_of` an effect that it has.
+    """The terms for a model that was refitted to the runs that search, or the terms `instead_of` one of its effects.
 
-    Terms, or free `curves`.
+    With `curves` the candidates are free curves.
     """
     numbers = [p.in_equations for p in instead_of.added] if instead_of else []
     return terms_of_runs(models, base.values, run_data(base, list(signals_of(models.preset)), numbers), curves)
@@ -63,14 +63,14 @@ def candidate_terms(
 def terms_of_runs(
     models: CandidateModels, values: Mapping[str, float], runs: Sequence[RunData], curves: bool = False
 ) -> CandidateTerms:
-    """The same of the records of a model with these `values`, by the equations' names."""
+    """The candidate terms on the records of a model with these `values`, by the equations' names."""
     preset = models.preset
     places, names = places_of(preset), _inside(preset)
     typical = {name: np.concatenate([record.signals[name] for record in runs]) for name in runs[0].signals}
     units = {name: quantity.unit for name, quantity in CONDITIONS.items()}
     units |= {**units_of(models.runs[0]), **preset.chain.units}
     shortest = min(run.duration for run in models.runs)
-    with np.errstate(all="ignore"):  # what is not finite is left out below
+    with np.errstate(all="ignore"):  # terms that are not finite are left out below
         varied = [name for name in _VARIED if np.ptp(typical[name]) > 0]
         names = _distinct(names, typical)
         there = _there(preset, places, names, typical)
@@ -96,14 +96,14 @@ def terms_of_runs(
 def places_of(preset: Preset) -> dict[str, str]:
     """The signals of a machine that a term may add to, each with its place.
 
-    No state is among them: an effect of one's own redefines signals alone, for what a state shows follows its rate.
+    No state is among them: an effect of a user redefines signals alone, because a state follows its rate.
     """
     signals = _signals(preset)
     return {at: place for at, place in _PLACES.items() if at in signals and (at != _READ or _LOOP in signals)}
 
 
 def signals_of(preset: Preset) -> tuple[str, ...]:
-    """The signals and states that terms are of or add to."""
+    """The signals and states that terms read or add to."""
     return tuple(dict.fromkeys((*_inside(preset), *places_of(preset), *(_signals(preset) & {OIL}))))
 
 
@@ -112,7 +112,7 @@ def _signals(preset: Preset) -> set[str]:
 
 
 def _inside(preset: Preset) -> list[str]:
-    """The signals and states that a term may be of."""
+    """The signals and states that a term may read."""
     named = _signals(preset) | {*preset.core.states}
     return [name for name in _SIGNALS if name in named]
 
@@ -120,7 +120,8 @@ def _inside(preset: Preset) -> list[str]:
 def _responses(
     models: CandidateModels, values: Mapping[str, float], signals: Sequence[str], runs: Sequence[RunData]
 ) -> dict[str, list[Response]]:
-    """The responses from each of these signals to the output of every run, but for those that no model gives."""
+    """The responses from each of these signals to the output of every run; signals without a linear model are
+    absent."""
     found = {}
     for at in signals:
         with suppress(Unusable):
@@ -133,7 +134,7 @@ def _responses(
 def _there(
     preset: Preset, places: Mapping[str, str], names: Sequence[str], typical: Mapping[str, Array]
 ) -> dict[str, list[str]]:
-    """The signals that terms which add to each signal may be of: of one that does not move there is none."""
+    """For each place the signals that terms there may read: a signal that does not move has none."""
     there = {}
     for at, place in places.items():
         if place == ALONE:
@@ -144,13 +145,14 @@ def _there(
 
 
 def _known_there(preset: Preset, place: str, at: str, name: str) -> bool:
-    """Whether a signal is known where a term adds to another: it does not follow from that one at once."""
+    """Whether a term that adds to the signal `at` may read another: it must not follow from `at` at the same
+    instant."""
     probe = Effect("probe", place, "", Parameter("s", "s", "1", -1.0, 1.0, 0.0, ""), (f"{at} = {at} + s * {name}",))
     return preset.takes(probe)
 
 
 def _distinct(names: Sequence[str], typical: Mapping[str, Array]) -> list[str]:
-    """The signals that move, without those that are another one in other units."""
+    """The signals that move, without duplicates in other units."""
     kept: list[str] = []
     for name in names:
         x = typical[name]

@@ -1,4 +1,4 @@
-"""Against which signal a proposed term shows itself: that which tells most of it, beyond what parameters explain."""
+"""The signal against which a proposed term is drawn: it shows the largest share that no parameter explains."""
 
 from __future__ import annotations
 
@@ -16,8 +16,8 @@ Array = NDArray[np.float64]
 def characteristic_view(term: Term, preset: Preset, typical: Signals) -> str:
     """The name of a view, see :func:`ident.residuals.views.view_called`; "" where no curve shows the term.
 
-    `typical` are samples of the signals. A straight line against a signal, or a constant share of it, is what
-    parameters explain.
+    `typical` are samples of the signals. Parameters explain a straight line against a signal, or a constant share of
+    it.
     """
     if term.worked_out is not None:
         return ""

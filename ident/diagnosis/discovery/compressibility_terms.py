@@ -1,6 +1,6 @@
-"""Terms of the oil's compressibility: what makes it softer, or stiffer, with pressure, place and direction.
+"""Terms of the oil's compressibility: softer or stiffer oil by pressure, place and direction.
 
-With Ke P' = Q − L − A v a small change Ke φ of the compressibility takes Ke φ P' off the flow: so much of it is seen.
+With Ke P' = Q − L − A v a small change Ke φ of the compressibility takes Ke φ P' off the flow, and shows by it.
 """
 
 from __future__ import annotations
@@ -17,12 +17,12 @@ from ident.equations.equation import Equation
 
 Array = NDArray[np.float64]
 OIL = "Ke"
-"""The signal that the compressibility is."""
+"""The signal of the compressibility."""
 _OF = (("P", "abs({a})", "size"), ("P", "{a}", "side"), ("x", "{a}", "side"), ("x", "abs({a})", "size"))
 
 
 def compressibility_terms(site: Site) -> Iterator[Term]:
-    """Terms that the compressibility may have beside its constant."""
+    """Terms that the compressibility may have in addition to its constant."""
     if OIL not in site.typical or "P" not in site.typical:
         return
     for a, text, kind in _OF:

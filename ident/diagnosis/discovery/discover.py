@@ -1,4 +1,4 @@
-"""Terms that no catalogue holds, in addition to the given model and, where that is not all, to the selected one."""
+"""Unlisted terms, in addition to the given model and, where effects were selected, to the selected one."""
 
 from __future__ import annotations
 
@@ -18,9 +18,9 @@ INCOMPLETE = DiscoveryResult(complete=False)
 
 
 def is_searched(selection: Selection, stages: Stages, budget: SearchBudget) -> bool:
-    """Whether terms are searched for: they are wanted, and something remains or they were asked for.
+    """Whether terms are searched for: the residual exceeds the noise, or the user asks for them.
 
-    Unasked they are not wanted where no more effects were than the few that were selected.
+    Without a request there is no search where a small limit on the number of effects ended the selection.
     """
     exhausted = budget.most >= CRITERIA.selection.usual or len(selection.added) < budget.most
     if not (exhausted if budget.propose is None else budget.propose):
@@ -30,7 +30,7 @@ def is_searched(selection: Selection, stages: Stages, budget: SearchBudget) -> b
 
 
 def discovered(models: CandidateModels, selection: Selection, stages: Stages, budget: SearchBudget) -> DiscoveryResult:
-    """The terms that were found, as far as there was time; `models` are those of all runs."""
+    """The terms that the search had found when its time was over; `models` are the models of all runs."""
     terms = stages.attempt(TERMS, lambda: terms_of(models, selection, budget), INCOMPLETE)
     if not terms.complete:
         stages.miss(TERMS)
@@ -38,10 +38,10 @@ def discovered(models: CandidateModels, selection: Selection, stages: Stages, bu
 
 
 def terms_of(models: CandidateModels, selection: Selection, budget: SearchBudget) -> DiscoveryResult:
-    """Terms in addition to the given model and, where that is not all, to the selected one.
+    """Terms in addition to the given model and, where effects were selected, to the selected one.
 
-    What was selected may stand for something else: with the term itself it is not needed. The terms of the first
-    search stay where there is no time for the second.
+    A selected effect may imitate a term, and is redundant with that term. The terms of the first search stay where
+    there is no time for the second.
     """
     alone = _search(selection, selection.base, budget)
     if not selection.added:

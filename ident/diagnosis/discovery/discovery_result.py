@@ -1,4 +1,4 @@
-"""What a search for missing terms came to."""
+"""The result of a search for missing terms."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from ident.words.message import message, said
 
 @dataclass(frozen=True, kw_only=True)
 class RejectedTerm:
-    """The best term that stayed below the bar, beside which effects, and the errors with it."""
+    """The best term below the bar, the effects that it is in addition to, and the errors with it."""
 
     equation: str
     log_likelihood_gain: float
@@ -23,7 +23,7 @@ class RejectedTerm:
     error: Errors
 
     def sentences(self, looked_at: int) -> str:
-        """In sentences."""
+        """The sentences that report it."""
         verify = self.error["verify"]
         term = {"equation": self.equation, "looked_at": looked_at}
         evidence = {"gain": self.log_likelihood_gain, "bar": self.bar}
@@ -40,10 +40,10 @@ class RejectedTerm:
 
 @dataclass(frozen=True, kw_only=True)
 class DiscoveryResult:
-    """What was found, one term on top of the other, the best that was refused, and how many were looked at.
+    """The proposed terms, each in addition to those before, the best rejected term, and the number `looked_at`.
 
-    `refit` is the model with all of it. So many terms were `left_out`, for no model can hold them or what they add is
-    not finite. Not `complete`, the time was over.
+    `refit` is the model with all proposed terms. `left_out` counts the terms that no model can have, or whose response
+    is not finite. `complete` is false where the time was over.
     """
 
     found: tuple[Proposal, ...] = ()
@@ -54,10 +54,10 @@ class DiscoveryResult:
     complete: bool = True
 
     def or_rejected(self, other: DiscoveryResult) -> DiscoveryResult:
-        """The same where something was found; else of the terms that two searches refused the one with the smaller
-        error.
+        """This result where it has terms; else with the rejected term of the smaller error, of this search and the
+        other.
 
-        Their nats count from different models.
+        The log-likelihood gains of the two are not comparable, because they count from different models.
         """
         if self.found or other.rejected is None:
             return self
@@ -67,7 +67,8 @@ class DiscoveryResult:
         return replace(self, rejected=best, looked_at=looked_at, left_out=left_out)
 
     def notes(self, asked: bool | None) -> Iterator[str]:
-        """What is said of a search that was stopped, left terms out, or ended below its bar; `asked`: it was wanted."""
+        """The notes on a search that was stopped, left terms out, or ended below its bar; `asked`: the user wanted
+        it."""
         if not self.complete:
             yield str(message("terms.stopped"))
         if self.left_out:
@@ -78,15 +79,15 @@ class DiscoveryResult:
             yield str(message("terms.noise"))
 
     def error_with_terms(self, before: float, what: str = "fit") -> float:
-        """The error with all of it on the fitted runs, or "held_out" from the fit in turn; `before` without."""
+        """The error with all proposed terms on the estimation data, or "held_out"; `before` where there are no
+        terms."""
         error = self.found[-1].error.get(what) if self.found else None
         return before if error is None else error
 
     def dispensable(self, named: Sequence[str]) -> tuple[str, ...]:
-        """Of what is `named` that which the model does as well without, beside the terms: it stood for them.
+        """The `named` effects that are redundant with the terms, because they imitated them.
 
-        Nothing, where the terms are a hypothesis, or stand in the place of all of it, or runs to verify speak against
-        them.
+        There are none where the terms are a hypothesis, or replace all effects, or validation data contradict them.
         """
         last = self.found[-1] if self.found else None
         doubted = any(one.hypothesis or one.contradicted for one in self.found)
@@ -95,7 +96,8 @@ class DiscoveryResult:
         return tuple(name for name in named if name not in last.beside)
 
     def instead(self, other: FittedModel, named: Sequence[str]) -> DiscoveryResult:
-        """The same, said to stand instead of what is `named`; where runs to verify speak for that `other`, so it is."""
+        """The terms in place of the `named` effects, and contradicted where validation data prefer the `other`
+        model."""
         if not self.found or self.refit is None:
             return self
         *terms, last = (replace(one, instead_of=tuple(named)) for one in self.found)

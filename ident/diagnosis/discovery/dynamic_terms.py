@@ -1,4 +1,4 @@
-"""Terms with a memory: lags, play, what swings or recovers, the integral of an error and its rate."""
+"""Terms with a memory: lags, play, resonance, recovery, the integral of an error and its rate."""
 
 from __future__ import annotations
 
@@ -18,11 +18,11 @@ Array = NDArray[np.float64]
 SLIP = "v / sqrt(v**2 + vs**2)"
 """Friction that slips near rest: below vs it grows with the speed."""
 _REMEMBERED = {("controller", "x"), ("flow", "P"), ("load", "v"), ("load", "x")}  # places of another signal's memory
-_ERROR = {"dr", "v_in"}  # what a loop knows the rate of its error by
+_ERROR = {"dr", "v_in"}  # the signals by which a loop knows the rate of its error
 
 
 def dynamic_terms(site: Site, place: str, at: str, a: str) -> Iterator[Term]:
-    """Terms that remember a signal `a` where they add to `at`."""
+    """Terms with a memory of a signal `a` that add to `at`."""
     if a == at or (place, a) in _REMEMBERED:
         yield from _late(site, place, at, a)
         yield from _play(site, place, at, a)
@@ -35,7 +35,7 @@ def dynamic_terms(site: Site, place: str, at: str, a: str) -> Iterator[Term]:
 
 
 def error_terms(site: Site, place: str, at: str) -> Iterator[Term]:
-    """What a controller may make of its error beside a gain: its integral and its rate."""
+    """The integral and the rate of the error, which a controller may use in addition to a gain."""
     if place != "controller" or not site.units.keys() >= _ERROR:
         return
 
@@ -88,7 +88,7 @@ def _slipping_late(site: Site, place: str, at: str, T: Shape) -> Iterator[Term]:
 
 
 def _after(site: Site, place: str, at: str) -> Iterator[Term]:
-    """A gain that hangs on how much there was before, as that of a supply which gives way under a flow."""
+    """A gain that depends on the past size of the signal, as the gain of a supply which gives way under a flow."""
     for share in CRITERIA.terms.recovering:
         T = Shape("T", share * site.seconds, "s")
 
@@ -133,7 +133,7 @@ def _yielding(site: Site, place: str, at: str) -> Iterator[Term]:
 
 
 def _resonant(site: Site, place: str, at: str, a: str) -> Iterator[Term]:
-    """A mass on a spring that a signal moves: its motion beside that."""
+    """A mass on a spring that a signal moves: its motion relative to the signal."""
     for share in CRITERIA.terms.resonances:
         w = share * site.band
         a1, a2 = Shape("a1", 2 * CRITERIA.terms.damping / w, "s"), Shape("a2", 1 / w**2, "s^2")
@@ -147,7 +147,7 @@ def _resonant(site: Site, place: str, at: str, a: str) -> Iterator[Term]:
 
 
 def _by(site: Site, place: str, at: str, a: str) -> tuple[str, Powers]:
-    """What multiplies a memory of a signal, as the loop's gain does where it is fed back, and its unit."""
+    """The factor of a memory of a signal, such as the loop's gain where it is fed back, and the unit of the product."""
     by = "Kp" if place == "controller" and a != at and "Kp" in site.typical else ""
     return by, site.unit((a, 1), *[(by, 1)] * bool(by))
 

@@ -1,12 +1,12 @@
-"""A free curve where no formula is known yet: what a place lacks against one signal, drawn through knots.
+"""A free curve where no formula is known yet: the missing term at a place against one signal, drawn through knots.
 
 A curve through k knots is k columns of the regression over terms: hats, 1 at their own knot and 0 at the others. With
 A and b their products with each other and with the residual, a place and a signal explain together
 
     bᵀ A⁺ b / |r|²
 
-of it, by the values A⁺ b at the knots. ``at + s h(a)`` adds a curve of a signal a, ``at + s b h(a)`` lets as much of a
-signal b come there as a says; of dry friction of the moving mass b is its direction.
+of it, by the values A⁺ b at the knots. ``at + s h(a)`` adds a curve of a signal a, ``at + s b h(a)`` adds a signal b
+with a gain that is a curve of a; for dry friction of the moving mass b is the sign of its speed.
 """
 
 from __future__ import annotations
@@ -29,14 +29,14 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class FreeCurve:
-    """The signal that a curve is of, its knots, and the term that it is drawn in."""
+    """The signal of a curve, its knots, and the term that has the curve."""
 
     of: str
     knots: tuple[float, ...]
     term: Term
 
     def hats(self) -> list[Term]:
-        """The curve's columns, one a knot."""
+        """The columns of the curve in the regression, one for each knot."""
         values = np.eye(len(self.knots))
         return [self.drawn(row) for row in values.tolist()]
 
@@ -64,7 +64,7 @@ def _all(library: TermLibrary) -> Iterator[FreeCurve]:
 
 
 def _multiplied(place: str, at: str, of: str, signals: Sequence[str]) -> Iterator[tuple[str, str]]:
-    """What a curve of a signal multiplies, and the term's text."""
+    """The signal that a curve multiplies, "" for none, and the term's text."""
     yield "", "h"
     if at != of and at in signals:
         yield at, f"{at} * h"
@@ -81,7 +81,7 @@ def _knots(x: Array) -> tuple[float, ...]:
 
 
 def offered(found: Regression, curves: Sequence[FreeCurve]) -> tuple[TermCandidate, ...]:
-    """The curves that explain most, no two of them alike; the hats of all of them are the terms of the regression."""
+    """The curves that explain most, no two of them alike; the terms of the regression are the hats of all curves."""
     ends = np.cumsum([len(curve.knots) for curve in curves])
     values = [_values(found, np.arange(end - len(curve.knots), end)) for curve, end in zip(curves, ends, strict=True)]
     gains = found.share(np.array([float(found.with_residual[at] @ value) for at, value in values]))
@@ -97,7 +97,7 @@ def offered(found: Regression, curves: Sequence[FreeCurve]) -> tuple[TermCandida
 
 
 def _values(found: Regression, at: NDArray[np.intp]) -> tuple[NDArray[np.intp], Array]:
-    """A curve's values at its knots, which explain most."""
+    """The indices of a curve's hats, and the values at its knots that explain most."""
     products = found.products[np.ix_(at, at)]
     return at, np.linalg.pinv(products, rcond=CRITERIA.discovery.curve_rank, hermitian=True) @ found.with_residual[at]
 
@@ -109,7 +109,7 @@ def _cosine(found: Regression, one: tuple[NDArray[np.intp], Array], other: tuple
 
 
 def _candidate(found: Regression, curve: FreeCurve, at: NDArray[np.intp], values: Array, share: float) -> TermCandidate:
-    """A curve that is 1 where its value is large and well seen: the strength is that value."""
+    """A curve that is 1 at the knot where its value explains most: the strength is that value."""
     held = int(np.argmax(values**2 * np.diag(found.products)[at]))
     strength = float(values[held])
     return TermCandidate((curve.drawn((values / strength).tolist(), held),), (1.0,), strength, share)

@@ -1,4 +1,4 @@
-"""What a term would mean in hydraulics."""
+"""The meaning of a term in hydraulics."""
 
 from __future__ import annotations
 
@@ -67,7 +67,7 @@ _KINDS = {
 
 
 def interpretation(terms: Sequence[Term]) -> str:
-    """In words; "" where the term has no known name."""
+    """The meaning in words; "" where the term has no known name."""
     places = {term.form for term in terms}
     if places == {("Q", "size", ("v",)), ("R", "turns with", ("P", "v"))}:
         return "the areas of the piston differ between the directions"

@@ -16,20 +16,20 @@ Errors = Mapping[str, float | None]
 
 @dataclass(frozen=True, kw_only=True)
 class Proposal:
-    """A term that helps beyond the bar: where it acts, its equation, the effect of its own that it is.
+    """A term whose gain exceeds the bar: its place, its equation, and its definition as an effect.
 
-    `terms` counts the terms that were added up to this one, `shapes` the numbers within it that were fitted. `nats` are
-    those of runs that neither the search nor the choice saw, `bar` what they had to exceed. `alike`, in the JSON
-    ``class``, are the forms that the data cannot tell from it; `beside` the effects of the model that it was added to,
-    `instead_of` those that the catalogue had named and that are not in it.
-    `parameters` are those of the model with it, by name, and `view` is where its characteristic shows (see
-    :func:`ident.residuals.views.view_called`); "" where that is no function of one signal.
+    `terms` counts the terms that were added up to this one, `shapes` the numbers within it that were fitted. `nats` is
+    the gain on runs that neither the search nor the choice saw, `bar` the least gain. `alike`, in the JSON ``class``,
+    are the forms that the data cannot distinguish from it; `beside` the effects of the model that it was added to,
+    `instead_of` the named effects of the catalogue that the model does not have. `parameters` are the parameters of the
+    model with the term, by name, and `view` is the view that shows its characteristic (see
+    :func:`ident.residuals.views.view_called`); "" where the term is no function of one signal.
 
-    A `free_curve` is one: h in its equation is drawn through knots of its effect's curve, and no formula is known.
+    With `free_curve` h in its equation is drawn through the knots of its effect's curve, and no formula is known.
 
-    Of a `hypothesis` there were too few runs to confirm it on others. `contradicted`: the error on runs to verify rises
-    with it, or is above that of what it stands instead of. `unstable` has by use the runs on which the model is
-    unstable with it.
+    A `hypothesis` could not be confirmed on other runs, because there were too few. `contradicted`: the error on
+    validation data rises with the term, or is above the error with the effects that it replaces. `unstable` has by use
+    the runs on which the model is unstable with it.
     """
 
     place: tuple[str, ...]
@@ -60,7 +60,7 @@ class Proposal:
         return ErrorOf(self.error.get(use), unstable=self.unstable.get(use, ()))
 
     def to_json(self) -> dict[str, Any]:
-        """As plain JSON data, in the contract's words."""
+        """The proposal as plain JSON data, in the contract's words."""
         return {"class" if name == "alike" else name: entry for name, entry in written(self).items()}
 
 

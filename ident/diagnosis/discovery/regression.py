@@ -1,16 +1,16 @@
-"""One linear regression for all terms: which of them, beside the parameters, explain the residual.
+"""One linear regression for all terms: the part of the residual that each explains in addition to the parameters.
 
-A small term φ at a place changes the output by the response of the linearised chain to it, T * φ. With J what
-parameters and first states do and r the residual,
+A small term φ at a place changes the output by the response of the linearised chain to it, T * φ. With J the
+sensitivities to parameters and initial states and r the residual,
 
     r = Σ θ_i T * φ_i + J δ + noise
 
 within the command's band, each run over the size of its residual. Only the sums of products of [T * φ, J, r] are kept,
-summed run by run; J is taken off by its Schur complement.
+summed run by run; J is eliminated by its Schur complement.
 
-Terms of one form that differ by where their shapes begin, as the frequencies of a pulsation, come to the same in a
-refit. There are thousands of them on a long record: each is set beside the residual alone, and only the one that leads
-its form beside all others.
+Terms of one form that differ by the first values of their shapes, as the frequencies of a pulsation, come to one
+optimum in a refit. There are thousands of them on a long record: each is correlated with the residual alone, and only
+the best one of each form with all other terms.
 """
 
 from __future__ import annotations
@@ -36,10 +36,10 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Regression:
-    """Products (m, m) of the terms less what the parameters do, with the residual, (m,); `left` is its power.
+    """Products (m, m) of the terms without the parameters' part, and with the residual, (m,), whose power is `left`.
 
-    Of each form with shapes the leading one of the `looked_at` terms is there. A term whose answer is finite in no run
-    is `left_out` of those.
+    Each form with shapes has its best one of the `looked_at` terms here. `left_out` counts the terms whose response is
+    finite in no run.
     """
 
     terms: tuple[Term, ...]
@@ -55,11 +55,12 @@ class Regression:
         return _gains(np.diag(self.products), self.with_residual, self.left)
 
     def share(self, taken: Array) -> Array:
-        """What part of the residual's power is `taken`: none where there is no residual."""
+        """The share of the residual's power that is `taken`; 0 where there is no residual."""
         return _share(taken, self.left)
 
     def classes(self) -> list[list[int]]:
-        """Terms by what they explain, best first; those of a class, in the list's order, cannot be told apart."""
+        """Classes of terms that the data cannot tell apart, the best class first; a class is in the order of the
+        terms."""
         size, gains = np.sqrt(np.maximum(np.diag(self.products), TINY)), np.round(self.gains, CRITERIA.discovery.digits)
         rest = np.argsort(-gains, kind="stable")
         rest = rest[gains[rest] > 0]
@@ -98,9 +99,9 @@ def regression(
 def _leading(
     terms: Sequence[Term], beside: Sequence[Regressors], paths: Mapping[str, Sequence[Response]], known: Array
 ) -> tuple[list[Term], int]:
-    """The terms without shapes that a refit moves, and of each form with such the one that takes off most by itself.
+    """The terms without free shapes, and the best single term of each form with free shapes.
 
-    And how many of those with shapes are finite in no run.
+    The second value is the number of terms with free shapes that are finite in no run.
     """
     shaped = [i for i, term in enumerate(terms) if term.free_shapes]
     candidates = [terms[i] for i in shaped]
@@ -117,9 +118,9 @@ def _leading(
 def _alone(
     terms: Sequence[Term], beside: Sequence[Regressors], paths: Mapping[str, Sequence[Response]], known: Array
 ) -> tuple[Array, NDArray[np.bool_]]:
-    """The share of the residual's power that each of many terms takes off by itself: no products of two of them.
+    """The share of the residual's power that each of many terms takes off by itself, without products of two terms.
 
-    And which of them are finite in any run.
+    The second value says of each term whether it is finite in any run.
     """
     cross, power = np.zeros((len(known), len(terms))), np.zeros(len(terms))
     finite = np.zeros(len(terms), dtype=bool)
@@ -143,7 +144,8 @@ def _alone(
 
 
 def _along(known: Array, cross: Array) -> Array:
-    """Columns along orthonormal directions of J, of its products with them, (p, m); `known` are those of [J, r]."""
+    """Columns along orthonormal directions of J, from J's products with them, (p, m); `known` are products of [J,
+    r]."""
     of = known[:-1, :-1]
     scale = np.sqrt(np.maximum(np.diag(of), TINY))
     strengths, directions = scipy.linalg.eigh(of / scale[:, None] / scale) if len(of) else (np.ones(0), of)
@@ -165,7 +167,7 @@ def _rows(
 ) -> Array:  # fmt: skip
     """[T * φ, J, r] of some runs, one below the other; a block of columns after the other.
 
-    `sound` (terms,) becomes true of those that are finite in one of these runs.
+    `sound` (terms,) becomes true for terms that are finite in one of these runs.
     """
     todo = [(run, here) for run in runs for here in blocks(terms)]
     answers = iter(

@@ -1,4 +1,4 @@
-"""The columns of a regression over terms: what each changes of a run's output, beside its parameters and residual."""
+"""The columns of a regression over terms: the response of a run's output to each, sensitivities and residual."""
 
 from __future__ import annotations
 
@@ -19,10 +19,10 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Regressors:
-    """One run as its columns see it: `known` is [J, r] within the `band`, (n, p+1), all over the residual's `size`.
+    """The columns of one run: `known` is [J, r] within the `band`, (n, p+1), all over the residual's `size`.
 
-    What is free in the run is taken off, and so it is of each column, by the orthonormal `basis`, (n, s). Every number
-    in it is finite: a column that is not is zero, and tells nothing of the run.
+    The nuisance parameters of the run are projected out of all columns by the orthonormal `basis`, (n, s). All numbers
+    are finite: a column that is not finite is set to zero, and has no part in the regression on this run.
     """
 
     record: RunData
@@ -33,7 +33,7 @@ class Regressors:
 
     @classmethod
     def of(cls, record: RunData, band: float) -> Regressors:
-        """Those of a run; `band` in rad/s."""
+        """The columns of a run; `band` in rad/s."""
         known, _ = _within(np.column_stack([record.sensitivities, record.residual]), record, band)
         basis = np.empty((len(known), 0))
         if record.free.shape[1]:
@@ -47,9 +47,9 @@ class Regressors:
         return cls(record, band, known / size, basis, size)
 
     def to(self, terms: Sequence[Term], path: Response) -> tuple[Array, NDArray[np.bool_]]:
-        """T * φ of terms that add to one signal, (n, terms), and which of them are finite, (terms,).
+        """T * φ of terms that add to one signal, (n, terms), and whether each is finite, (terms,).
 
-        `path` leads from there to the output. Where small signals are not stable an answer grows without end.
+        `path` is the response from that signal to the output. Where the linear model is unstable a response diverges.
         """
         step = CRITERIA.discovery.columns_at_once
         parts = [self._answers(terms[k : k + step], path) for k in range(0, len(terms), step)]
@@ -57,7 +57,7 @@ class Regressors:
         return np.asarray((found - self.basis @ (self.basis.T @ found)) / self.size), sound
 
     def _answers(self, terms: Sequence[Term], path: Response) -> tuple[Array, NDArray[np.bool_]]:
-        """The same with what is free in the run, in the unit of the output."""
+        """T * φ before the nuisance parameters of the run are projected out, in the unit of the output."""
         samples = np.column_stack([term.samples(self.record.signals, self.record.rate) for term in terms])
         return _within(path.to(samples)[:, :, 0], self.record, self.band)
 
@@ -75,11 +75,12 @@ def blocks(terms: Sequence[Term]) -> list[list[int]]:
 
 
 def _within(rows: Array, record: RunData, band: float) -> tuple[Array, NDArray[np.bool_]]:
-    """Columns over time as what of them is seen, and which are finite: zero is what others are.
+    """The columns within the band or the windows, and whether each is finite: all others are zero.
 
-    Seen are the lines of their spectra in the band, or the windows that they begin.
+    They are the lines of their spectra in the band, or, with windows, the columns counted from where each window
+    begins.
     """
-    sound = np.max(np.abs(rows), axis=0, initial=0.0) < CRITERIA.discovery.diverged  # false of what is no number
+    sound = np.max(np.abs(rows), axis=0, initial=0.0) < CRITERIA.discovery.diverged  # false for NaN
     rows = np.where(sound, rows, 0.0)
     if record.anchoring.window:
         return record.anchoring(rows), sound

@@ -1,4 +1,4 @@
-"""Each run as a search for terms needs it: what the parameters explain, the residual, the signals inside the model."""
+"""The data of each run for a search for terms: sensitivities, residual, signals inside the model."""
 
 from __future__ import annotations
 
@@ -30,10 +30,10 @@ Array = NDArray[np.float64]
 class RunData:
     """One run on the coarse clock of `rate` Hz.
 
-    Sensitivities to the parameters (n, p), what is `free` in the run (n, s), the residual (n,), all counted from where
-    each window of the `anchoring` begins, where there are such.
+    Sensitivities to the parameters (n, p) and to the nuisance parameters of the run, `free` (n, s), and the residual
+    (n,), all counted from the beginning of each window of the `anchoring`, where it has windows.
 
-    `signals` are those inside the model, the conditions of the run, what was recorded beside it and the time, by name,
+    `signals` are the signals inside the model, the conditions of the run, its auxiliary channels and the time, by name,
     (n,).
     """
 
@@ -49,8 +49,8 @@ class RunData:
 def run_data(refit: FittedModel, names: Sequence[str], instead_of: Sequence[str] = ()) -> tuple[RunData, ...]:
     """The runs that a refit was made for, with the signals of these names.
 
-    Where what takes the place of a term is sought, `instead_of` are its strength and its shapes in the equations'
-    names: they are no parameters then, and what its strength explains is a part of the residual again.
+    Where the search replaces a term, `instead_of` are its strength and its shapes in the equations' names: they are no
+    parameters then, and the residual is that without the term.
     """
     fitness, point = refit.fitness, refit.point
     windows = [fitness.anchoring(run).window for run in fitness.runs]
@@ -83,9 +83,9 @@ def run_data(refit: FittedModel, names: Sequence[str], instead_of: Sequence[str]
 def signal_paths(
     preset: Preset, values: Mapping[str, float], actuator: Actuator, at: str, runs: Sequence[RunData]
 ) -> list[Response] | None:
-    """For each record the linear response from what is added to the signal `at` to the output.
+    """For each record the linear response of the output to an addition to the signal `at`.
 
-    None where the slopes of the model are not finite on a record. Raises Unusable where no model gives them.
+    None where the linear model is not finite on a record. Raises Unusable where there is no linear model.
     """
     broken = injected(preset.core, at)
     found: dict[object, Response] = {}
@@ -99,6 +99,6 @@ def signal_paths(
 
 
 def _linear_model_key(record: RunData) -> object:
-    """What records have in common that have one linear model."""
+    """The properties that determine the linear model of a record."""
     run = record.run
     return run.specimen, run.gain, run.output, record.rate

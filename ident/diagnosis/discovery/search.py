@@ -1,9 +1,9 @@
-"""The search for what no list holds, one term after the other.
+"""The search for unlisted terms, one after the other.
 
-Three disjoint sets of the fitted runs: terms are ranked on the first, by one linear regression, and refitted to it;
-the second chooses between the refits; the third confirms. What passes the bar is refitted to all fitted runs, and the
-next term sought beside it. Of few runs all serve for all three, with stretches of them and whole runs held out in turn,
-and what comes of it is a hypothesis. Runs to verify only report.
+Three disjoint sets of the fitted runs: terms are ranked on the first, by one linear regression, and refitted to it; the
+second chooses between the refits; the third confirms. A term that passes the bar is refitted to all fitted runs, and
+the next term is sought in addition to it. Where there are few runs, all serve for all three, with stretches of them and
+whole runs held out in turn, and the term is a hypothesis. Validation data only report.
 """
 
 from __future__ import annotations
@@ -55,9 +55,10 @@ _PREFIX = "proposed_"
 
 @dataclass
 class TermSearch:
-    """A search from a model that ended above the noise; `models` are those of all fitted runs.
+    """A search from a model whose residual is above the noise; `models` are the models of all fitted runs.
 
-    Effects that are `given` stay; others, as the terms before, are left out again where a later term does it all.
+    Effects that are `given` stay; other effects, and earlier terms, are taken out where a later term makes them
+    redundant.
     """
 
     models: CandidateModels
@@ -76,9 +77,9 @@ class TermSearch:
         self.beside = self.base.effects
 
     def run(self) -> DiscoveryResult:
-        """One term on top of the other until none passes the bar, or the noise is reached; then one free curve.
+        """Add one term after the other until none passes the bar, or the noise is reached; then one free curve.
 
-        Of few runs, where nothing could confirm it, only where it was asked for: it takes longer than all terms.
+        With few runs, which cannot confirm it, a free curve is sought only on request: it takes longer than all terms.
         """
         begun = TermSearch(self.models, self.base, self.report, self.given)
         with suppress(TimeIsUp):
@@ -93,7 +94,7 @@ class TermSearch:
         )  # fmt: skip
 
     def _drawn(self, begun: TermSearch) -> None:
-        """One free curve, with the terms; or in the place of all of them, where the residual is no larger then."""
+        """Add one free curve to the terms; or put it in the place of all terms, where the error is then no larger."""
         terms = self.found
         self._added(curves=True)
         begun.looked_at, begun.left_out = self.looked_at, self.left_out
@@ -142,12 +143,12 @@ class TermSearch:
         return True
 
     def _count(self, seen: CandidateTerms) -> None:
-        """Count what was looked at, and what of it was left out."""
+        """Add up the numbers of terms that were tried and left out."""
         self.looked_at += seen.looked_at
         self.left_out += seen.left_out
 
     def _reject(self, own: Mapping[str, Any], refit: FittedModel, gained: float, bar: float) -> None:
-        """Keep what stayed below the bar, where it is the best of that."""
+        """Record a term below the bar, where it is the best of those."""
         if self.rejected is None or gained > self.rejected.log_likelihood_gain:
             terms = {one["name"] for one in self.models.given.custom}
             beside = tuple(name for name in self.base.effects if name not in terms and name not in self.given)
@@ -158,10 +159,10 @@ class TermSearch:
     def _all_tried(
         self, searching: CandidateModels, base: FittedModel, name: str, seen: CandidateTerms, curves: bool
     ) -> list[RefittedTerm]:
-        """The refits with the candidates that come first after a rough one.
+        """The refits with the best candidates of rough refits.
 
-        A strong term moves the signals that terms are of. So where the residual of the best exceeds the noise, the
-        terms in its place are sought once more, with the signals of the model that has it.
+        A strong term moves the signals that terms read. So where the residual of the best exceeds the noise, the terms
+        in its place are sought once more, with the signals of the model that has it.
         """
 
         def refits(candidates: Sequence[TermCandidate], least: float = np.inf) -> list[RefittedTerm]:
@@ -190,7 +191,7 @@ class TermSearch:
         return _followed(each(lambda one: _gone_on(one, on), close))
 
     def _prune(self, latest: str) -> None:
-        """Leave out what the model does as well without since the latest term."""
+        """Take out the effects and terms that are redundant since the latest term."""
         for name in self.base.effects:
             if name in (latest, *self.given):
                 continue
@@ -210,7 +211,7 @@ class TermSearch:
         return values
 
     def _contradiction(self, name: str, before: FittedModel) -> Contradiction | None:
-        """Whether runs to verify speak against the latest term."""
+        """The contradiction of the latest term by validation data, None where there is none."""
         return contradiction(verified_change(name, before, self.base))
 
     def _proposal(
@@ -242,7 +243,7 @@ class TermSearch:
         )
 
     def _restated(self, proposal: Proposal) -> Proposal:
-        """The same with the definition as the last refit left it: later terms move the shapes of earlier ones."""
+        """The proposal with the values of the last refit: later terms move the shapes of earlier ones."""
         name = str(proposal.effect["name"])
         if name not in self.base.effects:  # the time was over while it was weighed
             return proposal
@@ -262,12 +263,12 @@ def _built(
     bounds = {**searching.given.bounds, **searched_bounds(own, candidate.terms)}
     given = replace(searching.given, custom=(*searching.given.custom, own), bounds=bounds)
     family = searching.with_effects({**searching.effects, name: effect}, given)
-    # It may close a circle of signals with what was found before.
+    # It may close a circle of signals with the earlier terms.
     return (candidate, family) if family.fit_together((*base.effects, name)) else None
 
 
 def _tried(base: FittedModel, name: str, candidate: TermCandidate, family: CandidateModels) -> RefittedTerm | None:
-    """First steps with a candidate on the runs that search; None where it leads nowhere."""
+    """First steps with a candidate on the runs that search; None where the model is not stable."""
     start = {**base.values, family.strength(name): candidate.strength}
     start |= {p.in_equations: p.value for p in family.effects[name].added[1:]}
     refit = family.refit((*base.effects, name), start, way=CRITERIA.estimation.screen)
@@ -279,7 +280,7 @@ def _held_out(search: TermSearch) -> float:
 
 
 def _ahead(begun: Sequence[RefittedTerm], least: float) -> list[RefittedTerm]:
-    """Rough refits, given up where they cannot come near what was `least` before, or is ahead after the first steps."""
+    """Rough refits that end where they cannot come near the `least` error before, or the least of the first steps."""
     on = replace(
         CRITERIA.estimation.trial,
         aim=CRITERIA.discovery.close * min([least, *(refit.local.error for _, refit, _ in begun)]),
@@ -288,20 +289,21 @@ def _ahead(begun: Sequence[RefittedTerm], least: float) -> list[RefittedTerm]:
 
 
 def _followed(tried: Sequence[RefittedTerm]) -> list[RefittedTerm]:
-    """Those that a simulation follows: asked side by side."""
+    """The refits that a simulation confirms, simulated in parallel."""
     return [one for one, finite in zip(tried, each(lambda one: one[1].finite, tried), strict=True) if finite]
 
 
 def _gone_on(tried: RefittedTerm, way: Way) -> RefittedTerm:
-    """A refit that is gone on with."""
+    """A refit that is continued."""
     candidate, refit, family = tried
     return candidate, family.continued(refit, way), family
 
 
 def _chosen(base: FittedModel, tried: Sequence[RefittedTerm], runs: Sequence[Run]) -> RefittedTerm:
-    """The simplest of those with as small an error on some runs, or on held-out data where there are none.
+    """The simplest refit of those with about the least error on some runs, or on held-out data where there are none.
 
-    Where all of them gain little over the base one that is as good to within some per cent may gain nothing.
+    Where all refits gain little over the base, a term that is as good within some per cent may gain nothing: a second
+    bound is a share of the gain.
     """
     before, *errors = each(
         lambda one: _error(one, runs) if runs else one.held_out.error, [base, *(refit for _, refit, _ in tried)]
@@ -315,7 +317,8 @@ def _chosen(base: FittedModel, tried: Sequence[RefittedTerm], runs: Sequence[Run
 
 
 def _parts(runs: Sequence[Run]) -> tuple[tuple[Run, ...], tuple[Run, ...], tuple[Run, ...]]:
-    """The runs that search, that choose, and that confirm: each with runs of all conditions. Of too few all do all.
+    """The runs that search, choose and confirm, each part with runs of all conditions; too few runs serve for all
+    three.
 
     The outputs of one record stay together.
     """
@@ -343,12 +346,12 @@ def _parts(runs: Sequence[Run]) -> tuple[tuple[Run, ...], tuple[Run, ...], tuple
 
 
 def _few(runs: Sequence[Run]) -> bool:
-    """Whether there are fewer records than search, choose and confirm."""
+    """Whether there are too few records for separate parts that search, choose and confirm."""
     return len({run.record or run.id for run in runs}) < CRITERIA.discovery.fewest_runs
 
 
 def _error(refit: FittedModel, runs: Sequence[Run]) -> float:
-    """Eq. (17) of runs that a refit was not made for."""
+    """The error of eq. (17) on runs that a refit was not made for."""
     found = refit.fitness.fresh(tuple(runs)).exact(refit.point, sensitivities=False).runs
     return float(over_runs([run.error for run in found], runs))
 

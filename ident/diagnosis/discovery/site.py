@@ -1,4 +1,4 @@
-"""What a term can be made of at the places of a chain: signals with their units, samples, conditions, channels."""
+"""The places of a chain, and the signals that terms there may read: units, samples, conditions, channels."""
 
 from __future__ import annotations
 
@@ -13,11 +13,11 @@ from ident.units.grammar import Powers, powers_of
 
 @dataclass(frozen=True)
 class Site:
-    """The places of a chain where a term may be missing: `places` maps a signal that is added to to its place.
+    """The places of a chain where a term may be missing: `places` has the place of each signal that a term may add to.
 
-    `signals` are by it those that terms there may be of, `typical` all their samples, `units` as the chain has them;
-    `band` is the end of the command's, rad/s, `seconds` the length of the shortest run, `varied` the conditions that
-    differ, `recorded` the channels beside the machine.
+    `signals` has for each such signal the signals that its terms may read, `typical` all samples, `units` the chain's
+    units; `band` is the end of the command's band in rad/s, `seconds` the length of the shortest run, `varied` the
+    conditions that differ, `recorded` the auxiliary channels.
     """
 
     places: Mapping[str, str]
@@ -30,11 +30,11 @@ class Site:
     recorded: Sequence[str] = ()
 
     def slow(self, share: float) -> Shape:
-        """A speed that is slow: below it is the machine in that share of the samples."""
+        """A slow speed: the machine is below it in that share of the samples."""
         return Shape("vs", float(np.quantile(np.abs(self.typical["v"]), share)), self.units["v"])
 
     def unit(self, *of: tuple[str, int]) -> Powers:
-        """That of a product of powers of signals."""
+        """The unit of a product of powers of signals."""
         found: Powers = {}
         for name, power in of:
             found = multiplied(found, powers_of(self.units[name]) or {}, power)

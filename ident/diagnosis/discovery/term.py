@@ -16,18 +16,18 @@ from ident.units.grammar import Powers, powers_of
 Array = NDArray[np.float64]
 Signals = Mapping[str, Array]
 CURVE = "h"
-"""What a free curve is called in a term."""
+"""The symbol of a free curve in a term."""
 STATE = "z"
-"""What a state of its own is called in a term."""
+"""The symbol of a term's own state."""
 LIMIT = "Ff"
-"""The signal that says what dry friction takes at most, of machines whose load sticks."""
+"""The signal of the largest dry friction, in machines whose load sticks."""
 
 
 @dataclass(frozen=True)
 class Shape:
-    """A number within a term: its symbol, its value where the search saw it, its unit, and whether a refit moves it.
+    """A number within a term: its symbol, its value in the search, its unit, and whether a refit moves it.
 
-    Within its bounds where they are given, else by the factor `spread` to either side.
+    A refit moves it within its bounds where they are given, else by the factor `spread` to either side.
     """
 
     symbol: str
@@ -40,16 +40,16 @@ class Shape:
 
     @property
     def bounds(self) -> tuple[float, float]:
-        """Between what a refit moves it."""
+        """The bounds within which a refit moves it."""
         low, high = sorted((self.value / self.spread, self.value * self.spread))
         return low if self.lower is None else self.lower, high if self.upper is None else self.upper
 
 
 @dataclass(frozen=True)
 class Curve:
-    """A curve of a signal through knots, h in a term: its values there where the search saw them.
+    """A curve h of a signal through knots in a term, with its values at the knots in the search.
 
-    That at the knot `held` is 1 and stays, for the strength is its size; a refit moves the others.
+    The value at the knot `held` is fixed at 1, because the strength is its size; a refit moves the other values.
     """
 
     of: str
@@ -58,20 +58,20 @@ class Curve:
     held: int = 0
 
     def samples(self, signals: Signals) -> Array:
-        """Between the knots straight, and beyond them."""
+        """Linear interpolation between the knots, and linear extrapolation beyond them."""
         table = np.ravel(np.column_stack([self.knots, self.values])).tolist()
         return np.asarray(interpolated("lines", signals[self.of], *table))
 
 
 @dataclass(frozen=True)
 class Term:
-    """A term at a place: `at` is the signal that it adds to, `text` its equation, `unit` that of the term.
+    """A term at a place: `at` is the signal that it adds to, `text` its equation, `unit` its unit.
 
-    `kind` names its form and `of` the signals that it is of; `memory` are equations of its own that go before, `state`
-    the rate of a state z of its own. How large it is hangs on how fast its signals move where it is `in_time`.
-    `worked_out` gives its samples where the equation alone does not: `through` another signal than `at`, where that is
-    not multiplied and a small change does as much to it. Of dry friction of the moving mass `limit` is what
-    it takes at most: such a term sticks. Of a `curve` the equation has h.
+    `kind` names its form and `of` the signals that it reads; `memory` are equations of its own that come before it,
+    `state` is the rate of a state z of its own. With `in_time` its size depends on how fast its signals move.
+    `worked_out` gives its samples where the equation alone does not. They go `through` another signal than `at` where
+    `at` is multiplied and a small change of it acts as an addition to that signal. For dry friction of the moving mass
+    `limit` is its largest force: such a term sticks. With a `curve` the equation has h.
     """
 
     place: str
@@ -101,22 +101,22 @@ class Term:
 
     @property
     def path(self) -> str:
-        """The signal from where its samples go to the output."""
+        """The signal from which its samples go to the output."""
         return self.through or self.at
 
     @property
     def free_shapes(self) -> int:
-        """How many of its shapes a refit moves."""
+        """The number of its shapes that a refit moves."""
         return sum(shape.free for shape in self.shapes)
 
     @property
     def fitted(self) -> int:
-        """How many numbers within it a refit moves, those of a curve with them."""
+        """The number of its shapes and values of a curve that a refit moves."""
         return self.free_shapes + (len(self.curve.knots) - 1 if self.curve else 0)
 
     @property
     def form(self) -> tuple[str, str, tuple[str, ...]]:
-        """What terms have in common that differ by where their shapes begin alone."""
+        """The properties that are equal in terms that differ only by the first values of their shapes."""
         return self.at, self.kind, self.of
 
 

@@ -1,4 +1,4 @@
-"""What a regression over terms offers to be tried: single terms, and two places with one strength."""
+"""The candidates that a regression over terms offers for refits: single terms, and two places with one strength."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ _DRIVE = ("controller", "valve", "spool", "flow")  # one input of the machine: o
 
 @dataclass(frozen=True)
 class TermCandidate:
-    """Terms with one strength, a sign each, and what the regression makes of them; `alike` cannot be told from them."""
+    """Terms with one strength and a sign each, their result in the regression, and the terms `alike` to the data."""
 
     terms: tuple[Term, ...]
     signs: tuple[float, ...]
@@ -30,13 +30,14 @@ class TermCandidate:
 
     @property
     def equation(self) -> str:
-        """What is added where."""
+        """The equations that add the terms."""
         brakes = sticks(self.terms, self.strength)
         states = [state_line(term.state) for term in self.terms if term.state]
         return "; ".join([*states, *(added(t, sign, brakes) for t, sign in zip(self.terms, self.signs, strict=True))])
 
     def begins_as(self, other: TermCandidate) -> bool:
-        """Whether a refit of another one comes to the same: one equation, with its shapes at about the same places."""
+        """Whether a refit of another leads to the same optimum: one equation, with its shapes at about the same
+        values."""
         if self.equation != other.equation or self._knots != other._knots:
             return False
         both = zip(self._shapes, other._shapes, strict=True)
@@ -60,14 +61,14 @@ class TermCandidate:
 
     @property
     def simplicity(self) -> tuple[object, ...]:
-        """What of two that are as good comes first."""
+        """The order of candidates that are as good, the simplest first."""
         text = "".join(term.text for term in self.terms)
         shapes = sum(term.fitted for term in self.terms)
         return len(self.terms), shapes, not interpretation(self.terms), len(text), text
 
 
 def term_candidates(found: Regression, units: Mapping[str, str]) -> tuple[tuple[TermCandidate, ...], int]:
-    """The terms and pairs that promise most, and how many were looked at."""
+    """The terms and pairs with the largest predicted gain, and the number that was compared."""
     classes = found.classes()
     singles = [_single(found, group) for group in (*classes[: CRITERIA.discovery.classes], *_shaped(found, classes))]
     pairs, count = _pairs(found, units)
@@ -75,7 +76,7 @@ def term_candidates(found: Regression, units: Mapping[str, str]) -> tuple[tuple[
 
 
 def _shaped(found: Regression, classes: Sequence[Sequence[int]]) -> list[Sequence[int]]:
-    """Of every kind with shapes that is not yet among those tried, the best class: a refit moves its shapes."""
+    """The best class of every kind with shapes that is not tried yet: a refit moves its shapes."""
     seen = {found.terms[i].kind for group in classes[: CRITERIA.discovery.classes] for i in group}
     more: list[Sequence[int]] = []
     for group in classes[CRITERIA.discovery.classes :]:
@@ -103,7 +104,7 @@ def _single(found: Regression, group: Sequence[int]) -> TermCandidate:
 def _pairs(found: Regression, units: Mapping[str, str]) -> tuple[list[TermCandidate], int]:
     """Two places with one strength: terms whose strengths have one unit, one where the drive is and one elsewhere.
 
-    Those that promise most, no two of them alike, and how many there are.
+    The pairs with the largest predicted gain are returned, no two of them alike, and the number of all pairs.
     """
     power = np.diag(found.products)
     dimensions = np.unique([repr(_dimension(term, units)) for term in found.terms], return_inverse=True)[1]
@@ -139,6 +140,6 @@ def _pair(found: Regression, of: tuple[int, int], sign: float, strength: float, 
 
 
 def _dimension(term: Term, units: Mapping[str, str]) -> object:
-    """That of a term's strength."""
+    """The dimension of a term's strength."""
     unit = ratio(units[term.at], term.unit)
     return shape(known_powers(unit, term.text), term.text)

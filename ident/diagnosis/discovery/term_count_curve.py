@@ -1,4 +1,4 @@
-"""How many of the proposed terms to take: the error against their number."""
+"""The error against the number of proposed terms."""
 
 from __future__ import annotations
 
@@ -14,9 +14,9 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class TermCount:
-    """The first so many `terms`, with the `shapes` within them that were fitted, and the errors with all of these.
+    """The number of first `terms`, the number of `shapes` within them that were fitted, and the errors with them.
 
-    `latest` is the equation of the last of them; of none the effects of the catalogue that they are beside.
+    `latest` is the equation of the last of them; with no terms, the effects of the catalogue in the model.
     """
 
     terms: int
@@ -26,7 +26,7 @@ class TermCount:
 
 
 def term_count_curve(proposals: Sequence[Proposal], ladder: Sequence[Rung]) -> tuple[TermCount, ...]:
-    """From none of the terms to all; `ladder` is that of the diagnosis. () where nothing is proposed."""
+    """The errors from none of the terms to all; `ladder` is the diagnosis's. () where nothing is proposed."""
     if not proposals:
         return ()
     steps = ladder[:1] if proposals[0].instead_of else ladder  # terms in place of the catalogue's begin without those

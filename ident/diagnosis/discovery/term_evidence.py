@@ -1,11 +1,11 @@
-"""By how much a term makes runs more likely that it was not fitted to, whatever the colour of the noise.
+"""The log-likelihood gain of a term on runs that it was not fitted to, whatever the colour of the noise.
 
 With the periodograms of the residual before and after, averaged over m neighbouring frequencies within the band,
 
     nats = Σ m ln(S_before / S_after)
 
-which is the ratio of the likelihoods of Whittle (1953) where each residual is noise of its own smooth spectrum: what is
-coloured in both alike counts for nothing.
+which is the logarithm of the ratio of the likelihoods of Whittle (1953) where each residual is noise of its own smooth
+spectrum: a colour that both residuals have adds nothing.
 """
 
 from __future__ import annotations
@@ -32,12 +32,12 @@ class TermEvidence:
 
     @property
     def log_likelihood_gain(self) -> float:
-        """Of all runs."""
+        """The gain of all runs, in nats."""
         return float(self.gain_of_runs.sum())
 
     @property
     def consistent(self) -> bool:
-        """Whether the runs agree: their mean gain is beyond chance, and so it is without the one that gains most."""
+        """Whether the runs agree: their mean gain is beyond chance, also without the run that gains most."""
         rest = self._rest
         return bool(
             len(rest) < CRITERIA.discovery.few_runs
@@ -48,9 +48,10 @@ class TermEvidence:
         )
 
     def beyond(self, bar: float) -> bool:
-        """Whether other runs than the one that gains most gain as much as is asked for, and next to none loses.
+        """Whether the runs without the one that gains most gain more than the `bar`, and next to none loses.
 
-        So with what only some runs reach, as a stop at the end of a way: their mean gain is unsteady.
+        This admits an effect that only some runs reach, such as a stop at the end of a way: the mean gain is unsteady
+        there.
         """
         gained, lost = np.maximum(self.gain_of_runs, 0.0).sum(), np.maximum(-self.gain_of_runs, 0.0).sum()
         return bool(
@@ -61,21 +62,21 @@ class TermEvidence:
 
     @property
     def _rest(self) -> Array:
-        """The nats of the runs but the one that gains most."""
+        """The gains of the runs without the one that gains most, in nats."""
         return np.delete(self.gain_of_runs, int(np.argmax(self.gain_of_runs)))
 
     @property
     def worthwhile(self) -> bool:
-        """Whether the error falls by what is worth a term."""
+        """Whether the error falls by enough for a term."""
         return self.reduction > CRITERIA.discovery.worthwhile
 
 
 def term_evidence(
     runs: Sequence[Run], before: Sequence[Array], after: Sequence[Array], band: float, integrated: bool = False
 ) -> TermEvidence:
-    """Of the residuals (n,) of some runs; `band` in rad/s.
+    """The evidence by the residuals (n,) of some runs before and after; `band` in rad/s.
 
-    Of a machine that has `integrated` what disturbed it the likelihoods are those of noise on a level that wanders.
+    Where the machine has `integrated` its disturbances the likelihoods are those of noise on a random walk.
     """
 
     def gain(run: Run, one: Array, other: Array) -> float:

@@ -1,8 +1,8 @@
-"""What may be missing at a place: a term of the signals there, written as an equation and worked out on samples.
+"""The library of terms that may be missing at a place, written as equations and worked out on samples.
 
 Terms are drawn from forms: powers, roots, absolute values, signs, one-sided parts and thresholds of one signal;
-products of two; hills of the position; lags and play; what was recorded beside the machine. Each becomes an effect of
-its own, ``at = at + s term``, whose strength s has the unit of the signal that it acts on over that of the term.
+products of two; hills of the position; lags and play; auxiliary channels. Each becomes an effect of its own, ``at = at
++ s term``, whose strength s has the unit of the signal that it acts on over the unit of the term.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from ident.diagnosis.discovery.term import LIMIT, Shape, Term, multiplied
 from ident.units.grammar import powers_of
 
 ALONE = "valve"
-"""A place whose own signal alone terms are of."""
+"""A place whose terms read its own signal alone."""
 
 
 @dataclass(frozen=True)
@@ -85,7 +85,7 @@ class TermLibrary(Site):
                 yield self._dragging(Term(place, at, text.format(a=a, b=b), kind, (a, b), unit), b, taken)
 
     def _of_speed(self, place: str, at: str) -> Iterator[Term]:
-        """Dry friction that is more, or less, near rest than in motion."""
+        """Dry friction that is larger, or smaller, near rest than in motion."""
         if place != "load" or "v" not in self.signals[at]:
             return
         for share in CRITERIA.terms.slow:
@@ -97,7 +97,7 @@ class TermLibrary(Site):
         yield from self._slipping(place, at)
 
     def _slipping(self, place: str, at: str) -> Iterator[Term]:
-        """Friction that slips smoothly near rest, as a wet seal's, and what it grows with."""
+        """Friction that slips smoothly near rest, as that of a wet seal, alone and in proportion to each signal."""
         vs = self.slow(CRITERIA.terms.slipping)
         if vs.value > 0:
             yield Term(place, at, SLIP, "slip", ("v",), {}, (vs,))
@@ -149,15 +149,15 @@ class TermLibrary(Site):
                     yield self._dragging(rubbing, a, "exp(-t / T)")
 
     def _dragging(self, term: Term, along: str, limit: str) -> Term:
-        """A term that turns with the sign of `along`: dry friction where that is the speed of the moving mass."""
+        """A term that turns with the sign of `along`: dry friction where `along` is the speed of the moving mass."""
         if limit and (term.place, along) == ("load", "v") and LIMIT in self.units:
             return replace(term, limit=limit)
         return term
 
     def _periodic(self, place: str, at: str) -> Iterator[Term]:
-        """What comes and goes with time, each frequency of the band that the shortest run resolves.
+        """Periodic terms, one for each frequency of the band that the shortest run resolves.
 
-        Only what modulates: a sum with a wave of one phase in every run is what hum in the records looks like.
+        They only modulate: an added wave of one phase in every run would look like hum in the records.
         """
         if place not in ("flow", "spool") or (place == "spool" and "flow" in self.places.values()):
             return

@@ -16,7 +16,7 @@ STRENGTH = "s"
 
 
 def added(term: Term, sign: float, sticks: bool = False) -> str:
-    """The equation that adds a term, or takes it off; friction that sticks adds to what dry friction takes at most."""
+    """The equation that adds a term, or takes it off; friction that sticks adds to the largest dry friction."""
     at, text = (LIMIT, term.limit) if sticks else (term.at, term.text)
     return f"{at} = {at} {'+' if sign > 0 else '-'} {STRENGTH} * ({text})"
 
@@ -24,7 +24,7 @@ def added(term: Term, sign: float, sticks: bool = False) -> str:
 def sticks(terms: Sequence[Term], strength: float) -> bool:
     """Whether terms are dry friction, which brakes.
 
-    What drives where it should brake, as friction that is less than the model's does, is a force like any other.
+    A friction that is less than the model's drives the mass, and is a force like any other.
     """
     return len(terms) == 1 and bool(terms[0].limit) and strength > 0
 
@@ -39,7 +39,7 @@ def definition(
 ) -> dict[str, Any]:
     """The definition of an effect with one strength for one term or for several, each with its sign.
 
-    `strength` is about what it will be, `typical` are samples of the signals, `units` as the chain has them.
+    `strength` is its value in the regression, `typical` are samples of the signals, `units` are the chain's units.
     """
     first, brakes = terms[0], sticks(terms, strength)
     lines: list[str] = []
@@ -72,7 +72,7 @@ def definition(
 
 
 def searched_bounds(own: Mapping[str, Any], terms: Sequence[Term]) -> dict[str, tuple[float, float]]:
-    """What a refit moves beside the strength, by name, and within which bounds."""
+    """The bounds of the numbers that a refit moves in addition to the strength, by name."""
     free = [shape.symbol for term in terms for shape in term.shapes if shape.free]
     found = {f"{own['name']}.{symbol}": _bounds(own["shape"][symbol]) for symbol in free}
     for curve in (term.curve for term in terms if term.curve is not None):
@@ -82,12 +82,12 @@ def searched_bounds(own: Mapping[str, Any], terms: Sequence[Term]) -> dict[str, 
 
 
 def curves(own: Mapping[str, Any]) -> dict[str, str]:
-    """The signal of the curve that an effect has, by the curve's symbol."""
+    """The signal of an effect's curve, by the curve's symbol."""
     return {own["curve"]["symbol"]: own["curve"]["of"]} if "curve" in own else {}
 
 
 def equation_text(own: Mapping[str, Any]) -> str:
-    """The equations in words, the rate of a state of its own first: h of P is told as h(P)."""
+    """The equations as text, the rate of a state of its own first: a curve h of P is written h(P)."""
     text = "; ".join(lines_of(own))
     for symbol, of in curves(own).items():
         text = re.sub(rf"\b{symbol}\b", f"{symbol}({of})", text)
@@ -95,7 +95,7 @@ def equation_text(own: Mapping[str, Any]) -> str:
 
 
 def lines_of(own: Mapping[str, Any]) -> list[str]:
-    """Its equations, that of its own state among them."""
+    """The equations of an effect, first the equation of its own state."""
     return [*([state_line(own["state"]["rate"])] if "state" in own else []), *own["equation"]]
 
 
@@ -109,9 +109,9 @@ def _bounds(of: Mapping[str, Any]) -> tuple[float, float]:
 
 
 def as_fitted(own: Mapping[str, Any], effect: Effect, values: Mapping[str, float]) -> dict[str, Any]:
-    """The definition with its shapes as a refit found them, by the equations' names: added, they are held there.
+    """The definition with the fitted values of its shapes, by the equations' names: in an added effect they are fixed.
 
-    The strength that was found with them lies well within its bounds.
+    The bounds of the strength are widened until the fitted strength lies well within them.
     """
     far, of = CRITERIA.discovery.strength_far * abs(values[effect.added[0].in_equations]), own["strength"]
     found = {**own, "strength": {**of, "lower": min(of["lower"], -far) if of["lower"] else 0.0,
