@@ -25,20 +25,20 @@ GONE = {
 NAMES = {"known": 56, "here": 22, "told": 6, "one": 133, "rest": 19, "left": 17, "kept": 10, "late": 6}
 """Words that say nothing as a name, and how many names are still made of them: fewer from time to time, never more."""
 TEXTS = {
-    "beside": 14,
-    "tell": 23,
-    "tells": 5,
-    "told": 10,
+    "what": 33,
+    "beside": 7,
+    "tell": 8,
+    "tells": 0,
+    "told": 3,
     "alike": 6,
     "anew": 2,
-    "doubted": 7,
+    "doubted": 0,
     "leave": 0,
     "leaves": 0,
-    "left": 22,
+    "left": 19,
     "rest": 3,
-    "what": 202,
 }
-"""The same of words in docstrings."""
+"""How often each word still stands in a docstring: fewer from time to time, never more."""
 
 
 def names(tree: ast.AST) -> Iterator[str]:

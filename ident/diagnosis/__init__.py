@@ -1,1 +1,1 @@
-"""A fitted model and its runs in, what the model lacks out: predicted, refitted, judged on data that no fit saw."""
+"""From a fitted model and its runs to the missing effects: predicted, refitted, judged on held-out data."""

@@ -1,9 +1,9 @@
-"""What another structure explains as well: groups reach across the models that the channels allow.
+"""Explanations by another structure: groups reach across the models that the channels allow.
 
-Where the moving mass is negligible, K w = c v + F sgn v is the dead zone F/K of what drives it, whatever model it is
-told in. The other models that were compared are searched for one effect in the place of what was found; what the data
-cannot tell from it by the measure of a group is told, and what is better beyond chance: models were compared before
-anything was added, and one that lacks much may then look worse than it is.
+Where the moving mass is negligible, K w = c v + F sgn v is a dead zone F/K of the input, whatever model has it. The
+other models that were compared are searched for one effect in the place of the selected ones. Models that the data
+cannot distinguish from the selected one are reported, and models that are better beyond chance: the models were
+compared before effects were added, and a model that lacks much may then look worse than it is.
 """
 
 from __future__ import annotations
@@ -33,7 +33,8 @@ class AlternativeModel:
     values: Mapping[str, float]
 
     def explanations(self, found: FittedModel, without: frozenset[str], report: Report) -> Iterator[Explanation]:
-        """What explains as well as what was found over its windows: nothing or one effect, `without` doubted runs."""
+        """The models with no effect or one that explain as well as `found` over its windows, `without` doubtful
+        runs."""
         models = self.models.without(without).over_windows(found.fitness.horizon, found.fitness.memory)
         base = models.refit((), self.values)
         if not base.finite:
@@ -50,7 +51,7 @@ class AlternativeModel:
 
 
 def alternative_models(matrix: Matrix, fit: FitResult, custom: Iterable[Effect]) -> tuple[AlternativeModel, ...]:
-    """The models that were compared with the one of a fit, where it tells their values."""
+    """The models that were compared with the model of a fit, where the fit has their values."""
     found = []
     for one in fit.structures:
         if one.machine != fit.model and one.values:
@@ -67,7 +68,7 @@ def alternative_models(matrix: Matrix, fit: FitResult, custom: Iterable[Effect])
 def alternative_explanations(
     known: Iterable[AlternativeModel], selection: Selection, report_progress: Callable[[Progress], None]
 ) -> tuple[Explanation, ...]:
-    """What other models explain with one effect as well as the fitted one with what was added, or better."""
+    """The explanations by other models with one effect that are as good as the selected model, or better."""
     if not selection.added or selection.base.effects:
         return ()
     left_out = selection.models.left_out

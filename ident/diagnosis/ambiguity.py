@@ -1,4 +1,4 @@
-"""What challenges a selection: its noise, runs to verify, other effects, lags and machines that explain as well."""
+"""The challenges to a selection: noise, validation data, other effects, lags and machines that explain as well."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ def challenged(
     selection: Selection, steps: Rungs, suspects: Sequence[Suspect], stages: Stages, lag_pairs: Sequence[Names] = (),
     elsewhere: Sequence[Explanation] = (),
 ) -> Findings:  # fmt: skip
-    """What is found of a selection: its noise, its verify runs, its bounds; with what other stages found of it."""
+    """The findings on a selection: its residual, validation data and bounds, together with those of other stages."""
     models, fitted = selection.models, selection.fitted
     residual = in_time(lambda: models.residual(fitted))
     if residual is None:
@@ -50,7 +50,7 @@ def challenged(
 
 
 def _verify_changes(steps: Rungs) -> Iterator[VerifyChange]:
-    """How the error on verify runs changes with each effect of the ladder, but for rungs that no search stood on."""
+    """The change of the validation error with each effect of the ladder, between rungs that are stable."""
     stable = [(added, refit) for added, refit in steps if refit.stable]
     for (_, less), (added, more) in pairwise(stable):
         if added and (change := verified_change(added, less, more)):
@@ -60,7 +60,7 @@ def _verify_changes(steps: Rungs) -> Iterator[VerifyChange]:
 def other_machines(
     known: Sequence[AlternativeModel], selection: Selection, stages: Stages, budget: SearchBudget
 ) -> tuple[Explanation, ...]:
-    """What other machines explain as well, where there are others."""
+    """The explanations by other machines that are as good, where there are other machines."""
     if not known or not selection.added or selection.base.effects:
         return ()
     explained = partial(alternative_explanations, known, selection, budget.report_progress)
@@ -68,12 +68,12 @@ def other_machines(
 
 
 def delay_sentences(selection: Selection, stages: Stages, budget: SearchBudget) -> Sequence[str]:
-    """How late the machine answers, where the data do not tell by which lag or delay."""
+    """The sentence on the total delay, where the data do not determine which lag or delay causes it."""
     return stages.attempt(LAGS, lambda: _delay_sentences(selection, budget), ())
 
 
 def lag_pairs(selection: Selection, stages: Stages, budget: SearchBudget) -> Sequence[Names]:
-    """Lags and delays of which no two can be told from two others."""
+    """The groups of lags and delays in which no two can be distinguished from two others."""
 
     def pairs() -> Sequence[Names]:
         budget.report_progress(Progress(LAGS, 0, 1))
@@ -83,9 +83,10 @@ def lag_pairs(selection: Selection, stages: Stages, budget: SearchBudget) -> Seq
 
 
 def _delay_sentences(selection: Selection, budget: SearchBudget) -> Sequence[str]:
-    """The sentence on the total delay of the last model; else, where something remains, of the one before it.
+    """The sentence on the total delay of the last model; else, where its residual is above the noise, of an earlier
+    one.
 
-    An effect that makes the valve's lag another, as its stiction, holds this lag in its place.
+    An effect that changes the valve's lag, as its stiction, may fix this lag.
     """
     budget.report_progress(Progress(LAGS, 0, 1))
     models, steps = selection.models, [refit for _, refit in selection.ladder() if refit.stable][::-1]

@@ -1,4 +1,4 @@
-"""How far a diagnosis may go, and who hears of it on its way."""
+"""The limits of a diagnosis, and its reports of progress."""
 
 from __future__ import annotations
 
@@ -13,12 +13,12 @@ from ident.time_budget import TimeBudget
 
 @dataclass
 class SearchBudget:
-    """The course of one diagnosis.
+    """The limits of one diagnosis, and the functions that it reports to.
 
-    At most `most` effects are added; nothing is begun any more once the time `budget` is over. `report` hears of every
-    step of the work, `found` of the diagnosis as it stands after each effect and once the catalogue is through: what
-    was found is not lost with what was still to come. Terms that no list holds are searched for where the catalogue
-    does not explain the residual; with `propose` true also where nobody knows the noise, with false never.
+    At most `most` effects are added; no step begins once the time `budget` is over. `report` gets every step of the
+    work, `listener` gets the diagnosis so far after each effect and after the whole catalogue: these results stay where
+    a later step fails. Unlisted terms are searched for where the catalogue does not explain the residual; with
+    `propose` true also where the noise is not known, with false never.
     """
 
     most: int
@@ -39,7 +39,7 @@ class SearchBudget:
         return self.budget.taken
 
     def report_progress(self, progress: Progress) -> None:
-        """Report; the first sight of the fitted model, what was added and the verdict so far stay with what follows.
+        """Report a step, with the first predictions, the effects that were added and the verdict so far.
 
         Raises TimeIsUp once the time is over, or the report has said so.
         """
@@ -55,11 +55,11 @@ class SearchBudget:
         self.budget.check()
 
     def is_stopped_by(self, error: BaseException) -> bool:
-        """Whether it is what the caller raised to end the work."""
+        """Whether the caller raised this error to end the work."""
         return any(error is one for one in self._stopped_by)
 
     def publish(self, found: Diagnosis) -> None:
-        """Tell of the diagnosis as it stands."""
+        """Report the diagnosis so far."""
         if self.listener is None:
             return
         try:
@@ -71,6 +71,6 @@ class SearchBudget:
             raise
 
     def publish_verdict(self, found: Diagnosis) -> None:
-        """Tell of the catalogue's verdict, which stands whatever follows."""
+        """Report the verdict on the catalogue, which later stages do not change."""
         self._verdict = found.verdict.text
         self.publish(found)

@@ -1,4 +1,4 @@
-"""An effect as far as it came on trial, and the order of those that are on trial: what ties, and what is a group."""
+"""A candidate effect, the order of candidates, ties among them, and the groups that are indistinguishable."""
 
 from __future__ import annotations
 
@@ -24,11 +24,11 @@ from ident.diagnosis.tie_breaking import stable_ranking
 
 @dataclass(frozen=True)
 class Candidate:
-    """An effect, what it promises, its refit on all records where it came that far, and what speaks for it.
+    """An effect, its prediction, its trial and its refit on all records where they were made, and the evidence for it.
 
-    `improves` is whether adding it to the model without it is worth it. It `worsens_part` where it improves the model
-    on the whole, and worsens a condition of the tests, a half of the records, or the free run of what is fitted over
-    windows.
+    `improves` is whether it is worth adding to the model without it. It `worsens_part` where it improves the model on
+    the whole, and worsens a condition of the tests, a half of the records, or the free run of a model that is fitted
+    over windows.
     """
 
     prediction: Prediction
@@ -45,18 +45,18 @@ class Candidate:
 
     @property
     def stage(self) -> int:
-        """How far it came: 0 a finalist, 1 a trial, 2 a prediction."""
+        """The last stage that it reached: 0 a finalist, 1 a trial, 2 a prediction."""
         return 0 if self.refit is not None else 1 if self.trial is not None else 2
 
     @property
     def score(self) -> float:
-        """What it is sorted by among those that came as far: the held-out score, the trial's error, the prediction."""
+        """Its rank among candidates of its stage: the held-out score, the trial's error, the predicted score."""
         if self.refit is not None:
             return self.refit.held_out.score
         return self.trial.local.error if self.trial is not None else self.prediction.after.score
 
     def refitted(self, models: CandidateModels, base: FittedModel, refit: FittedModel) -> Candidate:
-        """The candidate with a refit on all records, and what speaks for it against the model without the effect."""
+        """The candidate with a refit on all records, and the evidence for it against the model without the effect."""
         if not base.finite:
             return replace(self, refit=refit, evidence=None, improves=True, worsens_part=False)
         found, criteria = evidence(base, refit), OF_SHOWN if models.is_shown(self.effect) else EVIDENCE_CRITERIA
@@ -66,9 +66,9 @@ class Candidate:
 
 
 def in_rank_order(models: CandidateModels, candidates: Iterable[Candidate]) -> list[Candidate]:
-    """Best first: by how far they came, then by their score; of those that tie the simplest, then as listed.
+    """The candidates, best first: by stage, then by score; the simplest first where they tie, then as listed.
 
-    Of these those last that another of them dominates.
+    Among candidates that tie, those that another of them dominates come last.
     """
     listed = sorted(candidates, key=lambda candidate: (candidate.stage, *models.simplicity(candidate.effect)))
     by_stage = groupby(listed, key=lambda candidate: candidate.stage)
@@ -80,13 +80,13 @@ def in_rank_order(models: CandidateModels, candidates: Iterable[Candidate]) -> l
 
 
 def _dominated_last(tied: Sequence[Candidate]) -> list[Candidate]:
-    """Candidates that tie in the order of their own, but those last that others of them dominate."""
+    """Candidates that tie, in their own order, but those that another of them dominates come last."""
     best = {one.effect for one in not_dominated(tied)}
     return sorted(tied, key=lambda one: one.effect not in best)
 
 
 def not_dominated(tied: Sequence[Candidate]) -> list[Candidate]:
-    """Those of candidates that none of the others dominates."""
+    """The candidates that no other dominates."""
     refits = [one.refit for one in tied if one.refit is not None]
     return [one for one in tied if one.refit is None or not any(dominated(one.refit, by) for by in refits)]
 
@@ -94,8 +94,8 @@ def not_dominated(tied: Sequence[Candidate]) -> list[Candidate]:
 def indistinguishable_group(name: str, here: FittedModel, ranking: Sequence[Candidate]) -> list[Candidate]:
     """The effect itself, and the candidates that are indistinguishable from it.
 
-    Instead of it or of the best, but for those that others of them dominate. What nothing replaced is in its group,
-    come what may.
+    A candidate is compared with the effect's model and with the best model, and is left out where another candidate
+    dominates it. The effect itself is in its group in any case.
     """
     refits = [c for c in ranking if c.refit is not None]
     best = min([here, *(c.refit for c in refits if c.refit)], key=lambda refit: refit.held_out.score)
@@ -106,7 +106,7 @@ def indistinguishable_group(name: str, here: FittedModel, ranking: Sequence[Cand
 def _ties(best: Candidate, other: Candidate) -> bool:
     """Whether two refits are indistinguishable, and the errors of both on the data of the fit are as large.
 
-    Errors on held-out data hang on where the fits without them ended, which in a flat valley rounding decides.
+    Errors on held-out data depend on where the fits without these data ended, which rounding decides in a flat valley.
     """
     if best.refit is None or other.refit is None:
         return False

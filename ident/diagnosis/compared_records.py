@@ -18,7 +18,7 @@ from ident.run import Run
 
 @dataclass(frozen=True, eq=False)
 class ComparedRecords:
-    """Some runs, and where the noise floors of theirs are told when they are needed."""
+    """Some runs, and a function that gives their noise floors when they are needed."""
 
     runs: tuple[Run, ...]
     floors: Callable[[], Floors]
@@ -37,13 +37,13 @@ def _record(run: Run, floor: float | None) -> Record:
 
 
 def _period(run: Run) -> float | None:
-    """The period of a periodic command, samples; None of others."""
+    """The period of a periodic command in samples; None for other commands."""
     frequency = fundamental(run.command, run.sample_rate) if "command" in run.channels else None
     return None if frequency is None else run.sample_rate / frequency
 
 
 def _condition(run: Run, period: float | None) -> Hashable:
-    """What tells tests apart and is the same in repetitions: what is stated, the size and the period of the command."""
+    """The condition of a test, equal in repetitions: its labels, its sample rate, size and period of the command."""
     sizes = (run.drive if "command" in run.channels else float(np.std(run.measured)), period)
     steps = tuple(
         round(CRITERIA.cross_validation.conditions_of_an_octave * float(np.log2(s))) if s else 0 for s in sizes

@@ -19,10 +19,11 @@ Values = Mapping[str, ParameterEstimate]
 
 
 def competing_models(found: Diagnosis, custom: Sequence[Effect] = ()) -> Rivals:
-    """What the verdict cannot tell apart, else what it settled on; where it settled on nothing, the best candidates.
+    """The models of an indistinguishable group, else the selected model; where no effect was named, the best
+    candidates.
 
-    `custom` are effects of one's own that the diagnosis does not define. Raises Unusable where it is of a bench, or
-    says too little to put its models together.
+    `custom` are users' effects that the diagnosis does not define. Raises Unusable where it is of a bench, or has too
+    few values to put its models together.
     """
     if found.model in PRESETS and PRESETS[found.model].kind == "bench":
         raise Unusable("no-experiment", "no run is proposed for the records of a bench", f"model {found.model}",
@@ -43,7 +44,7 @@ def _chosen(found: Diagnosis) -> list[Values]:
             return known[: CRITERIA.conclusion.competing]
     ladder = [rung.parameters for rung in found.ladder if rung.parameters]
     settled = bool(found.verdict.effects) or not found.verdict.unexplained
-    if settled and ladder:  # nothing is in question but how well the parameters are known
+    if settled and ladder:  # only the accuracy of the parameters is in question
         return ladder[-1:]
     return list(refitted.values())[: CRITERIA.conclusion.competing] or ladder[-1:]
 

@@ -1,7 +1,7 @@
-"""The residuals out of fold: those of a refit on data that it was not fitted to.
+"""The residuals out of fold: the residuals of a refit on data that it was not fitted to.
 
-Of four runs or more whole runs are left out in turn; of fewer stretches of each: eight of a single run, four of two or
-three. The parameters are fitted again without those of one fold, and the model that was found so is simulated there.
+With four runs or more whole runs are held out in turn; with fewer, stretches of each: eight of a single run, four of
+two or three. The parameters are fitted again without the data of one fold, and the refitted model is simulated there.
 From the optimum of all data one Gauss-Newton step leads to the optimum without a fold, exactly for a linear
 least-squares problem, so that sums of products of each block are all that a fit without a fold takes,
 
@@ -38,8 +38,8 @@ Simulate = Callable[[Sequence[Array], Sequence[int]], Iterable[Sequence[Array]]]
 class OutOfFold:
     """The residuals (n,) of each run out of fold, and the standard deviation of each run's output, (runs,).
 
-    `offsets` (runs,) are the means of the residuals over these deviations, less what the runs have in common: the zero
-    of the transducer. The residuals are less their means.
+    `offsets` (runs,) are the means of the residuals over these deviations, less their common mean: the zero of the
+    transducer. The residuals are less their means.
     """
 
     residuals: tuple[Array, ...]
@@ -71,12 +71,12 @@ class OutOfFold:
 
     @property
     def levels(self) -> Array:
-        """The offsets as far as they tell something: of two runs or one nothing is known beside the zero."""
+        """The offsets; zero for two runs or one, which determine no more than the common zero."""
         return self.offsets if len(self.offsets) > 2 else np.zeros(len(self.offsets))
 
 
 def weight_of_offsets(runs: int, samples: int) -> float:
-    """What the runs' offsets weigh beside their records: an observation each; two tell nothing beside the zero."""
+    """The weight of the runs' offsets relative to their records: one observation each, none for two runs or one."""
     return runs / samples if runs > 2 else 0.0
 
 
@@ -90,7 +90,7 @@ def out_of_fold(
 ) -> list[Array]:
     """The residuals (n,) of each run, each sample by a model that was fitted without its fold; means and all.
 
-    What is free in a record, its mean, is that of all of it.
+    The nuisance parameter of a record, its mean, is estimated from the whole record.
 
     `point` is the optimum of the unit cube, `here` the objective there; `seen` is what the objective sees of the
     residual of the run with a number. Where no model without a fold is better on the other folds than the optimum of
@@ -101,7 +101,7 @@ def out_of_fold(
     found, means = [np.full(length, np.nan) for length in lengths], np.zeros(len(lengths))
 
     def error(residuals: Sequence[Array], fold: int) -> float:
-        """That of the other folds: eq. (17) of the used samples, averaged over the runs that have some."""
+        """The error of the other folds: eq. (17) of the used samples, averaged over the runs that have some."""
         used = [of != fold for of in of_samples]
         parts = [seen(i, r)[of] for i, (r, of) in enumerate(zip(residuals, used, strict=True)) if of.any()]
         sizes = [np.sqrt(run.total / run.length) for run, of in zip(here.runs, used, strict=True) if of.any()]
@@ -128,8 +128,7 @@ def out_of_fold(
 def _of_short_steps(
     point: Array, steps: Sequence[Array], held: Sequence[Sequence[int]], simulate: Simulate
 ) -> dict[int, Sequence[Array]]:
-    """By its number the residuals of each fold on its runs, where one linearisation is trusted and its model is
-    stable."""
+    """The residuals of each fold on its runs, by number, where one linearisation is trusted and the model is stable."""
     short: dict[tuple[int, ...], list[int]] = {}
     for fold, step in enumerate(steps):
         if not len(step) or np.abs(step).max() <= CRITERIA.cross_validation.max_step:
@@ -144,7 +143,7 @@ def _of_long_steps(
     point: Array, steps: Mapping[int, Array], simulate: Simulate, error: Callable[[Sequence[Array], int], float],
     held: Sequence[Sequence[int]],
 ) -> dict[int, Sequence[Array]]:  # fmt: skip
-    """The same of steps that are shortened until the other folds are explained better than by the fit of all data."""
+    """The residuals by steps that are shortened until they explain the other folds better than the fit of all data."""
     if not steps:
         return {}
     longest, everything = CRITERIA.cross_validation.longest_step, range(1 + max(max(of) for of in held))
@@ -175,7 +174,7 @@ def fold_of_blocks(number: int, blocks: int, runs: int) -> Indices:
 
 
 def _projected(run: NormalMatrices, used: Mask) -> Array:
-    """[J, r] products of the used blocks less what is free in a record, (p+1, p+1).
+    """[J, r] products of the used blocks without the nuisance parameters of the record, (p+1, p+1).
 
     The record's mean and first state are taken from all of it: a first state shows in its first block alone.
     """

@@ -1,4 +1,4 @@
-"""What is missing from a fitted model: effects selected, challenged, completed by discovered terms, and concluded."""
+"""The diagnosis of a fitted model: effects are selected and challenged, terms are discovered, a verdict concludes."""
 
 from __future__ import annotations
 
@@ -41,10 +41,10 @@ from ident.time_budget import in_time
 
 
 def diagnose(matrix: Matrix, fit: FitResult, custom: Sequence[Effect], budget: SearchBudget) -> Diagnosis:
-    """Rank what the fitted model lacks, select what improves it beyond chance, and conclude.
+    """Rank the effects, select those that improve the fitted model beyond chance, and conclude.
 
-    `custom` are effects in addition to the catalogue's. Verify runs only report. Raises Unusable where matrix and fit
-    do not go together. Where an input of the runs to fit is not recorded, no effect is looked for.
+    `custom` are effects in addition to the catalogue's. Validation data only report. Raises Unusable where matrix and
+    fit do not go together. Where an input of the estimation data is not recorded, no effect is looked for.
     """
     models = models_of(matrix, fit, custom)
     swings = [swing for run in matrix.runs if (swing := self_oscillation(run))]
@@ -70,7 +70,7 @@ def models_of(matrix: Matrix, fit: FitResult, custom: Sequence[Effect]) -> Candi
 
 
 class Diagnoser:
-    """One diagnosis, stage by stage; what was found stays where a later stage has no time, or fails."""
+    """One diagnosis, stage by stage; earlier results stay where a later stage has no time, or fails."""
 
     def __init__(
         self, models: CandidateModels, matrix: Matrix, fit: FitResult, custom: Sequence[Effect], budget: SearchBudget
@@ -79,7 +79,8 @@ class Diagnoser:
         self.stages = Stages(budget)
 
     def diagnosis(self) -> Diagnosis:
-        """All that there was time for; what the catalogue says is told before terms are searched for."""
+        """The diagnosis by all stages that had time; the verdict on the catalogue is reported before terms are searched
+        for."""
         others = alternative_models(self.matrix, self.fit, self.custom)
         selection, suspects = self._selected_without_suspects()
         elsewhere = other_machines(others, selection, self.stages, self.budget)
@@ -99,7 +100,7 @@ class Diagnoser:
     # Selection -------------------------------------------------------------------------------------------------
 
     def _selected_without_suspects(self) -> tuple[Selection, list[Suspect]]:
-        """The selection without runs whose label is doubted, and these. Raises TimeIsUp before it begins."""
+        """The selection without runs that have a doubtful label, and these runs. Raises TimeIsUp before it begins."""
         selection = self._selected(self.models)
         suspects = self._suspects(selection)
         if {suspect.run for suspect in suspects} - selection.models.left_out:
@@ -112,11 +113,12 @@ class Diagnoser:
         return selection, suspects
 
     def _selected(self, models: CandidateModels) -> Selection:
-        """The selection over these models, or over longer windows where with an effect these are more likely."""
+        """The selection over these models, or over longer windows where a model with an effect is more likely over
+        them."""
         self.budget.report_progress(Progress("preparing", 0, 1))
         moves = self._moves(models)
         longer = None
-        with suppress(TimeIsUp):  # the search ends as it is told so again, with the first of what was found
+        with suppress(TimeIsUp):  # the search below then ends at once, with the first ranking
             longer = longer_horizon(moves, self.budget.report_progress)
         if longer is not None:
             further = self._moves(longer.models, longer.start)
@@ -139,7 +141,7 @@ class Diagnoser:
         return Moves(models, base, self.budget.most, self.budget.report_progress, self._publish_step, begin)
 
     def _publish_step(self, selection: Selection) -> None:
-        """Tell of a new model on the path."""
+        """Report a new model on the path."""
         steps = selection.ladder()
         self.budget.added = tuple(
             Expected(name, refit.held_out.error) for name, refit in steps if name and refit.stable
@@ -152,7 +154,7 @@ class Diagnoser:
             self.budget.publish(replace(so_far, verdict=replace(so_far.verdict, text=text), not_looked_at=LATER))
 
     def _suspects(self, selection: Selection) -> list[Suspect]:
-        """The runs whose label is doubted."""
+        """The runs that have a doubtful label."""
 
         def suspects() -> list[Suspect]:
             self.budget.report_progress(Progress("labels", 0, 1))
@@ -163,11 +165,11 @@ class Diagnoser:
     # Conclusion ------------------------------------------------------------------------------------------------
 
     def _told(self, story: _Story, terms: DiscoveryResult, still_searching: bool = False) -> Diagnosis:
-        """The diagnosis with all that is said of it; while terms are searched for those are what is missing."""
+        """The diagnosis with all its sentences; while terms are searched for, that stage is listed as missing."""
         catalogue, dispensable = story.catalogue, terms.dispensable(story.findings.added)
         verdict = conclude(replace(story.findings, dispensable=dispensable))
         diagnosis = replace(catalogue, verdict=verdict)
-        if dispensable:  # what is in question is another now
+        if dispensable:  # other models are in question now
             diagnosis = replace(diagnosis, next_experiment=self._next_run(diagnosis))
         missing = self.stages.not_looked_at
         if not terms.complete and TERMS not in missing:
@@ -203,7 +205,7 @@ class Diagnoser:
         return self.stages.attempt(ERROR_BUDGET, parts, None)
 
     def _next_run(self, diagnosis: Diagnosis) -> NextRun | None:
-        """The run that tells most of what is in question."""
+        """The run that best distinguishes the models in question."""
 
         def proposed() -> NextRun | None:
             self.budget.report_progress(Progress(NEXT_RUN, 0, 1))
@@ -212,20 +214,20 @@ class Diagnoser:
         return self.stages.attempt(NEXT_RUN, proposed, None)
 
     def _windows(self, diagnosis: Diagnosis) -> Sequence[str]:
-        """Over what the errors are, where these are not the windows of the fit."""
+        """The sentence on the horizon of the errors, where it is not the fit's."""
         same = diagnosis.horizon == self.models.horizon
         return () if same else tuple(horizon_sentence(self.models.horizon, diagnosis.horizon))
 
 
 def _forgiven(selection: Selection) -> Iterator[str]:
-    """What windows forgive of the last model, where it is fitted over windows and there is time to ask."""
+    """The sentence on the free run of the last model, where it is fitted over windows and there is time for it."""
     if selection.models.horizon is not None and (free := in_time(lambda: selection.fitted.free_run)):
         yield from free_run_sentence(free)
 
 
 @dataclass(frozen=True)
 class _Story:
-    """What the catalogue says, its findings, and the sentences that follow its verdict."""
+    """The diagnosis by the catalogue, its findings, and the sentences that follow its verdict."""
 
     catalogue: Diagnosis
     findings: Findings

@@ -1,4 +1,4 @@
-"""A model at its optimum for the runs that it is fitted to, and how it does there and elsewhere."""
+"""A model at its optimum for the runs that it is fitted to, and its errors on these and other runs."""
 
 from __future__ import annotations
 
@@ -49,18 +49,18 @@ class FittedModel:
 
     @cached_property
     def held_out(self) -> OutOfFold:
-        """Its residuals on stretches, or on whole runs, that were left out of the fit in turn."""
+        """Its residuals on stretches, or on whole runs, that were held out of the fit in turn."""
         lengths = [run.length for run in self.fitness.runs]
         return self._residuals(out_of_fold(self.point, self.local, self._left_of, self._seen, lengths))
 
     @cached_property
     def residuals_held_out(self) -> Residuals:
-        """The same, to be compared with those of other models of these runs."""
+        """The held-out residuals, in the form in which models of these runs are compared."""
         return Residuals(self.held_out.residuals, self.records.bands, self.held_out.levels)
 
     @cached_property
     def residuals_fitted(self) -> Residuals:
-        """Its residuals on the runs that it was fitted to: they compare models of as many parameters, at once."""
+        """Its residuals on the runs that it was fitted to: they compare models with equal numbers of parameters."""
         every = range(len(self.fitness.runs))
         fitted = self._residuals(next(self._left_of([self.point], every)))
         return Residuals(fitted.residuals, self.records.bands, fitted.levels)
@@ -71,7 +71,7 @@ class FittedModel:
         return self.free_run_of(self.fitness.runs)
 
     def free_run_of(self, runs: Sequence[Run]) -> FreeRun:
-        """The free run of any runs of the matrix, begun as their windows are, and what is expected of it."""
+        """The free run of any runs of the matrix, begun as their windows are, and its expected power."""
         own = self.fitness if tuple(runs) == self.fitness.runs else self.fitness.fresh(tuple(runs))
         whole = own.whole()
         found = whole.exact(self.point).runs
@@ -85,10 +85,10 @@ class FittedModel:
         return FreeRun(float(over_runs(power, whole.runs)), float(over_runs(expected, whole.runs)))
 
     def _expected(self, run: Run, residual: Array, found: NormalMatrices) -> float:
-        """The power that disturbances as at the ends of the windows, and errors of the parameters, add up to."""
+        """The power that the disturbances at the ends of the windows, and the errors of the parameters, add up to."""
         anchoring, p = self.fitness.anchoring(run), len(self.point)
         ends = anchoring(residual)[anchoring.window - 1 :: anchoring.window]
-        lasting = len(ends) / max(independent_samples(ends), 1.0)  # windows that a disturbance lasts for
+        lasting = len(ends) / max(independent_samples(ends), 1.0)  # windows over which a disturbance is correlated
         own = lasting * float(np.mean(ends**2)) / run.power * run.length
         shared = found.gram[:p, :p] + found.length * np.outer(found.means[:p], found.means[:p])
         of_parameters = float(np.sum(self._known.seen * shared)) / found.total
@@ -101,7 +101,7 @@ class FittedModel:
             yield [run.measured - outputs[run.id] for run in runs]
 
     def _seen(self, number: int, residual: Array) -> Array:
-        """A residual of a run as the loss sees it: less its mean or the offset of its transducer, or over windows."""
+        """The residual of a run in the loss: less its mean or the offset of its transducer, or over windows."""
         run = self.fitness.runs[number]
         if self.local.runs[number].counted:
             return residual - offset_at(run, self._offsets)
@@ -109,7 +109,7 @@ class FittedModel:
             return self.fitness.left(run, run.measured - residual)
 
     def _residuals(self, whole: Sequence[Array]) -> OutOfFold:
-        """Residuals as eq. (17) sees them, and their means."""
+        """The residuals in eq. (17), and their means."""
         runs = self.fitness.runs
         with np.errstate(over="ignore", invalid="ignore"):
             sizes = np.array([float(np.std(run.measured)) for run in runs])
@@ -120,7 +120,7 @@ class FittedModel:
         return OutOfFold(seen, sizes, means - means.mean(), np.array([run.share for run in runs]))
 
     def reordered(self, effects: tuple[str, ...]) -> FittedModel:
-        """The same model with its effects in another order; what is known of it stays known."""
+        """The same model with its effects in another order; its cached results stay."""
         other = copy(self)
         other.__dict__["effects"] = effects
         return other
@@ -131,20 +131,20 @@ class FittedModel:
         return bool(np.isfinite(self.local.error))
 
     def asks_for(self, way: Way, share: float) -> bool:
-        """Whether a further step, as free as a way lets it be, promises more than a share of the error."""
+        """Whether a further step, within the bounds of the `way`, predicts a reduction of more than a share of the
+        error."""
         return self.stable and way.promised(self.point, self.local, self.space.spans) > share * self.local.error
 
     @property
     def finite(self) -> bool:
-        """Whether the model is stable on every run, and its residual there is the one that it promises."""
+        """Whether the model is stable on every run, and a simulation confirms its residual."""
         return self.stable and self._simulation_confirms
 
     @cached_property
     def _simulation_confirms(self) -> bool:
-        """Whether a simulation from the first states that were found has the residual that their linear correction
-        promises.
+        """Whether a simulation from the estimated initial states has the residual of their linear correction.
 
-        A model that is not linear in them may look good where no first state at all leads.
+        A model that is not linear in them may have a small predicted residual that no initial state reaches.
         """
         return not self._moving or self._confirms(self._simulated)
 
@@ -157,7 +157,7 @@ class FittedModel:
 
     @cached_property
     def _simulated(self) -> _Simulated:
-        """From the first states that the search went with, or from guesses where those lead nowhere."""
+        """The simulation from the initial states of the search, or from new guesses where it does not confirm those."""
         found = _Simulated.of(self.fitness, self.point)
         if not self._moving or self._confirms(found):
             return found
@@ -171,23 +171,24 @@ class FittedModel:
 
     @cached_property
     def on_verify(self) -> float | None:
-        """Eq. (17) averaged over the runs to verify; None where there are none, or the model is unstable on one.
+        """The error of eq. (17) averaged over validation data; None where there are none, or the model is unstable on
+        one.
 
-        Of its residual there once their first states are found, as a comparison shows it: what is linear in these
-        would flatter a model that is not.
+        The residual is of a simulation from the estimated initial states: their linear correction would make the error
+        of a nonlinear model too small.
         """
         found = self._verified
         return None if found is None or found.unstable else found.error
 
     @cached_property
     def _verified(self) -> _Simulated | None:
-        """The residuals of a simulation of the runs to verify; None where there are none."""
+        """The residuals of a simulation of the validation data; None where there are none."""
         runs = self.fitness.matrix.of_use("verify")
         return _Simulated.of(self.fitness.fresh(runs), self.point, self._offsets) if runs else None
 
     @property
     def unstable(self) -> dict[str, tuple[str, ...]]:
-        """By the use of runs the ids of those on which it is unstable; a use without such runs is left out."""
+        """By use the ids of the runs on which it is unstable, only for uses with such runs."""
         pairs = zip(self.fitness.runs, self.local.runs, strict=True)
         fitted = tuple(run.id for run, found in pairs if not found.error < UNSTABLE)
         known = None if fitted else in_time(lambda: self._verified)
@@ -196,7 +197,7 @@ class FittedModel:
 
     @property
     def errors_with_mean(self) -> dict[str, float | None]:
-        """RMS(x − x_m)/std(x_m) by what it is measured on; nothing over windows, whose errors count the mean."""
+        """RMS(x − x_m)/std(x_m) by use; {} over windows, whose errors count the mean."""
         if self.fitness.horizon is not None or not self.stable:
             return {}
         found: dict[str, float | None] = {"fit": float(over_runs(self._with_mean, self.local.runs))}
@@ -205,7 +206,7 @@ class FittedModel:
 
     @property
     def rmse(self) -> dict[str, float | None]:
-        """RMS(x − x_m) in :attr:`rmse_unit` by what it is measured on; nothing where no mean is counted."""
+        """RMS(x − x_m) in :attr:`rmse_unit` by use; {} where no mean is counted."""
         runs, found = self.fitness.runs, self.errors_with_mean
         if not self.rmse_unit or not found:
             return {}
@@ -216,7 +217,7 @@ class FittedModel:
 
     @property
     def rmse_unit(self) -> str:
-        """The SI unit of what was measured; "" where the outputs have several."""
+        """The SI unit of the measured outputs; "" where they have several."""
         units = {run.units.get(run.output, "1") for run in self.fitness.runs}
         return units.pop() if len(units) == 1 else ""
 
@@ -236,14 +237,14 @@ class FittedModel:
 
     @property
     def transducer_offset(self) -> dict[str, TransducerOffset]:
-        """The same as a result keeps them."""
+        """The offsets of transducers in the form of a result."""
         return told_offsets(self._offsets, self.fitness.matrix)
 
     @property
     def errors(self) -> dict[str, float | None]:
-        """Its errors by what they are measured on; None where it is unstable on a run that it is fitted to.
+        """Its errors by use; None where it is unstable on a run that it is fitted to.
 
-        And where there is no time to simulate it there.
+        An error is None, too, where there is no time for its simulation.
         """
         if not self.stable:
             return {"fit": None, "held_out": None, "verify": None}
@@ -252,10 +253,10 @@ class FittedModel:
 
     @cached_property
     def on_verify_runs(self) -> tuple[list[Array], Array | None]:
-        """Its residuals on the runs to verify by eq. (17), (n,) each, and their means that count, (runs,).
+        """Its residuals on validation data by eq. (17), (n,) each, and their means that count, (runs,).
 
-        The means are less the offset of their transducer, and zero of a run whose mean does not count. None where none
-        does, or the model is fitted over windows.
+        The means are less the offset of their transducer, and zero for a run whose mean does not count. They are None
+        where no mean counts, or the model is fitted over windows.
         """
         runs = self.fitness.matrix.of_use("verify")
         outputs = self.fitness.fresh(runs).outputs(self.point)
@@ -288,12 +289,12 @@ class FittedModel:
         return tuple(name for name, value, error in known if error is not None and error < DETERMINED * value)
 
     def slow_lags(self) -> Iterator[Combination]:
-        """How late it answers to a slow command, where that is determined."""
+        """The total delay of its response to a slow command, where the data determine it."""
         return slow_lag(self.fitness, self._known)
 
     @property
     def parameters(self) -> dict[str, ParameterEstimate]:
-        """What it found of every parameter, by its name."""
+        """The estimate of every parameter, by its name."""
         preset, found = self.fitness.preset, {}
         for one in preset.parameters:
             name = one.in_equations
@@ -333,6 +334,6 @@ class _Simulated:
 
 
 def _rms(residual: Array) -> float:
-    """The root mean square, infinite of what overflows: a model that ran away is no warning."""
+    """The root mean square, infinite where it overflows: a model that diverged gives no warning."""
     with np.errstate(over="ignore", invalid="ignore"):
         return float(np.sqrt(np.mean(residual**2)))

@@ -1,4 +1,4 @@
-"""What goes with a diagnosis: the error budget of the model that was given, and the run that the lab should add."""
+"""The follow-up of a diagnosis: the error budget of the given model, and the run that the lab should add."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ def error_budget(matrix: Matrix, fit: FitResult) -> Budget | None:
 
 
 def next_run(matrix: Matrix, found: Diagnosis, custom: Sequence[Effect] = ()) -> NextRun | None:
-    """The run that says most of what is in question after a diagnosis; None where no run can be proposed."""
+    """The run that best distinguishes the models in question; None where no run can be proposed."""
     try:
         proposal = propose(competing_models(found, custom), matrix, found.seed)
     except Unusable as error:

@@ -2,9 +2,8 @@
 
 A shape that is held at its usual value is another effect: a friction that builds up over a fifth of the motion is no
 friction that builds up over a hundredth. While the usual values explain a record nothing is gained by freeing them.
-Where they do not, every width of every effect is searched with the strength: from places along its range, by the
-prediction that is best at any of them first, until two starts agree. A shape that the data do not determine then stays
-held.
+Where they do not, every width of every effect is searched with the strength: from places along its range, the best
+prediction first, until two starts agree. A shape that the data do not determine then stays at its usual value.
 """
 
 from __future__ import annotations
@@ -41,7 +40,7 @@ def is_width(parameter: Parameter) -> bool:
 
 
 def is_usual(parameter: Parameter) -> bool:
-    """Whether a shape has a usual value other than nothing: a width, or what may have either sign."""
+    """Whether a shape has a usual value other than zero: a width, or a shape that may have either sign."""
     return parameter.start in _ALONG and parameter.value != 0 and not parameter.searched
 
 
@@ -79,17 +78,17 @@ def with_widths(models: CandidateModels, names: Iterable[str]) -> list[str]:
 
 
 def springs(models: CandidateModels, base: FittedModel, names: Iterable[str]) -> list[str]:
-    """Those of the effects that yield and are a spring at small motions, which a base has fitted as its own."""
+    """The effects that yield and are a spring at small motions, where the base has fitted that spring as its own."""
     return [name for name in names if way_of(models.effects[name]) and in_place_of_spring(base, models.effects[name])]
 
 
 def with_free_widths(
     models: CandidateModels, base: FittedModel, best: FittedModel, names: Sequence[str]
 ) -> FittedModel | None:
-    """The best refit of a base and one of the effects with its widths free, where that improves on the `best` so far.
+    """The best refit of a base with one of the effects and its widths free, where it improves on the `best` so far.
 
-    Only those are refitted whose prediction, from places along their ranges, comes near the error of the best, and what
-    has a start of its own in the place of a spring.
+    Only effects whose prediction, from places along their ranges, comes near the error of the best are refitted, and
+    effects with a start of their own in the place of a spring.
     """
     names = with_widths(models, names)
     if not names:
@@ -107,9 +106,9 @@ def with_free_widths(
 
 
 def freed_refit(models: CandidateModels, base: FittedModel, prediction: Prediction) -> FittedModel | None:
-    """The refit with an effect whose shapes are free, from where two starts agree.
+    """The refit with an effect whose shapes are free, from the optimum on which two starts agree.
 
-    What the data do not determine is held at its usual value again; None where they determine none.
+    Shapes that the data do not determine are held at their usual values again; None where they determine none.
     """
     best, name = trial_from_everywhere(models, base, prediction), prediction.effect
     refit = models.converged(models.refit(best.effects, best.values)) if best.finite else best
@@ -128,9 +127,10 @@ def trial_from_everywhere(
 ) -> FittedModel:
     """The first refit with a predicted effect, begun again from other places of its shapes until two ends agree.
 
-    And from the strengths that were simulated, then from the whole search space, as long as it does not come to what
-    was predicted: where the data do not separate the base from others, the optimum with the effect may lie near one of
-    those. The best end is gone on with until it stays: a trial's few steps may end far from there.
+    It also begins from the strengths that were simulated, then from the whole search space, while its error is above
+    the predicted one: where the data do not separate the base from other models, the optimum with the effect may lie
+    near one of those. The best end is continued until it converges: the few steps of a trial may end far from the
+    optimum.
     """
     effects = (*base.effects, prediction.effect)
     ends = [models.trial(effects, prediction.starts, aim)]
@@ -152,7 +152,7 @@ def undetermined(refit: FittedModel, effect: Effect) -> list[str]:
 
     def is_certain(shape: Parameter) -> bool:
         error, size = refit.deviation(shape.in_equations), abs(refit.values[shape.in_equations])
-        least = abs(shape.value) if shape.lower < 0 else 0.0  # what may have either sign may be next to nothing
+        least = abs(shape.value) if shape.lower < 0 else 0.0  # a shape of either sign may be near zero
         return error is not None and error < DETERMINED * max(size, least)
 
     free = [p for p in effect.added[1:] if p.in_equations in refit.space.names]
@@ -167,7 +167,7 @@ def bounds_of_freed(refit: FittedModel, effects: Mapping[str, Effect]) -> dict[s
 
 
 def freed_widths(refit: FittedModel) -> int:
-    """How many shapes of a refit's effects are free that the catalogue has usual values of."""
+    """The number of free shapes of a refit's effects for which the catalogue has usual values."""
     added = chain.from_iterable(effect.added[1:] for effect in CATALOGUE if effect.name in refit.effects)
     return sum(is_usual(p) and p.in_equations in refit.space.names for p in added)
 
@@ -180,7 +180,7 @@ def held_widths(refit: FittedModel, effects: Mapping[str, Effect]) -> dict[str, 
 
 
 def converged(ends: Sequence[FittedModel], prediction: Prediction) -> bool:
-    """Whether the two best ends agree, and come to what was predicted."""
+    """Whether the two best ends agree, and reach the predicted error."""
     errors = sorted(end.local.error for end in ends)
     if len(errors) < 2 or not np.isfinite(errors[1]):
         return False
@@ -188,7 +188,7 @@ def converged(ends: Sequence[FittedModel], prediction: Prediction) -> bool:
 
 
 def keeps(ends: Sequence[FittedModel], prediction: Prediction) -> bool:
-    """Whether the best of some ends comes to what was predicted: within a tenth, and by half of the reduction."""
+    """Whether the best of some ends reaches the predicted error within a tenth, and half of the predicted reduction."""
     half = 0.5 * (prediction.after.error + prediction.before.error)
     most = min(CRITERIA.free_widths.missed * prediction.after.error, half)
     return min(end.local.error for end in ends) <= most

@@ -1,7 +1,7 @@
 """Runs whose label does not fit their data: a wrong mass, gain or stiffness, a turned or scaled channel, a skew.
 
 Each run is simulated by the fitted model with its labels changed, one at a time, over a ladder of values. A run is a
-suspect where its error stands out from those of the others and one change of a label brings it most of the way back.
+suspect where its error is an outlier among the runs and one change of a label removes most of the excess.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ _UNITS = {"mass": "kg", "stiffness": "N/m", "gain": "1"}
 
 
 def label_suspects(models: CandidateModels, fitted: FittedModel, floors: Mapping[str, float | None]) -> list[Suspect]:
-    """The runs of the matrix that are to be fitted whose labels are doubted, worst first.
+    """The estimation runs of the matrix with doubtful labels, worst first.
 
     `floors` is the noise floor of each run, as a fraction like eq. (17); the usual error of a run is in proportion.
     """
@@ -72,7 +72,7 @@ def _label_suspect(
 
 
 def _evidence(what: str, stated: float, found: float, unit: str, error: float, usual: float, mended: float) -> str:
-    """Why, in a sentence."""
+    """The evidence for a suspect, in a sentence."""
     label = f"with {what} {found:.4g} {unit} in place of {stated:.4g} {unit}"
     of_channel = {
         "sign": "turned in sign",
@@ -86,7 +86,7 @@ def _evidence(what: str, stated: float, found: float, unit: str, error: float, u
 
 
 def _label(models: CandidateModels, fitted: FittedModel, run: Run, what: str) -> tuple[str, float, float, float]:
-    """The best value of one label: what, as stated, as found, the error with it."""
+    """The best value of one label: its name, the stated value, the best value, and the error with it."""
     name = _LABELS[what]
     stated = conditions(run, models.matrix.actuator)[name]
     others = {conditions(other, models.matrix.actuator)[name] for other in models.matrix.runs}
@@ -108,7 +108,7 @@ def _label(models: CandidateModels, fitted: FittedModel, run: Run, what: str) ->
 
 
 def _of_channel(models: CandidateModels, fitted: FittedModel, run: Run) -> list[tuple[str, float, float, float]]:
-    """What a turned, scaled or shifted displacement would explain."""
+    """The label changes of a displacement: turned in sign, scaled or shifted."""
     y = _outputs(models, fitted, run, {})[:, 0]
     measured = run.centred
     power, model = float(measured @ measured), y - y.mean()

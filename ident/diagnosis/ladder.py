@@ -12,18 +12,18 @@ from ident.diagnosis.fitted_model import FittedModel
 from ident.time_budget import in_time
 
 Rungs = list[tuple[str | None, FittedModel]]
-"""What each step added, and the refit; the fitted model first."""
+"""The effect that each step added, and the refit; the fitted model first."""
 
 
 @dataclass
 class Ladder:
-    """The rungs of a search; `between` are those that were no step of it."""
+    """The rungs of a search; `between` are rungs that were no step of it."""
 
     models: CandidateModels
     between: dict[frozenset[str], FittedModel] = field(default_factory=dict)
 
     def rungs(self, steps: Sequence[FittedModel], base: FittedModel) -> Rungs:
-        """From `base` to the last of the steps: of those with the same effects the best, else a refit."""
+        """The rungs from `base` to the last of the steps: the best step with the effects of each rung, else a refit."""
         found = steps[-1]
         added = [name for name in found.effects if name not in base.effects]
         rungs: Rungs = [(None, base)]
@@ -40,7 +40,7 @@ class Ladder:
         return rungs
 
     def known(self, steps: Sequence[FittedModel], base: FittedModel) -> Rungs:
-        """The same without a refit: of those that were met."""
+        """The rungs without a refit: only those with the effects of a step."""
         met = in_time(lambda: self._met(steps))
         known = met or {frozenset(step.effects): step for step in steps}
         added = [name for name in steps[-1].effects if name not in base.effects]
@@ -48,7 +48,7 @@ class Ladder:
         return [(None, base), *((name, known[of]) for name, of in zip(added, sets, strict=True) if of in known)]
 
     def _met(self, steps: Sequence[FittedModel]) -> dict[frozenset[str], FittedModel]:
-        """Of the refits that were steps, or stand in the ladder, the best with the same effects."""
+        """The best of the steps and rungs with the same effects, by these effects."""
         best: dict[frozenset[str], FittedModel] = {}
         for refit in (*self.between.values(), *steps):
             effects = frozenset(refit.effects)
@@ -58,10 +58,10 @@ class Ladder:
 
 
 def score(refit: FittedModel) -> float:
-    """What is least for the best: the held-out score; without end where the model is of no use."""
+    """The held-out score, least for the best model; infinite where the model is not finite."""
     return refit.held_out.score if refit.finite else np.inf
 
 
 def without_effect(values: Mapping[str, float], effect: str) -> dict[str, float]:
-    """The values by the equations' names, less those of an effect."""
+    """The values by the equations' names, without the parameters of an effect."""
     return {name: value for name, value in values.items() if not name.startswith(f"{effect}__")}

@@ -1,6 +1,6 @@
 """Two fitted models compared by their residuals on data that neither was fitted to.
 
-What the answers mean, and by which numbers, stands in :mod:`ident.diagnosis.evidence.comparison`.
+The meaning of the answers, and their numbers, stand in :mod:`ident.diagnosis.evidence.comparison`.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from ident.diagnosis.verification import VerifyChange, verify_change, with_free_
 
 
 def evidence(before: FittedModel, after: FittedModel) -> Evidence:
-    """What speaks for the second model against the first; of models over windows also their free runs."""
+    """The evidence for the second model against the first; for models over windows with their free runs."""
     found = compare(before.residuals_held_out, after.residuals_held_out)
     if before.fitness.horizon is None or after.fitness.horizon is None:
         return found
@@ -37,14 +37,14 @@ def improves(models: CandidateModels, less: FittedModel, more: FittedModel) -> b
 def is_improvement(
     models: CandidateModels, less: FittedModel, found: Evidence, criteria: EvidenceCriteria = EVIDENCE_CRITERIA
 ) -> bool:  # fmt: skip
-    """The same by what speaks for it."""
+    """Whether a model with more effects is worth them, by the evidence for it."""
     return comparison.worth_adding(found, partial(bar, models, less), criteria)
 
 
 def is_improvement_on_the_whole(
     models: CandidateModels, less: FittedModel, found: Evidence, criteria: EvidenceCriteria = EVIDENCE_CRITERIA
 ) -> bool:  # fmt: skip
-    """The same, whatever a part of the data loses."""
+    """Whether a model with more effects is worth them on the whole, whatever a part of the data loses."""
     return comparison.improves(found, partial(bar, models, less), criteria)
 
 
@@ -73,7 +73,8 @@ def both_probable(first: FittedModel, second: FittedModel) -> bool:
 
 
 def verified_change(effect: str, less: FittedModel, more: FittedModel) -> VerifyChange | None:
-    """What the runs to verify say of what an `effect` adds; None without any, or where the first model is unstable."""
+    """The change of the validation error by an `effect`; None without such data, or where the first model is
+    unstable."""
     runs = less.fitness.matrix.of_use("verify")
     if not runs:
         return None
@@ -86,7 +87,7 @@ def verified_change(effect: str, less: FittedModel, more: FittedModel) -> Verify
 
 
 def bar(models: CandidateModels, base: FittedModel) -> float:
-    """The gain (nats) that the best of all effects beside those of a model makes by chance, but for one in twenty."""
+    """The gain (nats) that the best of all effects that a model lacks exceeds by chance in one case of twenty."""
     others = [name for name in models.effects if name not in base.effects]
     return models.bars.of(base.effects, lambda: gain_by_chance(models, base, others))
 

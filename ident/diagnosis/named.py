@@ -1,4 +1,4 @@
-"""What a diagnosis names, as a fit takes it; and the settings of a fit with what was named, by every way of asking."""
+"""The effects that a diagnosis names, in the form that a fit takes; and the settings of a fit with named effects."""
 
 from __future__ import annotations
 
@@ -13,12 +13,13 @@ from ident.fit.extended import extended
 from ident.fit.settings import Settings
 
 Kept = Callable[[], Mapping[str, Definition]]
-"""Gives the own effects that are kept under names."""
+"""Returns the users' effects that are stored, by name."""
 
 
 @dataclass(frozen=True)
 class Named:
-    """Effects that are added together, the definitions of own ones among them, and what was found of the parameters."""
+    """Effects that are added together, the definitions of users' effects among them, and the estimates of
+    parameters."""
 
     effects: tuple[str, ...] = ()
     custom: tuple[Definition, ...] = ()
@@ -26,9 +27,9 @@ class Named:
 
 
 def named(found: Diagnosis, name: str) -> Named | None:
-    """What is added to the diagnosed fit by the name of a candidate or of a proposed term; None of any other name.
+    """The effects that the name of a candidate or of a proposed term adds to the diagnosed fit; None for other names.
 
-    With a term there are those before it and the effects in addition to which it was found, but for those of the fit.
+    With a term come the terms before it, and the effects in addition to which it was found, without the fit's own.
     """
     terms = found.proposals or ()
     for count, term in enumerate(terms, 1):
@@ -49,7 +50,7 @@ def of_fit(found: Diagnosis) -> Named:
 
 
 def names(found: Diagnosis) -> Iterator[str]:
-    """Every name by which something is added: of the candidates, best first, then of the proposed terms."""
+    """Every name that :func:`named` takes: the candidates, best first, then the proposed terms."""
     yield from (candidate.effect for candidate in found.candidates)
     yield from (str(term.effect["name"]) for term in found.proposals or ())
 
@@ -58,10 +59,10 @@ def with_named(
     settings: Settings, wanted: Sequence[str], custom: Sequence[Definition] = (), found: Diagnosis | None = None,
     kept: Kept = dict,
 ) -> Settings:  # fmt: skip
-    """The settings of a fit with effects by name, and with all that `custom` defines.
+    """The settings of a fit with effects by name, and with all effects that `custom` defines.
 
-    A name is one of the catalogue or of a definition, else one that the diagnosis `found` gives, else one of an effect
-    that is `kept`, which is asked only then. Raises Unusable as :func:`ident.fit.extended.extended`.
+    A name is first sought in the catalogue and the definitions, then in the diagnosis `found`, then among the effects
+    that are `kept`, which are read only then. Raises Unusable as :func:`ident.fit.extended.extended`.
     """
     known = {effect.name for effect in CATALOGUE} | {str(one["name"]) for one in (*settings.custom, *custom)}
     effects: list[str] = []
@@ -74,7 +75,7 @@ def with_named(
 
 
 def _looked_up(name: str, known: set[str], found: Diagnosis | None, kept: Kept) -> Named:
-    """What a name stands for that is neither of the catalogue nor of a definition. Raises Unusable."""
+    """The effects of a name that is neither in the catalogue nor defined. Raises Unusable."""
     if found is not None and (one := named(found, name)) is not None:
         return one
     own = kept()
@@ -84,5 +85,5 @@ def _looked_up(name: str, known: set[str], found: Diagnosis | None, kept: Kept) 
 
 
 def _own(found: Diagnosis, effects: Sequence[str]) -> tuple[Definition, ...]:
-    """The definitions of the own effects among these, as the diagnosis was given them."""
+    """The definitions of the users' effects among these, as they were given to the diagnosis."""
     return tuple(definition for definition in found.settings.get("custom", ()) if definition["name"] in effects)

@@ -12,7 +12,7 @@ from ident.words.message import Message, message, said
 
 _NO_RUN = ("next.input", "next.oscillation", "next.label", "next.label_and", "next.label_value", "next.label_value_and",
            "next.compare")  # fmt: skip
-"""Steps that come before any run: with them the models in question become others."""
+"""Steps that come before any run, because they change the models in question."""
 _RUN_FIRST = ("next.distinguish", "next.then")
 _RUN_NAMED = (*_RUN_FIRST, "next.add_and")
 """Steps that name the proposed run; with any other it is optional."""
@@ -21,8 +21,8 @@ _RUN_NAMED = (*_RUN_FIRST, "next.add_and")
 def next_commands(found: Diagnosis, file: str, matrix: str, seconds: float | None = None) -> tuple[str, ...]:
     """The commands of a diagnosis, in the order in which they are needed.
 
-    `file` is that of the diagnosis and `matrix` that of its data, both as a shell takes them; `seconds` is the time
-    limit of the search, None where it had none.
+    `file` is the file of the diagnosis and `matrix` the folder of its data, both as a shell takes them; `seconds` is
+    the time limit of the search, None where it had none.
     """
     fit, run = next_command(found, file, matrix), next_run_command(found, file, matrix)
     ordered = (run, fit) if next_step(found).key in _RUN_FIRST else (fit, run)
@@ -35,8 +35,8 @@ def next_command(found: Diagnosis, file: str = "D.json", matrix: str = "MATRIX")
 
     `file` is that of the diagnosis and `matrix` that of its data, both as a shell takes them.
 
-    Nor is there one where validation data contradict its effects, where a label is to be corrected first, or where an
-    earlier version did not tell what its refits ended with.
+    It is also "" where validation data contradict its effects, where a label is to be corrected first, or where an
+    earlier version did not write the ends of its refits.
     """
     proposals = found.proposals or ()
     contradicted = found.verdict.standing == "contradicted" and not proposals
@@ -54,7 +54,7 @@ def next_command(found: Diagnosis, file: str = "D.json", matrix: str = "MATRIX")
 
 
 def next_run_command(found: Diagnosis, file: str = "D.json", matrix: str = "MATRIX") -> str:
-    """The command that writes the proposed run, and what the run is for; "" where none is proposed, or not yet."""
+    """The command that writes the proposed run, and the purpose of the run; "" where none is proposed, or not yet."""
     key, verdict = next_step(found).key, found.verdict
     if found.next_experiment is None or key in _NO_RUN:
         return ""
@@ -68,7 +68,7 @@ def next_run_command(found: Diagnosis, file: str = "D.json", matrix: str = "MATR
 
 
 def _again(found: Diagnosis, matrix: str, seconds: float | None) -> Message | None:
-    """The command that searches again, with twice the time or the effects; None where that is not the next step."""
+    """The command that searches again, with twice the time or the effects; None where another step is next."""
     step = next_step(found)
     if step.key == "next.more":
         return message("recommended.more", matrix=matrix, most=step.values["most"])
@@ -78,7 +78,7 @@ def _again(found: Diagnosis, matrix: str, seconds: float | None) -> Message | No
 
 
 def _compared(found: Diagnosis, file: str, matrix: str) -> Message | None:
-    """The commands that compare the fits with and without what validation data contradict."""
+    """The commands that compare the fits with and without the effects that validation data contradict."""
     added = end_of_ladder(found)
     if next_step(found).key != "next.compare" or found.proposals or not added:
         return None

@@ -1,4 +1,4 @@
-"""A parameter as a diagnosis found it."""
+"""The estimate of a parameter in a diagnosis."""
 
 from __future__ import annotations
 

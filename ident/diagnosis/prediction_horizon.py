@@ -1,9 +1,9 @@
-"""Longer windows, weighed with an effect in the model.
+"""Longer windows, compared with an effect in the model.
 
-The windows of a machine that integrates were chosen without the effect that is missing. What that effect adds up to
-looks then like what a disturbance adds up to: short windows forgive both, and over them the effect is worth little.
-With it in the model longer windows, or whole runs, may make the records more likely than the short ones do with any
-effect. Then these are what effects are to be judged by.
+The windows of a machine that integrates were chosen without the missing effect. The drift by that effect looks then
+like the drift by a disturbance: short windows hide both, and over them the effect is worth little. With the effect in
+the model longer windows, or whole runs, may make the records more likely than the short ones do with any effect. Then
+effects are judged over the longer ones.
 """
 
 from __future__ import annotations
@@ -35,9 +35,9 @@ class LongerHorizon:
 def longer_horizon(moves: Moves, report: Report) -> LongerHorizon | None:
     """The models over windows by which, with one effect, the records are most likely, where those are longer ones.
 
-    SetGains are the finalists of the first ranking over the fitted windows, refitted over longer ones, and what ranks
-    first of whole runs. More likely than by the fitted model they are to be beyond chance for the best of all that was
-    looked at. None where the fitted windows stay, or their residual is noise. Raises TimeIsUp.
+    The candidates are the finalists of the first ranking over the fitted windows, refitted over longer ones, and the
+    finalists of a ranking over whole runs. The records have to be more likely than by the fitted model, beyond chance
+    for the best of all candidates. None where the fitted windows stay, or their residual is noise. Raises TimeIsUp.
     """
     base, models = moves.base, moves.models
     horizons = longer(base.fitness, base.point)
@@ -65,16 +65,16 @@ def longer_horizon(moves: Moves, report: Report) -> LongerHorizon | None:
 
 
 def _refitted(models: CandidateModels, found: Sequence[FittedModel], fitted: Mapping[str, float]) -> list[FittedModel]:
-    """What was found over other windows, found again over those of these models: from there, and from the fit.
+    """The models that were fitted over other windows, refitted over these: from their own values, and from the fit's.
 
-    One or the other way may be barred, and over longer windows either leads far.
+    One of the two starts may be unstable, and over longer windows the optimum is far from both.
     """
     starts = [(one.effects, start) for one in found for start in (one.values, fitted)]
     return [one for one in each(lambda start: models.converged(models.refit(*start)), starts) if one.stable]
 
 
 def _likeliest(judged: Sequence[tuple[float, FittedModel]]) -> list[tuple[float, FittedModel]]:
-    """The likeliest of each set of effects, each with how likely it is, in that order; no more than go on."""
+    """The most likely model of each set of effects with its log-likelihood, best first, as many as are continued."""
     found: dict[tuple[str, ...], tuple[float, FittedModel]] = {}
     for likely, one in stable_ranking(judged, lambda one: -one[0]):
         found.setdefault(one.effects, (likely, one))
@@ -82,7 +82,7 @@ def _likeliest(judged: Sequence[tuple[float, FittedModel]]) -> list[tuple[float,
 
 
 def _ranked(models: CandidateModels, base: FittedModel, report: Report) -> list[FittedModel]:
-    """The finalists among the effects beside the fitted model."""
+    """The finalists among the effects in addition to the fitted model."""
     start = models.refit(base.effects, base.values)
     if not start.finite:
         return []
@@ -92,6 +92,6 @@ def _ranked(models: CandidateModels, base: FittedModel, report: Report) -> list[
 
 
 def _log_likelihood(refit: FittedModel, memory: float | None) -> float:
-    """How likely a refit makes the records, nats but for a constant; with a `memory` of a speed that wanders."""
+    """The log-likelihood of the records by a refit, in nats up to a constant; `memory` is that of a random speed."""
     found = likelihood(refit.fitness, refit.point, memory)
     return found if np.isfinite(found) else -np.inf

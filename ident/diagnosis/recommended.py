@@ -1,4 +1,4 @@
-"""The fit that a diagnosis recommends: the model that it ended with, begun where its refit of that model ended."""
+"""The fit that a diagnosis recommends: its last model, begun from the refit of that model."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from ident.words.number import count
 
 @dataclass(frozen=True)
 class End:
-    """Where a refit of a diagnosis ended: what its model has beyond the fitted one, with definitions."""
+    """The end of a refit in a diagnosis: the effects that its model has beyond the fitted one, with definitions."""
 
     added: tuple[str, ...]
     parameters: Mapping[str, ParameterEstimate]
@@ -31,7 +31,7 @@ class End:
 def settings_after(
     found: FitResult | Diagnosis, effects: Sequence[str] = (), terms: int | None = None, search: bool = False
 ) -> Settings:  # fmt: skip
-    """The settings of the fit that begins where a fit ended, or a refit of a diagnosis: of what that recommends.
+    """The settings of the fit that begins where a fit ended, or the recommended refit of a diagnosis.
 
     `effects` take another model that the diagnosis refitted, with just these added to the fitted one; `terms` the first
     of the terms that it proposes. With `search` the whole space is searched, too. Raises Unusable.
@@ -54,11 +54,11 @@ def settings_after(
 
 
 def recommended(found: Diagnosis, terms: int | None = None) -> End:
-    """What a diagnosis would add, with all terms that it proposes or the first `terms` of them (0: none).
+    """The refit that a diagnosis recommends, with all proposed terms or the first `terms` of them (0: none).
 
     Without terms it has no effect of which validation data show nothing.
 
-    Raises Unusable where it proposes fewer, or where it came to no refit.
+    Raises Unusable where it proposes fewer, or has no refit.
     """
     proposals = found.proposals or ()
     if terms is not None and not 0 <= terms <= len(proposals):
@@ -75,7 +75,7 @@ def recommended(found: Diagnosis, terms: int | None = None) -> End:
 
 
 def end_of_ladder(found: Diagnosis) -> tuple[str, ...]:
-    """What the last refit of the ladder has beyond the fitted model; nothing where there was no refit."""
+    """The effects that the last refit of the ladder has beyond the fitted model; () where there was no refit."""
     return max((end.added for end in _rungs(found)), key=len, default=())
 
 
@@ -98,7 +98,7 @@ def settings_of_end(found: Diagnosis, end: End, search: bool = False) -> Setting
 
 
 def _ends(found: Diagnosis) -> Iterator[End]:
-    """Every refit of a diagnosis, that of what it would add first."""
+    """Every refit of a diagnosis, the refit with all proposed terms first."""
     proposals = found.proposals or ()
     yield from (_with_terms(proposals[:terms]) for terms in range(len(proposals), 0, -1))
     yield from _rungs(found)
@@ -106,7 +106,7 @@ def _ends(found: Diagnosis) -> Iterator[End]:
 
 
 def _rungs(found: Diagnosis) -> Iterator[End]:
-    """Those of the ladder, the fitted model first."""
+    """The refits of the ladder, the fitted model first."""
     added: tuple[str, ...] = ()
     for rung in found.ladder:
         added = (*added, rung.added) if rung.added else added
@@ -122,7 +122,7 @@ def _with_terms(terms: Sequence[Proposal]) -> End:
 
 
 def _as_refitted(own: Mapping[str, Any], parameters: Mapping[str, ParameterEstimate]) -> dict[str, Any]:
-    """The definition of a term with its shapes and its curve as a refit found them: a fit holds them there."""
+    """The definition of a term with the fitted values of its shapes and its curve: a fit holds these values."""
 
     def value(symbol: str, otherwise: Any) -> Any:
         known = parameters.get(f"{own['name']}.{symbol}")

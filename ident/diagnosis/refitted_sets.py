@@ -1,8 +1,8 @@
 """The models that a search refitted, and the gain of each set of effects over the fitted one.
 
-All gains are under one disturbance spectrum, that of the best of these models, with the fitted one as its reference.
-Each width that was freed takes off the gain that is worth a parameter. At its bounds an effect is often another one:
-friction that builds up over no way is Coulomb's. So it explains as much, and no more.
+All gains are under one disturbance spectrum, common to all these models, with the fitted one as its reference. Each
+free width costs the gain that is worth a parameter. At its bounds an effect is often another one: friction that builds
+up over no way is Coulomb's. So it explains as much, and no more.
 """
 
 from __future__ import annotations
@@ -22,14 +22,13 @@ from ident.diagnosis.model_comparison import both_probable
 
 @dataclass
 class RefittedSets:
-    """The best refit of each set of effects that the fitted model lacks, as they are met."""
+    """The best refit of each set of effects that the fitted model lacks, among all refits of a search."""
 
     base: FittedModel
     best: dict[frozenset[str], FittedModel] = field(default_factory=dict)
 
     def met(self, models: Iterable[FittedModel]) -> None:
-        """Keep each model whose held-out error is below that known of the same effects; not one that runs away
-        there."""
+        """Record each model whose held-out error is finite and below that of the known model with the same effects."""
         for model in models:
             added = frozenset(model.effects) - frozenset(self.base.effects)
             best = self.best.get(added)
@@ -45,7 +44,7 @@ class RefittedSets:
         return sorted(probable, key=lambda model: model.held_out.score)
 
     def gains(self) -> SetGains:
-        """What speaks for each of them, in nats, less what its free widths are charged."""
+        """The gain of each set in nats, less the charge for its free widths."""
         base = self.base.residuals_held_out
         disturbance = common_disturbance([base, *(model.residuals_held_out for model in self.best.values())])
         gains = {
@@ -55,5 +54,5 @@ class RefittedSets:
         return SetGains({NOTHING: 0.0, **gains}, most(base, disturbance))
 
     def _charge(self, model: FittedModel) -> float:
-        """The gain that the widths are worth which a model has free and the fitted one has not, in nats."""
+        """The charge in nats for the widths that are free in a model and not in the fitted one."""
         return CRITERIA.evidence.least_gain * (freed_widths(model) - freed_widths(self.base))

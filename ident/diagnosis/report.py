@@ -1,4 +1,4 @@
-"""What a diagnosis reports: the ranking, the ladder and the verdict with its sentences, as data."""
+"""The report of a diagnosis: the ranking, the ladder and the verdict with its sentences, as data."""
 
 from __future__ import annotations
 
@@ -27,7 +27,8 @@ from ident.words.engineering import quantity
 
 
 def report(fit: FitResult, models: CandidateModels, selection: Selection, steps: Rungs, found: Findings) -> Diagnosis:
-    """The diagnosis of a fit by what a selection found; `models` are those of all runs, `steps` its ladder."""
+    """The diagnosis of a fit by the findings on a selection; `models` are the models of all runs, `steps` the
+    ladder."""
     base = selection.base
     unknown: Errors = {**NO_ERRORS, **fit.noise_floor}
     floor = in_time(lambda: selection.models.floors.of_use(selection.models.matrix)) or unknown
@@ -67,14 +68,14 @@ def report(fit: FitResult, models: CandidateModels, selection: Selection, steps:
 
 
 def _effect_sets(found: SetGains | None, order: Sequence[str]) -> tuple[EffectSet, ...]:
-    """The sets of effects that were refitted, the likeliest first, each in the order of the catalogue."""
+    """The sets of effects that were refitted, the largest gain first, each in the order of the catalogue."""
     gains = {} if found is None else found.gains
     sets = [EffectSet(tuple(sorted(effects, key=order.index)), nats) for effects, nats in gains.items()]
     return tuple(sorted(sets, key=lambda one: -one.nats))
 
 
 def _settings(fit: FitResult, models: CandidateModels, selection: Selection) -> dict[str, Any]:
-    """Those of the fit, with the bounds of the widths that were freed: a fit that begins here searches there, too."""
+    """The settings of the fit, with the bounds of the freed widths: a fit that begins here searches within them."""
     freed = bounds_of_freed(selection.fitted, selection.models.effects)
     usual = {p.name for effect in models.effects.values() for p in effect.added if p.searched}
     bounds = {name: list(of) for name, of in freed.items() if name not in usual}
@@ -85,7 +86,7 @@ def _settings(fit: FitResult, models: CandidateModels, selection: Selection) -> 
 
 
 def _held(selection: Selection) -> tuple[str, ...]:
-    """What is said of widths of added effects that kept their usual values."""
+    """The note on the widths of added effects that have their usual values."""
     fitted, preset = selection.fitted, selection.fitted.fitness.preset
     widths = held_widths(fitted, {name: selection.models.effects[name] for name in selection.added}).items()
     values = [f"{name} = {quantity(value, preset.unit(preset.parameter(name)))}" for name, value in widths]
@@ -110,7 +111,7 @@ def _text(selection: Selection, steps: Rungs, found: Findings, floor: float | No
 
 
 def better_with_fewer(steps: Rungs) -> tuple[float, tuple[str, ...]] | None:
-    """The least error on verify runs on the way, and what was added since; None where the last is about as small."""
+    """The least validation error on the ladder, and the effects added since; None where the last is about as small."""
     errors = [refit.errors["verify"] for _, refit in steps]
     last, least = errors[-1], min((error for error in errors if error is not None), default=None)
     if last is None or least is None or last < CRITERIA.verification.rise * least:
@@ -121,7 +122,7 @@ def better_with_fewer(steps: Rungs) -> tuple[float, tuple[str, ...]] | None:
 def group_of(effect: str, verdict: Verdict) -> tuple[str, ...]:
     """The group of the verdict that an effect belongs to; none where there is no other, or where it holds two lags.
 
-    Effects that tie at the first step may differ at the last: what the verdict distinguishes is no group.
+    Effects that tie at the first step may differ at the last: effects that the verdict distinguishes are no group.
     """
     groups = (group for group in verdict.indistinguishable if len({*group} & {*verdict.effects}) < 2)
     return next((group for group in groups if effect in group), ())
@@ -129,8 +130,8 @@ def group_of(effect: str, verdict: Verdict) -> tuple[str, ...]:
 
 def _ranked(selection: Selection, floor: float | None, verdict: Verdict) -> list[Ranked]:
     base, models = selection.base, selection.models
-    before = in_time(lambda: base.held_out.error) or 0.0  # without it nothing was refitted that it is compared with
-    with suppress(TimeIsUp):  # side by side, not one by one below
+    before = in_time(lambda: base.held_out.error) or 0.0  # unknown only where no candidate was refitted
+    with suppress(TimeIsUp):  # in parallel, not one by one below
         each(lambda candidate: candidate.refit and candidate.refit.errors, selection.ranking)
     listed = []
     for i, candidate in enumerate(selection.ranking):
@@ -156,7 +157,7 @@ def _ranked(selection: Selection, floor: float | None, verdict: Verdict) -> list
 
 
 def _ladder(steps: Rungs, added: Sequence[str]) -> list[Rung]:
-    """The rungs, and without figures those of what was `added` that there was no time to refit."""
+    """The rungs; those of `added` effects that there was no time to refit have no figures."""
     known, rungs = dict(steps), [rung_of(None, None, steps[0][1])]
     before: FittedModel | None = steps[0][1]
     for name in added:
@@ -167,7 +168,7 @@ def _ladder(steps: Rungs, added: Sequence[str]) -> list[Rung]:
 
 
 def rung_of(added: str | None, before: FittedModel | None, refit: FittedModel) -> Rung:
-    """One rung, on top of the one `before` where that is known."""
+    """One rung, compared with the model `before` it where that is known."""
     compared = before is not None and before.stable and refit.stable
     found = in_time(lambda: evidence(before, refit)) if before and compared else None
     return Rung(

@@ -1,4 +1,4 @@
-"""Parameters that the data do not determine, held where few steps follow them, also where effects are added."""
+"""Parameters that the data do not determine, held where few steps are needed, also where effects are added."""
 
 from __future__ import annotations
 
@@ -20,11 +20,11 @@ class Resting:
     places: Mapping[str, float] = field(default_factory=dict)
 
     def held(self, space: Space, points: Array) -> Array:
-        """Points (…, p) of the unit cube of a space, with what rests at its places."""
+        """Points (…, p) of the unit cube of a space, with the held parameters at their places."""
         places = [self.places.get(name, np.nan) for name in space.names]
         return np.where(np.isnan(places), points, places)
 
     def bounds(self, space: Space) -> tuple[Array, Array]:
-        """The lower and upper ends of every axis, which are one where a parameter rests."""
+        """The lower and upper ends of every axis, equal where a parameter is held."""
         count = len(space.axes)
         return self.held(space, np.zeros(count)), self.held(space, np.ones(count))

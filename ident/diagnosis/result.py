@@ -1,4 +1,4 @@
-"""What a diagnosis found, in the contract's words: its JSON has these names in this order."""
+"""The result of a diagnosis, in the contract's words: its JSON has these names in this order."""
 
 from __future__ import annotations
 
@@ -22,11 +22,11 @@ from ident.words.shown import Shown, in_brief
 Errors = Mapping[str, float | None]
 """Eq. (17) averaged over the runs of a kind: fit, held_out, verify; None where there are none."""
 NO_ERRORS: Errors = {"fit": None, "held_out": None, "verify": None}
-"""The errors of what was not refitted."""
+"""The errors of a model that was not refitted."""
 
 
 class Judged:
-    """What has errors by use: with the mean counted, `rmse` in `rmse_unit`, and where it is unstable, if known."""
+    """A model with its errors by use: with the mean counted, `rmse` in `rmse_unit`, and its unstable runs, if known."""
 
     error: Errors
     error_with_mean: Errors
@@ -58,7 +58,7 @@ class Baseline(Judged):
 
 @dataclass(frozen=True, kw_only=True)
 class Ranked(Judged):
-    """An effect that the model lacks: what it was predicted to gain, what its refit gained, and why.
+    """A candidate effect: its predicted error, the errors of its refit, and the evidence for it.
 
     `group` is the group of the verdict that it belongs to. Without `parameters` only the prediction was made.
     `unstable` has by use the runs on which the model is unstable with it.
@@ -81,15 +81,15 @@ class Ranked(Judged):
 
     @property
     def strength(self) -> ParameterEstimate | None:
-        """What the refit found of its strength, the first of its parameters."""
+        """The estimate of its strength in the refit, the first of its parameters."""
         return next((found for name, found in self.parameters.items() if name.startswith(f"{self.effect}.")), None)
 
 
 @dataclass(frozen=True, kw_only=True)
 class Rung(Judged):
-    """A step of the ladder: what was added (None: the fitted model), the errors after it, the parameters.
+    """A step of the ladder: the added effect (None: the fitted model), the errors after it, the parameters.
 
-    `nats` tell by how much the step made the held-out data more likely, `unstable` has by use the runs on which the
+    `nats` is the log-likelihood gain of the step on the held-out data, `unstable` has by use the runs on which the
     model is unstable after it.
     """
 
@@ -107,7 +107,7 @@ class Rung(Judged):
 
 @dataclass(frozen=True)
 class LabelErrors:
-    """Eq. (17) of a run as labelled, what the other runs let expect, and with the label mended."""
+    """The error of eq. (17) of a run as labelled, its usual error by the other runs, and with the new label."""
 
     as_labelled: float | None = None
     usual: float | None = None
@@ -116,7 +116,8 @@ class LabelErrors:
 
 @dataclass(frozen=True)
 class Suspect:
-    """A run, which of its labels is doubted, what stands there and what the data say, in `unit`; why, in a sentence."""
+    """A run with a doubtful label: the label, its stated value and its value by the data, in `unit`, and the
+    evidence."""
 
     run: str
     what: str = ""
@@ -129,9 +130,9 @@ class Suspect:
 
 @dataclass(frozen=True)
 class Explanation:
-    """Another model of the machine that explains as well as what was found, with these effects, and its errors.
+    """Another model of the machine that explains the data as well as the last model, with its effects and errors.
 
-    `better`: beyond chance.
+    `better`: it explains more, beyond chance.
     """
 
     machine: str
@@ -142,16 +143,17 @@ class Explanation:
 
 @dataclass(frozen=True)
 class Verdict:
-    """What to add, what the data cannot tell apart, whose label is doubted, and whether the residual is unexplained.
+    """The named effects, the groups that the data cannot tell apart, the suspects, and whether the residual is
+    explained.
 
-    `standing` says how sure the effects are, see :data:`ident.diagnosis.verification.Standing`; None where it was not
-    asked. `contradicted_by` are those with which the error rises on runs to verify, `at_bound` those whose strength
-    ended at a bound that the search set, `elsewhere` what other models explain as well. `stood_in` are effects of the
-    ladder that are not named: beside terms that a search proposes the model does as well without them; `unconfirmed`
-    are others of the ladder that are not named: runs to verify show nothing of them.
-    `indistinguishable` are groups of which one is named, or two lags or delays that two others stand for as well.
-    `probability` is that of the verdict, None where it was not asked; `probabilities` those of each effect that was
-    refitted, of "nothing" and of something "unlisted", `group_probabilities` those of the groups.
+    `standing` says how sure the effects are, see :data:`ident.diagnosis.verification.Standing`; None where it is not
+    known. `contradicted_by` are effects with which the error rises on validation data, `at_bound` effects whose
+    strength ended at a bound of the search, `elsewhere` explanations by other machines that are as good. Two kinds of
+    effects of the ladder are not named: `stood_in` are redundant with proposed terms, and validation data show nothing
+    of `unconfirmed` ones. `indistinguishable` are groups of effects one of which is named, or two lags or delays that
+    two others replace as well. `probability` is the probability of the verdict, None where it is not known;
+    `probabilities` has each effect that was refitted, "nothing" and something "unlisted", `group_probabilities` has one
+    for each group.
     """
 
     effects: tuple[str, ...] = ()
@@ -180,7 +182,7 @@ class EffectSet:
 
 @dataclass(frozen=True, kw_only=True)
 class NextRun:
-    """The run that the lab should add, SI, as :class:`ident.design.experiment.Experiment` tells it.
+    """The run that the lab should add, SI, by :class:`ident.design.experiment.Experiment`.
 
     `conditions` are its words, `run` its entry in matrix.yaml.
     """
@@ -206,19 +208,19 @@ class NextRun:
 
 @dataclass(frozen=True, kw_only=True)
 class Diagnosis(Shown):
-    """Everything that was found about one fit of one matrix; `effects` are those that the fit had.
+    """The whole diagnosis of one fit of one matrix; `effects` are the effects that the fit had.
 
     `budget` is None where the model is unstable at every run, `next_experiment` where no run can be proposed. With a
-    `horizon` (s) every error is that over windows of this length, as `window` of the fit says it (`memory`, s, too).
-    Runs that are `left_out`, for their labels are doubted, are in no refit and no error. Not `complete`, it is what had
-    been found when the search was stopped, or goes on; `not_looked_at` are the stages that are missing. `proposals`
-    are terms that no list holds, of as many that were `looked_at`: they are no part of the verdict. `terms_left_out` of
-    these no model can hold, or they are not finite. None is what an earlier version did not tell. `matrix` holds the
-    data, where the diagnosis was made here. `effect_sets` are all sets of effects that were refitted, `most_nats` the
-    gain of a model whose residual is the noise. `missing_inputs` are the stretches in which an input acted that
-    is not recorded: run, from, to (s, or samples) and evidence; where a run to fit has one, no effect was looked for.
+    `horizon` (s) every error is over windows of this length, as in the fit's `window` (`memory`, s, too). Runs that are
+    `left_out` because of a doubtful label are in no refit and no error. `complete` is false where the search was
+    stopped, or goes on; `not_looked_at` are the stages that are missing. `proposals` are unlisted terms, the best of
+    those that were `looked_at`: they are no part of the verdict. `terms_left_out` counts the terms that no model can
+    have, or that are not finite. None means that an earlier version did not write it. `matrix` has the data, where the
+    diagnosis was made in this process. `effect_sets` are all sets of effects that were refitted, `most_nats` the gain
+    of a model whose residual is the noise. `missing_inputs` are the stretches in which an input acted that is not
+    recorded: run, from, to (s, or samples) and evidence; where estimation data have one, no effect was looked for.
     `oscillation` has the runs that swing by themselves: run, frequency, growth (Hz and 1/s, or 1/sample), cause.
-    `max_effects` is how many effects could be added.
+    `max_effects` is the largest number of effects that could be added.
     """
 
     model: str = "qian2014"
@@ -254,32 +256,32 @@ class Diagnosis(Shown):
 
     @property
     def confirmed_ladder(self) -> tuple[Rung, ...]:
-        """The ladder without the last effects of which runs to verify show nothing: what is recommended."""
+        """The recommended ladder: without the last effects of which validation data show nothing."""
         return tuple(rung for rung in self.ladder if rung.added not in self.verdict.unconfirmed)
 
     @property
     def lacks_input(self) -> bool:
-        """Whether no effect was looked for, since an input of the runs to fit is not recorded."""
+        """Whether no effect was looked for, because an input of the estimation data is not recorded."""
         return bool(self.missing_inputs) and self.complete and not self.candidates
 
     @property
     def oscillates(self) -> bool:
-        """Whether a part of the error remains, and the machine oscillates by itself: no effect can stand for that."""
+        """Whether the residual is unexplained, and the machine oscillates by itself: no effect explains that."""
         return bool(self.oscillation) and self.verdict.unexplained
 
     @property
     def headline(self) -> str:
-        """Its first line: the model that was fitted, and its error on each use of runs."""
+        """The first line: the fitted model, and its error on each use of runs."""
         of = {use: self.baseline.error_of(use) for use in USES}
         return first_line(" + ".join((self.model, *self.effects)), of)
 
     @property
     def summary(self) -> tuple[str, ...]:
-        """The verdict in three lines: what is missing, what it does to the error, what to do next."""
+        """The verdict in three lines: the missing effects, the change of the error, the next step."""
         return in_brief(self)
 
     def records(self) -> list[dict[str, Any]]:
-        """A record an effect that was ranked, best first, for a data frame."""
+        """One record for each ranked effect, best first, for a data frame."""
         return [
             {
                 "effect": one.effect, "probability": one.probability, "predicted_error": one.predicted_error,
@@ -290,7 +292,8 @@ class Diagnosis(Shown):
         ]  # fmt: skip
 
     def to_json(self) -> dict[str, Any]:
-        """As plain JSON data (no NaN, no infinity); what an earlier version did not tell is left out."""
+        """The diagnosis as plain JSON data (no NaN, no infinity), without fields that an earlier version did not
+        write."""
         data: dict[str, Any] = written(self) | {"proposals": [one.to_json() for one in self.proposals or ()]}
         if self.proposals is None:
             del data["proposals"]
@@ -302,7 +305,7 @@ class Diagnosis(Shown):
 
     @classmethod
     def from_json(cls, data: object) -> Diagnosis:
-        """The inverse of :meth:`to_json`, of what any version wrote. Raises Unusable where it is no diagnosis."""
+        """The inverse of :meth:`to_json`, for the JSON of any version. Raises Unusable where it is no diagnosis."""
         try:
             return read(cls, _in_own_names(data))
         except Misfit as error:
@@ -318,6 +321,6 @@ def _in_own_names(data: object) -> object:
 
 
 def bad_diagnosis(why: str, where: str = "diagnosis") -> Unusable:
-    """The refusal of what is no diagnosis, or of one whose models cannot be put together."""
+    """The refusal of data that are no diagnosis, or of a diagnosis whose models cannot be put together."""
     return Unusable("bad-diagnosis", f"not the JSON of a diagnosis: {why}", where,
                     "give the file that `servoident diagnose --json FILE` wrote")  # fmt: skip

@@ -1,4 +1,4 @@
-"""What a diagnosis says: messages, whose text is in :mod:`ident.words.messages`, and the same as sentences."""
+"""The messages of a diagnosis, whose text is in :mod:`ident.words.messages`, and their sentences."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ from ident.words.titles import title
 
 
 def why(candidate: Candidate, effect: Effect, before: float, floor: float | None, best: bool) -> str:
-    """Why the data speak for or against an effect; `before` is the held-out error without it."""
+    """The evidence for or against an effect, in words; `before` is the held-out error without it."""
     if candidate.refit is None or candidate.evidence is None:
         return str(message("why.predicted", share=100 * candidate.prediction.reduction))
     errors = before, candidate.refit.held_out.error
@@ -70,7 +70,7 @@ def _loses(part: Hashable) -> Message:
 
 
 def _drifts(found: Evidence) -> Message:
-    """That the free run drifts away with an effect that is better over windows."""
+    """The message that the free run drifts away with an effect that improves the model over windows."""
     assert found.free_runs is not None
     before, after = found.free_runs
     return message("why.free_run", before=sqrt(before.power), after=sqrt(after.power), expected=sqrt(after.expected))
@@ -96,15 +96,15 @@ def verdict_text(
     probabilities: Mapping[str, float] = MappingProxyType({}), group_probabilities: Sequence[float] = (),
     limit: int | None = None, unconfirmed: Sequence[VerifyChange] = (),
 ) -> str:  # fmt: skip
-    """The verdict in a few sentences, what speaks against it first.
+    """The verdict in a few sentences, contradictions first.
 
-    Not `in_band`, the noise in the band of the command is not known. Not `complete`, the search was stopped.
-    `described` tells what an effect is the first time that it is named; `bounded` are those whose strength ended at the
-    bound of its search. `fewer` is the error on verify runs without the last of what was added, where it is
-    smaller there; `unstable` are the verify runs on which the model is unstable with it. `probabilities` are those
-    of effects, of "nothing" and of something "unlisted", `group_probabilities` those of the groups. `limit` is the
-    number of effects that ended the search, where that did. `unconfirmed` are what verify runs say of effects that
-    were added and are not named.
+    `in_band` is false where the noise in the band of the command is not known, `complete` where the search was stopped.
+    `described` gives the description of an effect for its first mention; `bounded` are effects whose strength ended at
+    the bound of its search. `fewer` is the validation error without the last added effects, where it is smaller, and
+    these effects; `unstable` are the validation runs on which the model is unstable with them. `probabilities` has the
+    effects, "nothing" and something "unlisted", `group_probabilities` has one for each group. `limit` is the largest
+    number of effects, where it ended the search. `unconfirmed` are the changes of the validation error by added effects
+    that are not named.
     """
     named = _described_once(described)
     found = [one.message(named(one.effect)) for one in against]
@@ -140,7 +140,7 @@ def verdict_text(
 
 
 def _shows_nothing(named: str, change: VerifyChange) -> Message:
-    """That runs to verify show nothing of an effect, by the errors that decide."""
+    """The message that validation data show nothing of an effect, by the errors that decide."""
     first = change.with_mean[0] if change.with_mean else change.before
     return message(
         "verdict.shows_nothing", named=named, before=first, after=first + change.rise, due=first - change.due
@@ -150,7 +150,7 @@ def _shows_nothing(named: str, change: VerifyChange) -> Message:
 def _falls(
     added: Sequence[str], effects: Sequence[Message], change: Message, partly: bool, improbable: bool
 ) -> Message:  # fmt: skip
-    """That the error falls with what was added, and what that says of the model."""
+    """The message that the error falls with the added effects, and its meaning for the model."""
     if partly:
         return message("verdict.partly", effects=effects, change=change)
     if improbable:
@@ -163,7 +163,7 @@ def _falls(
 def _remaining(
     complete: bool, limit: int | None, probabilities: Mapping[str, float], in_band: bool, floor: float | None
 ) -> Iterator[Message]:  # fmt: skip
-    """That the error is above the noise floor, and why the residual may be noise or a further effect."""
+    """The messages that the error is above the noise floor, and why the residual may be noise or a further effect."""
     examined = complete and limit is None
     yield _probable("verdict.unlisted" if examined else "verdict.remains", "unlisted", probabilities)
     if limit is not None:
@@ -176,11 +176,11 @@ _PROBABLE: Mapping[str, str] = {
     "effect": "effect.probable", "verdict.nothing": "verdict.nothing_probable",
     "verdict.unlisted": "verdict.unlisted_probable", "verdict.remains": "verdict.remains_probable",
 }  # fmt: skip
-"""The message that says the same with its probability."""
+"""For each message the message with a probability."""
 
 
 def _probable(key: str, name: str, probabilities: Mapping[str, float], **values: object) -> Message:
-    """What is said, and how probable it is where that is known."""
+    """The message, with its probability where it is known."""
     if name not in probabilities:
         return message(key, **values)
     return message(_PROBABLE[key], probability=probabilities[name], **values)
@@ -190,7 +190,7 @@ def _lacking(
     name: str, added: Sequence[str], of_groups: Mapping[tuple[str, ...], float], probabilities: Mapping[str, float],
     named: Callable[[str], str],
 ) -> Message:  # fmt: skip
-    """An effect and its probability; of a group all that may be meant, and that of the group."""
+    """An effect and its probability; for an effect of a group, the whole group and the group's probability."""
     group = next((group for group in of_groups if name in group and not has_two(group, added)), ())
     if not group:
         return _probable("effect", name, probabilities, names=[named(name)])
@@ -199,7 +199,7 @@ def _lacking(
 
 
 def _group(group: Sequence[str], added: Sequence[str], named: Callable[[str], str], unexplained: bool) -> Message:
-    """That a group cannot be seen apart, and by how much its refits differ."""
+    """The message that the data do not distinguish the effects of a group."""
     if has_two(group, added):
         key = "verdict.two_unexplained" if unexplained else "verdict.two"
     else:
@@ -208,9 +208,9 @@ def _group(group: Sequence[str], added: Sequence[str], named: Callable[[str], st
 
 
 def _others(added: Sequence[str], groups: Sequence[Sequence[str]], probabilities: Mapping[str, float]) -> list[Message]:
-    """Effects that are neither named nor of a group, and at least half as probable as one that is named.
+    """The effects that are neither named nor in a group, and at least half as probable as a named one.
 
-    What is hardly probable has no rivals, and is none.
+    An effect that is hardly probable has no alternatives, and is none.
     """
     said = {*added, *(name for group in groups for name in group), "nothing", "unlisted"}
     worth = CRITERIA.ambiguity.worth_saying
@@ -222,12 +222,12 @@ def _others(added: Sequence[str], groups: Sequence[Sequence[str]], probabilities
 
 
 def has_two(group: Sequence[str], added: Sequence[str]) -> bool:
-    """Whether two of a group were added, which stand for two others as well."""
+    """Whether two effects of a group were added: two others explain the data as well."""
     return len({*group} & {*added}) == 2
 
 
 def cannot_distinguish(group: Sequence[str], added: Sequence[str]) -> str:
-    """What data cannot do of a group of effects of which one was added, or two that stand for two others as well."""
+    """The sentence that data cannot distinguish the effects of a group, one or two of which were added."""
     return str(message("group.two" if has_two(group, added) else "group", group=list(map(title, group))))
 
 
@@ -235,7 +235,7 @@ def _change(
     before: float, errors: Mapping[str, float | None], fewer: tuple[float, Sequence[str]] | None,
     unstable: Sequence[str],
 ) -> Message:  # fmt: skip
-    """How the error falls on estimation data, and what it is on validation data."""
+    """The change of the error on estimation data, and the error on validation data."""
     after, verify = errors["fit"], errors.get("verify")
     if unstable:
         return message("change.unstable", before=before, after=after, runs=unstable)
@@ -247,20 +247,20 @@ def _change(
 
 
 def alternative_sentences(elsewhere: Sequence[Explanation]) -> Iterator[str]:
-    """What other models explain better, or as well, in a sentence each; nothing where there is none."""
+    """A sentence on the other models that explain the data better, and one on those that explain them as well."""
     for better, key in ((True, "alternative.better"), (False, "alternative.equal")):
         if models := [_alternative(one) for one in elsewhere if one.better is better]:
             yield str(message(key, models=models))
 
 
 def dispensable_sentence(names: Sequence[str]) -> Iterator[str]:
-    """Which effects only stood for what a search proposes, in a sentence."""
+    """A sentence on the effects that are redundant with the proposed terms."""
     if names:
         yield str(message("dispensable.several" if len(names) > 1 else "dispensable.one", effects=names))
 
 
 def horizon_sentence(fitted: float | None, horizon: float | None) -> Iterator[str]:
-    """Over what errors are those of the diagnosis, where these are not the windows of the fit."""
+    """A sentence on the horizon of the errors of a diagnosis, where it is not the fit's."""
     if horizon is None:
         yield str(message("horizon.runs", fitted=fitted or 0.0))
     else:
@@ -268,13 +268,13 @@ def horizon_sentence(fitted: float | None, horizon: float | None) -> Iterator[st
 
 
 def free_run_sentence(free: FreeRun) -> Iterator[str]:
-    """What windows forgive: that a free run drifts farther than they explain."""
+    """A sentence on a free run that drifts further than windows explain."""
     if drifts(free):
         yield str(message("free_run", error=sqrt(free.power), expected=sqrt(free.expected)))
 
 
 def delay_sentence(late: TotalDelay, described: Callable[[str], str] = title, without: Sequence[str] = ()) -> str:
-    """How late the machine answers `without` some effects, and what the data cannot tell it from, in a sentence."""
+    """A sentence on the total delay `without` some effects, and on the lags and delays the data cannot distinguish."""
     constant = message("parameter", name=late.parameter.name, meaning=late.parameter.meaning)
     values = {"time": _seconds(late.fitted), "names": [constant, *map(described, late.in_place)]}
     if late.before and without:
@@ -299,7 +299,7 @@ def _alternative(one: Explanation) -> Message:
 
 
 def proposed_text(terms: Sequence[Proposal]) -> str:
-    """What a search beyond the catalogue proposes, in sentences: no part of the verdict."""
+    """The sentences on the proposed terms, which are no part of the verdict."""
     return said(list(_proposed(terms)))
 
 
@@ -335,7 +335,7 @@ def _term(one: Proposal) -> Message:
 
 
 def _later_terms_correct(one: Proposal, last: Proposal) -> bool:
-    """Whether the terms that came after one bring down the error on verify runs that it raised."""
+    """Whether later terms bring down the validation error that one term raised."""
     left = last.error.get("verify")
     return one.contradicted is not None and left is not None and left < one.contradicted.before
 
@@ -347,7 +347,7 @@ def _alone(equation: str, against: Contradiction) -> Message:
 
 
 def _described_once(described: Callable[[str], str]) -> Callable[[str], str]:
-    """The name of an effect with what it is seen by the first time, bare then."""
+    """The names of effects, with a description at the first mention only."""
     seen: set[str] = set()
 
     def named(effect: str) -> str:

@@ -1,7 +1,7 @@
-"""Effects that the records show by themselves, and without which a fit goes far astray.
+"""Effects that the records show by themselves, and without which a fit ends far from the machine.
 
-A speed without its sign has no linear answer to a command about zero: from what is fitted to it no step leads to the
-machine. So the model with such an effect is fitted as if a user had asked for it.
+A speed without its sign has no linear response to a command about zero: from a model that is fitted to it no step leads
+to the machine. So the model with such an effect is fitted as if a user had asked for it.
 """
 
 from __future__ import annotations

@@ -1,6 +1,6 @@
-"""What follows the search for effects, stage by stage: one that runs out of time, or fails, takes nothing away.
+"""The stages of a diagnosis: a stage that runs out of time, or fails, does not remove earlier results.
 
-What was not looked at is listed; what failed is said in a note and logged with its traceback for the developers.
+Stages without time are listed; a stage that failed is reported in a note and logged with its traceback for developers.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ TERMS, NEXT_RUN, ERROR_BUDGET = "search for unknown terms", "next run", "error b
 _GIVEN = (NEXT_RUN, ERROR_BUDGET)
 """Stages that give a figure of their own, null where there was no time for them."""
 LATER = (FURTHER, LABELS, OTHERS, LAGS, ERROR_BUDGET, NEXT_RUN, TERMS)
-"""What is still to come while effects are added."""
+"""The stages that follow while effects are added."""
 _IN_ORDER = (EFFECTS, FURTHER, NOISE, VERIFY, *LATER[1:])
 
 Made = TypeVar("Made")
@@ -39,11 +39,12 @@ class Stages:
 
     @property
     def not_looked_at(self) -> tuple[str, ...]:
-        """Those, as they follow each other."""
+        """The stages that had no time or failed, in their order."""
         return tuple(stage for stage in _IN_ORDER if stage in self._missed)
 
     def attempt(self, stage: str, make: Callable[[], Made], instead: Made) -> Made:
-        """What a stage makes; where it runs out of time, or fails, `instead`. What the caller stops it by is raised."""
+        """The result of a stage; `instead` where it runs out of time, or fails. An error of the caller's own is
+        raised."""
         try:
             self.budget.budget.check()
             return make()
@@ -56,7 +57,7 @@ class Stages:
         return instead
 
     def miss(self, stage: str) -> None:
-        """There was no time for a stage."""
+        """Record that there was no time for a stage."""
         if stage in _GIVEN and stage not in self._missed:
             self.notes.append(str(message("stage.no_time", stage=stage)))
         self._missed.add(stage)

@@ -1,4 +1,4 @@
-"""The verdict in three lines: what is missing and how sure that is, what it does to the error, what to do next."""
+"""The verdict in three lines: the missing effects with their probabilities, the change of the error, the next step."""
 
 from __future__ import annotations
 
@@ -14,17 +14,17 @@ from ident.words.shown import in_brief
 from ident.words.titles import title
 
 _USES = ("verify", "held_out", "fit")
-"""Of which data the error says most, the first that there are."""
+"""The uses of data in the order in which their error is reported: the first one with an error."""
 
 
 @in_brief.register
 def summary(found: Diagnosis) -> tuple[str, ...]:
-    """A sentence or two each; from what is stored alone, so that a diagnosis of any version has them."""
+    """One or two sentences for each line, from the stored fields alone, so that a diagnosis of any version has them."""
     return tuple(map(str, summary_messages(found)))
 
 
 def summary_messages(found: Diagnosis) -> tuple[Message, Message, Message]:
-    """The same as messages."""
+    """The three lines as messages."""
     return _missing(found), _error(found), next_step(found)
 
 
@@ -49,7 +49,7 @@ def _missing(found: Diagnosis) -> Message:
 
 
 def _missing_and_helping(found: Diagnosis, named: Sequence[Message]) -> Message:
-    """What is missing, and apart from it what helps though it is less probable than not."""
+    """The missing effects, and the effects that improve the model though they are less probable than not."""
     of_all = found.verdict.probabilities
     improbable = [is_improbable(_probability(found, name), of_all) for name in found.verdict.effects]
     missing = [effect for effect, doubted in zip(named, improbable, strict=True) if not doubted]
@@ -63,14 +63,14 @@ def _missing_and_helping(found: Diagnosis, named: Sequence[Message]) -> Message:
 
 
 def _by_chance(found: Diagnosis) -> bool:
-    """Whether all that is named is improbable, and most probably nothing is missing."""
+    """Whether all named effects are improbable, and most probably nothing is missing."""
     verdict, of_all = found.verdict, found.verdict.probabilities
     improbable = all(is_improbable(_probability(found, name), of_all) for name in verdict.effects)
     return bool(verdict.effects) and improbable and of_all.get("nothing", 0.0) > of_all.get("unlisted", 0.0)
 
 
 def _probability(found: Diagnosis, name: str) -> float | None:
-    """That of an effect, or of its group, where one is told."""
+    """The probability of an effect, or of its group; None where it is not known."""
     verdict = found.verdict
     group = _group(found, name)
     of_group = dict(zip(verdict.indistinguishable, verdict.group_probabilities, strict=False)).get(group)
@@ -119,7 +119,7 @@ def _names(found: Diagnosis, name: str) -> list[str]:
 
 
 def _strength(found: Diagnosis, name: str) -> tuple[float, float, str] | None:
-    """The strength on the last step, its standard error and unit; None where it was not told."""
+    """The strength on the last step, its standard error and unit; None where it is not known."""
     last = found.confirmed_ladder[-1].parameters if found.ladder else {}
     strength = next((p for parameter, p in last.items() if parameter.startswith(f"{name}.")), None)
     if strength is None or strength.std_error is None:
@@ -128,7 +128,7 @@ def _strength(found: Diagnosis, name: str) -> tuple[float, float, str] | None:
 
 
 def _error(found: Diagnosis) -> Message:
-    """The error on the data that say most, before and after, and the noise floor."""
+    """The error on the first use of :data:`_USES` that has one, before and after, and the noise floor."""
     steps = found.confirmed_ladder or (found.baseline,)
     use = next((use for use in _USES if steps[0].error.get(use) is not None), _USES[-1])
     before, after = (step.error.get(use) for step in (steps[0], steps[-1]))
@@ -145,7 +145,7 @@ def _error(found: Diagnosis) -> Message:
 
 
 def next_step(found: Diagnosis) -> Message:
-    """What to do next."""
+    """The next step."""
     verdict = found.verdict
     if found.lacks_input:
         return message("next.input")
@@ -171,7 +171,7 @@ def next_step(found: Diagnosis) -> Message:
 
 
 def _correct(suspect: Suspect, effects: Sequence[str]) -> Message:
-    """The label to correct, with its value and that of the data where both are known, and what else is missing."""
+    """The label to correct, with its value and the value by the data where both are known, and the missing effects."""
     if suspect.stated is None or suspect.found is None:
         if effects:
             return message("next.label_and", run=suspect.run, effects=effects)
@@ -184,7 +184,7 @@ def _correct(suspect: Suspect, effects: Sequence[str]) -> Message:
 
 
 def _then(found: Diagnosis) -> list[Message]:
-    """What may show what else is missing: what this diagnosis proposes, else the search that was not made."""
+    """The ways to find further effects: the proposed terms and the next run, else the search that was not made."""
     terms = [message("then.terms")] if found.proposals else []
     run = [message("then.run")] if found.next_experiment is not None else []
     return [*terms, *run] or [message("then.search")]

@@ -51,7 +51,7 @@ def diagnosis_listings(found: Diagnosis) -> Iterator[Listing | str]:
 
 
 def proposals_listing(found: Diagnosis) -> Listing:
-    """The terms that no list holds."""
+    """The table of the proposed terms."""
     numbers = (*DATA.values(), "nats (bar)")
     header = ("terms", "proposed by search", "what it would mean", "strength", *numbers, "or")
     return Listing("", header, proposal_rows(found), ("terms", *numbers))
@@ -97,7 +97,7 @@ def ranking_rows(found: Diagnosis) -> Iterator[Row]:
 
 
 def unconfirmed(found: Diagnosis) -> str:
-    """The effects that promised too little to be refitted, in a line."""
+    """The effects whose prediction was too small for a refit, in a line."""
     rest = [ranked for ranked in found.candidates if not ranked.parameters]
     if not rest:
         return ""
@@ -117,7 +117,7 @@ def _searched(value: float, std_error: float | None, unit: str) -> str:
 
 
 def ladder_rows(found: Diagnosis) -> Iterator[Row]:
-    """One row a step: what was added, the errors after it, the floor below them, the evidence for it."""
+    """One row for each step: the added effect, the errors after it, the floor below them, the evidence for it."""
     floor = percent(found.noise_floor.get("fit"))
     for rung in found.ladder:
         evidence = "–" if rung.nats is None else f"{rung.nats:.3g}"

@@ -1,8 +1,8 @@
-"""What differs by rounding alone is a tie, broken by the order in which things stand: simpler first, then as listed.
+"""Items that differ by rounding alone tie, and the tie is broken by their order: simpler first, then as listed.
 
 So the same matrix leads to the same answer on every processor: two refits that end at one error are as good as each
-other, whichever of them a processor happens to see below the other. A refit in a flat valley ends where rounding leads
-it, some hundredths off: refits that the data cannot tell apart tie, too.
+other, whichever of them has the smaller one on a processor. In a flat valley rounding decides where a refit ends, some
+hundredths off: refits that the data cannot tell apart tie, too.
 """
 
 from __future__ import annotations
@@ -19,10 +19,11 @@ def stable_ranking(
     items: Sequence[Item], size: Callable[[Item], float], alike: Callable[[Item, Item], bool] = lambda *_: False,
     tied: Callable[[Sequence[Item]], Sequence[Item]] = lambda ties: ties,
 ) -> list[Item]:  # fmt: skip
-    """The items from the least size on; what ties with the least of them, or is `alike` with it, as it stood.
+    """The items by size, the least first; items that tie with the least of them, or are `alike` with it, in their
+    order.
 
-    What is not alike comes behind what is, though it be nearer in size: else it would hang on which of two others a
-    processor sees below the other whether a third ties. What ties with the least of all as `tied` puts it in order.
+    An item that is not alike comes after those that are, even if it is nearer in size: else rounding, by the order of
+    two other items, would decide whether a third ties. `tied` orders the items that tie with the least of all.
     """
     rest = sorted(range(len(items)), key=lambda n: size(items[n]))
     found: list[Item] = []
@@ -37,7 +38,7 @@ def stable_ranking(
 
 
 def stable_minimum(items: Sequence[Item], size: Callable[[Item], float]) -> Item:
-    """The first of those items whose size ties with the least. Raises ValueError where there is none."""
+    """The first item whose size ties with the least. Raises ValueError where there is none."""
     bound = _bound(min(map(size, items)))
     return next((item for item in items if size(item) <= bound), items[0])
 

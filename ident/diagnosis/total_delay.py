@@ -1,9 +1,9 @@
-"""How late a machine answers, and by which of its lags and delays as far as the data tell it.
+"""The total delay of a machine, and the lags and delays that cause it, as far as the data determine them.
 
-A model has its lag at one place because it has to be somewhere. Where a delay, or a lag elsewhere, does as well in its
-place, the time constant is no property of that stage: the time T by which a slow command is answered late is what is
-known, see :mod:`ident.fit.slow_answer`. Of two that were found each may hold the other in its place, where two others
-do as well: those are weighed as pairs.
+A model has its lag at one place. Where a delay, or a lag at another place, explains the data as well, the time constant
+is no property of that stage: the data determine only the delay T of the response to a slow command, see
+:mod:`ident.fit.slow_answer`. Each of two lags may fix the other, where two other lags do as well: these are compared as
+pairs.
 """
 
 from __future__ import annotations
@@ -27,9 +27,10 @@ from ident.parameter import Parameter, Starts
 
 @dataclass(frozen=True)
 class TotalDelay:
-    """T with its standard error, s; the parameter that has it in the model, and what does as well in its place.
+    """T with its standard error, s; its parameter in the model, and the effects that explain the data as well in its
+    place.
 
-    `before` is T of the fitted model, where something was added to it and its T is determined.
+    `before` is T of the fitted model, where effects were added to it and its T is determined.
     """
 
     fitted: Combination
@@ -39,9 +40,9 @@ class TotalDelay:
 
 
 def total_delay(models: CandidateModels, base: FittedModel, refit: FittedModel) -> TotalDelay | None:
-    """Of a model with one time constant that is searched, which began as `base`.
+    """The total delay of a model with one searched time constant; `base` is the model before effects were added.
 
-    None where T is not determined, or nothing does as well.
+    None where T is not determined, or no other effect does as well.
     """
     found = next(refit.slow_lags(), None)
     constants = list(_time_constants(models, refit))

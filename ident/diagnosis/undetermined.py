@@ -1,10 +1,9 @@
-"""Where a parameter rests that the data do not determine: where the fewest steps a sample follow the model.
+"""The place of a parameter that the data do not determine: the place at which the simulation needs the fewest steps.
 
-A mode that is over within a small part of a sample shows in no record. A search ends with it anywhere, often at a
-bound: there every simulation takes as many steps as there are, and the error is so flat that no later search, with an
-effect that changes what the data determine, comes away from it. So it stays where it rests, also with effects: a step
-along what is flat would lead it astray again. Only a model with which another place promises a smaller error is free to
-move it.
+A mode that decays within a small part of a sample shows in no record. A search ends anywhere along its parameter, often
+at a bound: there every simulation takes the most steps, and the error is so flat that no later search, with an effect
+added, comes away from it. So the parameter is held at one place, also with effects: a step along a flat direction would
+move it anywhere. Only a model that predicts a smaller error at another place may move it.
 """
 
 from __future__ import annotations
@@ -21,9 +20,9 @@ from ident.fit.uncertainty import DETERMINED
 
 
 def rested(models: CandidateModels, refit: FittedModel) -> tuple[CandidateModels, FittedModel]:
-    """The refit with what the data do not determine where fewer steps follow it, as far as the error stays.
+    """The refit with its undetermined parameters moved to where fewer steps are needed, as far as the error stays.
 
-    The other parameters are fitted again with it held there, and the models hold it there, too. What a user bounds
+    The other parameters are fitted again with these held, and the models hold them, too. A parameter that a user bounds
     or holds stays where it is.
     """
     if not refit.stable:
@@ -56,7 +55,7 @@ def _slowed(models: CandidateModels, refit: FittedModel, number: int) -> FittedM
 
 
 def _with_fewer_steps(models: CandidateModels, refit: FittedModel, number: int) -> float | None:
-    """The nearest place on an axis at which at most half of the steps follow the model; None where there is none."""
+    """The nearest place on an axis at which at most half of the steps are needed; None where there is none."""
     fitness = models.fitness(refit.effects)
     places = np.linspace(0.0, 1.0, CRITERIA.estimation.places_of_rest)
     points = np.repeat(refit.point[None], len(places) + 1, axis=0)
@@ -67,6 +66,6 @@ def _with_fewer_steps(models: CandidateModels, refit: FittedModel, number: int) 
 
 
 def _determined(refit: FittedModel, name: str) -> bool:
-    """Whether the data tell a parameter apart from next to nothing."""
+    """Whether the data distinguish a parameter from zero."""
     error = refit.deviation(name)
     return error is not None and error < DETERMINED * abs(refit.values[name])

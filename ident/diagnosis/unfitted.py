@@ -30,7 +30,7 @@ def unranked(matrix: Matrix, fit: FitResult, seconds: float) -> Diagnosis:
 
 
 def unsearched(matrix: Matrix, fit: FitResult, missing: Sequence[MissingInput], seconds: float) -> Diagnosis:
-    """The diagnosis of a fit whose data miss an input: any effect would stand for it, so none is looked for."""
+    """The diagnosis of a fit whose data miss an input: an effect would only imitate it, so none is looked for."""
     why = message("verdict.missing_input", evidence=missing[0].evidence)
     found = _of_fit(matrix, fit, why, seconds)
     return replace(
@@ -44,7 +44,7 @@ def unsearched(matrix: Matrix, fit: FitResult, missing: Sequence[MissingInput], 
 
 
 def with_missing_inputs(found: Diagnosis, missing: Sequence[MissingInput]) -> Diagnosis:
-    """The diagnosis with the inputs that validation data miss, said first; as it is where they miss none."""
+    """The diagnosis with the inputs that validation data miss as its first sentence; unchanged where they miss none."""
     if not missing:
         return found
     said = message("verdict.missing_input_validation", evidence=missing[0].evidence)
@@ -53,7 +53,7 @@ def with_missing_inputs(found: Diagnosis, missing: Sequence[MissingInput]) -> Di
 
 
 def with_oscillations(found: Diagnosis, swings: Sequence[SelfOscillation]) -> Diagnosis:
-    """The diagnosis with what the machine does by itself, said first; as it is where it does nothing."""
+    """The diagnosis with the self-oscillations of the machine as its first sentence; unchanged where there are none."""
     if not swings:
         return found
     first, *others = swings
@@ -66,7 +66,7 @@ def with_oscillations(found: Diagnosis, swings: Sequence[SelfOscillation]) -> Di
 
 
 def _of_fit(matrix: Matrix, fit: FitResult, why: Message, seconds: float) -> Diagnosis:
-    """The errors of the fit, and why nothing more was found."""
+    """A diagnosis with the errors of the fit alone, and the reason for it."""
     error, floor = ({**NO_ERRORS, **of} for of in (fit.error, fit.noise_floor))
     settings = Settings.from_json(dict(fit.settings)) if fit.settings else Settings(model=fit.model)
     baseline = Baseline(error, fit.offset.get("fit"))
