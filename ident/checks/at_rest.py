@@ -1,4 +1,4 @@
-"""Where the inputs of a run rest: what the machine does there, it does by itself."""
+"""The stretches in which the inputs of a run rest: the machine moves by itself there, if it moves."""
 
 from __future__ import annotations
 

@@ -55,9 +55,9 @@ def peaks_at_the_top(signal: Samples) -> int:
 
 
 def _visits(signal: Samples) -> NDArray[np.intp]:
-    """Of each sample, how often the signal has come to the top since the first.
+    """For each sample the number of times that the signal has reached the top since the first sample.
 
-    Two peaks are separate where it falls by BETWEEN in the meantime, which its noise does not.
+    Two peaks are separate where it falls by BETWEEN between them, which its noise does not.
     """
     high = signal >= signal.max() - BETWEEN * float(np.ptp(signal))
     return np.cumsum(high & ~np.concatenate([[False], high[:-1]]))

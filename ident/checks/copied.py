@@ -11,7 +11,7 @@ from ident.run import Run
 from ident.words.message import message
 
 EXACT = 1e-6
-"""Of the output's deviation, what no gain and no offset of the command explains: any recorder's noise is larger."""
+"""Share of the output's deviation that no gain and offset of the command explain: any recorder's noise is larger."""
 
 
 def copied(run: Run) -> Iterator[Finding]:

@@ -43,7 +43,7 @@ class Delay:
         return self.longest - self.shortest <= WIDEST
 
     def apart(self, middle: float, least: float) -> bool:
-        """Whether it is another delay than that of the other runs, and theirs does not fit as well."""
+        """Whether the delay differs from the other runs' delay, and theirs does not fit as well."""
         return abs(self.samples - middle) >= least and not self.shortest <= middle <= self.longest
 
 

@@ -114,7 +114,7 @@ def _ordinary(table: Samples) -> NDArray[np.bool_] | None:
 
 
 def _left(halves: Sequence[Samples], count: int) -> Samples:
-    """The mean square of what each half leaves when it is foretold from the other by so many columns, (2,)."""
+    """The mean square of the prediction error on each half by a regression on the other with `count` columns, (2,)."""
     found = []
     for known, asked in (halves, halves[::-1]):
         error = np.concatenate([[-1.0], _weights(known[:count, :count])])

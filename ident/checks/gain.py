@@ -64,7 +64,7 @@ def guess(ratio: float) -> float | None:
 
 
 def force_sign(run: Run) -> Iterator[Finding]:
-    """Force against what the specimen needs, k x + c v + m a, where both are known."""
+    """The measured force against the force of the specimen, k x + c v + m a, where both are known."""
     specimen, force = run.specimen, run.channels.get("force")
     if specimen is None or force is None or run.units.get("displacement") != "m" or run.units.get("force") != "N":
         return

@@ -44,7 +44,8 @@ class AtRest:
 
 
 def oscillation_at_rest(run: Run) -> AtRest | None:
-    """The oscillation of the longest stretch that shows one while every input rests, else that of all of them together.
+    """The oscillation of the longest stretch at rest that shows one, else the oscillation of all such stretches
+    together.
 
     None where none does.
     """
@@ -66,7 +67,7 @@ def oscillation_at_rest(run: Run) -> AtRest | None:
 
 
 def tails(stretches: Sequence[slice]) -> list[tuple[slice, ...]]:
-    """The last three quarters of several stretches, as long as of the shortest: what a step begins has died down."""
+    """The ends of several stretches, three quarters of the shortest long: the response to a step has decayed there."""
     if len(stretches) < 2:
         return []
     length = 3 * min(one.stop - one.start for one in stretches) // 4
@@ -79,9 +80,9 @@ def is_of_mains(frequency: float) -> bool:
 
 
 def _swings(parts: Sequence[Samples], least: float) -> tuple[float, float] | None:
-    """The frequency of what swings in stretches of one length, and its growth, both per sample.
+    """The frequency of an oscillation in stretches of one length, and its growth, both per sample.
 
-    None where it dies down, or nothing swings by as much as `least`.
+    None where it decays, or is smaller than `least`.
     """
     n, count = len(parts[0]), len(parts)
     k = np.arange(n)

@@ -106,7 +106,7 @@ def response(u: Samples, y: Samples, sample_rate: float) -> Response | None:
 
 
 def _spectra(signal: Samples, window: Samples) -> NDArray[np.complex128]:
-    """Those of the frames that lie whole in the signal, without 0 Hz, (frames, F)."""
+    """The spectra of the frames that lie wholly in the signal, without 0 Hz, (frames, F)."""
     frames = np.lib.stride_tricks.sliding_window_view(signal, len(window))[:: len(window) // 2]
     found = np.fft.rfft((frames - frames.mean(axis=1, keepdims=True)) * window)
     return np.asarray(found[:, 1:], np.complex128)

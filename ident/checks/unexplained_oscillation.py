@@ -19,31 +19,32 @@ from ident.run import Run, Samples
 
 Spectrum = NDArray[np.complex128]
 LONGEST = 131_072
-"""Samples that are looked at, the last of the record: there a mode that grows is largest."""
+"""Largest number of samples that are checked, the last ones of a record: a mode that grows is largest there."""
 SHORTEST = 256
-"""Samples: of fewer nothing is said."""
+"""Least number of samples of a record that is checked."""
 BAND = 0.2
-"""Of the frequency, either way: the band in which the amplitude is followed."""
+"""Half width of the band in which the amplitude is followed, over the frequency."""
 CYCLES = 60
-"""Cycles that a record has of an oscillation, at least: the amplitude of fewer is constant by chance."""
+"""Least number of cycles of an oscillation in a record: the amplitude of fewer is constant by chance."""
 FEWER = 12
-"""Cycles that are enough where the command is silent about them: it drives no mode by chance there."""
+"""Least number of cycles where the command has no power at their frequency: it drives no mode by chance there."""
 SILENT = 1e-3
-"""Of the command's power, that it has at most in the band of an oscillation about which it is silent."""
+"""Largest share of the command's power in the band of an oscillation in which it has no power."""
 LITTLE = 0.7
-"""Of the output's deviation that is asked of an oscillation there, in place of all of it."""
+"""Share of the output's deviation with which an oscillation in such a band is compared, in place of all of it."""
 STEADY = 0.2
 """std(A)/mean(A) up to which an amplitude is constant; narrow-band noise has 0.52, over 60 cycles 0.3 at least."""
 SHARE = 0.5
-"""Of the output's variance that the oscillation has, at least: a limit cycle is most of it, a resonance may be less."""
+"""Least share of the oscillation in the output's variance: a limit cycle is most of it, a resonance may be less."""
 GROWTH = 3.0
-"""ln of the times by which an amplitude grows over the second half of a record, at least: 20 times."""
+"""Least ln of the ratio by which an amplitude grows over the second half of a record: 20 times."""
 STRAIGHT = 0.98
-"""Correlation of ln A with time from which on it grows as a mode does."""
+"""Least correlation of ln A with time for the growth of a mode."""
 REPEATED = 0.9
-"""Correlation with itself a period later from which on a command repeats itself."""
+"""Least correlation of a periodic command with itself a period later."""
 MULTIPLE = 0.1
-"""Of the frequency of a command that repeats itself: an oscillation so near a multiple of it is driven."""
+"""Distance to a multiple of the frequency of a periodic command, over that frequency: a nearer oscillation is
+driven."""
 CHANCE = 0.3
 """Coherence of two signals of sixteen frames that have nothing to do with each other: 99 % of it lies below."""
 _FRAMES = 16  # of the averaged spectra
@@ -96,7 +97,7 @@ def _detrended(signal: Samples) -> Samples:
 
 
 def _unexplained(u: Samples, y: Samples) -> Samples:
-    """What is left of the output without G u, G = S_uy/S_uu over Hann frames of half overlap (Welch 1967)."""
+    """The residual of the output after G u, G = S_uy/S_uu over Hann frames of half overlap (Welch 1967)."""
     n = len(u)
     frame = max(64, 2 * n // (_FRAMES + 1))
     starts = np.arange(0, n - frame + 1, frame // 2)
@@ -129,7 +130,7 @@ def _settled(left: Samples, size: float, rate: float, cycles: int = CYCLES) -> U
 def _growing(u: Samples, y: Samples, rate: float) -> Unexplained | None:
     """The strongest oscillation of an output over the second half of a record, where it grows, and the command not so.
 
-    Earlier it may be hidden by what the command makes.
+    In the first half the response to the command may hide it.
     """
     z = _strongest(y)
     if z is None:

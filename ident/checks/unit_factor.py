@@ -256,7 +256,7 @@ def _outputs(records: Sequence[Record]) -> Iterator[_Doubt]:
 
 @dataclass(frozen=True)
 class Off:
-    """The ratio of a size to that of some sisters, and the factor that it is near."""
+    """The ratio of a run's size to the size of some sisters, and the factor near it."""
 
     sisters: Sequence[Record]
     ratio: float
