@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from ident.workflows import compare
-from tests.blind.offsets import Off, trial
+from tests.blind.offsets import Off, scores, trial
 
 SPRINGLESS = (171019, 171084, 171090)  # an inertia that is turned: a torque that lasts would turn it as an offset reads
 OTHERS = (171004, 171009, 171031, 171174)
@@ -28,3 +28,14 @@ def test_a_comparison_tells_the_offset_that_the_fit_told():
     compared = compare(matrix, found)
     assert compared.rmse["verify"] == pytest.approx(found.rmse["verify"], rel=1e-6)
     assert compared.offset["verify"] == pytest.approx(found.offset["verify"], rel=1e-6)
+
+
+def test_parameters_lie_within_their_standard_errors_and_no_headline_hides_an_offset(full):
+    """Of 200 fresh machines, as docs/accuracy.md has it: a minute of the processor."""
+    if not full:
+        pytest.skip("a minute: --full")
+    found = [trial(seed) for seed in range(171201, 171401)]
+    z = scores(found, offsets=False)
+    assert all(row["said"] for row in found if row["large"])
+    assert np.mean(np.abs(z) < 3.0) >= 0.98
+    assert 0.8 < np.sqrt(np.mean(z**2)) < 1.25
