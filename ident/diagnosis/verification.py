@@ -73,9 +73,9 @@ class VerifyChange:
 
     Where the mean counts, the errors `with_mean` decide, because they were fitted, and the standard error is of their
     difference. `before` and `after` are the errors of eq. (17) that tables show, and `tabled_std_error` that of their
-    difference. `after` is None where the model is `unstable` on these runs with the effect, and was not without it. With
-    `free_run` they are the errors of a free run with its mean, which rise beyond chance. `shown` is the size of the
-    change of the model's output by the effect on these runs, as an error of the same kind.
+    difference. `after` is None where the model is `unstable` on these runs with the effect, and was not without it.
+    With `free_run` they are the errors of a free run with its mean, which rise beyond chance. `shown` is the size of
+    the change of the model's output by the effect on these runs, as an error of the same kind.
     """
 
     effect: str
