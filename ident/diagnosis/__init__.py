@@ -1,1 +1,1 @@
-"""From a fitted model and its runs to the missing effects: predicted, refitted, judged on held-out data."""
+"""A fitted model and its runs in, the missing effects out: predicted, refitted, judged on held-out data."""

@@ -163,14 +163,18 @@ class NormalMatrices:
         told = self.informing / max(self.length, 1)
         return told > ALIKE or (told > least and self._offset_determined)
 
-    def begun_at_zero(self) -> Array:
+    def begun_at_zero(self) -> Array | None:
         """The sums of the blocks, (b, q, q), without the first state that does nearly the same as an offset.
+
+        None where no first state does anything of an offset.
 
         A speed lasts by a first state alone where a force lasts: that of a spring so weak that the record shows nothing
         of it, stretched without end. Its first position is zero, and what lasts is the offset.
         """
         total, p = self.blocks.sum(axis=0), self.remove.shape[1] - 1
         alike = total[p:-2, -2] ** 2 / np.maximum(np.diag(total)[p:-2], 1e-300)
+        if not np.max(alike, initial=0.0) > 0:
+            return None
         blocks, most = self.blocks.copy(), p + int(np.argmax(alike))
         blocks[:, most, :] = blocks[:, :, most] = 0.0
         return blocks
@@ -273,8 +277,8 @@ def _told_apart(run: Run, found: NormalMatrices) -> NormalMatrices:
         return found
     if not of_speed:
         return found.begun_without_offset()
-    p = found.remove.shape[1] - 1
-    return normal_matrices_of([run], found.begun_at_zero()[None], p)[0]
+    blocks = found.begun_at_zero()
+    return found if blocks is None else normal_matrices_of([run], blocks[None], found.remove.shape[1] - 1)[0]
 
 
 def escaped(p: int, blocks: int = 0) -> NormalMatrices:
