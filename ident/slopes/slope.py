@@ -43,6 +43,7 @@ _SHOWN = 2.0
 """Times its noise: by so much the third derivative of a motion, over its samples, has to be seen to be taken off.
 
 Test: tests/test_slopes.py::test_of_noise_and_of_the_rate_of_a_sine_the_slope_is_that_over_two_samples"""
+_NOISE = 0.41  # of the noise's deviation, that of white noise in what the difference over two samples loses
 _ROUNDING = 1e-9  # of the largest difference, that is rounding
 _NEAR_END = 5  # samples from which the slope at an end is told
 
@@ -90,10 +91,10 @@ def slopes(signal: Array, order: int) -> Array:
 
 
 def _lost(signal: Array, smooth: NDArray[np.bool_]) -> Array:
-    """What the difference over two samples has beyond the slope, the third derivative less a fifth of the fifth, / 6.
+    """The error of the difference over two samples, (n,): (y‴ − y⁗′ / 5) / 6, by differences of the signal.
 
-    It is known where the third differences, (n − 3,), of all samples that it is made of are `smooth`. Elsewhere it is
-    zero, and so it is everywhere where noise may make it, of which it has 0.41 of the deviation.
+    It is known where the third differences, (n − 3,), are `smooth` for two samples on either side. Elsewhere it is zero.
+    It is zero everywhere where noise alone may make it as large.
     """
     n, reach = len(signal), 3
     if n <= 4 * reach:
@@ -106,7 +107,7 @@ def _lost(signal: Array, smooth: NDArray[np.bool_]) -> Array:
             end[k] = 3.0 * (end[k + 1] - end[k + 2]) + end[k + 3]
     rough = np.convolve(np.append(~smooth, [False] * 3), np.ones(2 * reach + 4), "full")[reach : reach + n] > 0
     lost[rough] = 0.0
-    shown = np.std(lost) > _SHOWN * noise_of(signal) * 0.41
+    shown = np.std(lost) > _SHOWN * _NOISE * noise_of(signal)
     return lost if shown else np.zeros(n)
 
 

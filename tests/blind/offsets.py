@@ -30,9 +30,8 @@ from tests.blind.interval import interval
 from tests.blind.various import COUNT, KINDS, RATE, Various
 
 SEARCH = {"population": 20.0, "generations": 6.0, "elite": 3.0}
-TOLD = (
-    1.5  # times the noise: from there on an offset is the larger part of what is left, and has to stand in the headline
-)
+TOLD = 1.5
+"""Times the noise: above it an offset is the larger part of the residual, and has to stand in the headline."""
 BEFORE = 200  # samples in which a machine that moves already has been moving
 OF_MACHINES = (
     ("motor", ""), ("motor", "quadratic_damping"), ("positioner", ""), ("mass", ""), ("mass", "cubic_stiffness"),
