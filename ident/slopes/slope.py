@@ -91,10 +91,10 @@ def slopes(signal: Array, order: int) -> Array:
 
 
 def _lost(signal: Array, smooth: NDArray[np.bool_]) -> Array:
-    """The error of the difference over two samples, (n,): (y‴ − y⁗′ / 5) / 6, by differences of the signal.
+    """The error of the difference over two samples, (n,): (y‴ − y⁽⁵⁾ / 5) / 6, by differences of the signal.
 
-    It is known where the third differences, (n − 3,), are `smooth` for two samples on either side. Elsewhere it is zero.
-    It is zero everywhere where noise alone may make it as large.
+    It is known where the third differences, (n − 3,), are `smooth` for two samples on either side. Elsewhere it is
+    zero. It is zero everywhere where noise alone may make it as large.
     """
     n, reach = len(signal), 3
     if n <= 4 * reach:
