@@ -158,17 +158,17 @@ def each(function: Callable[[Item], Outcome], items: Iterable[Item]) -> list[Out
 
 
 class Once(Generic[Key, Outcome]):
-    """Outcomes by key, each worked out once: who asks for one that another thread works out lends its core and waits.
+    """Outcomes by key, each computed once: a thread lends its core and waits for one that another thread computes.
 
-    What a key needs must not ask for the key itself. An outcome that failed is worked out anew when it is asked for
-    again.
+    The computation of a key must not need the outcome of the same key. An outcome that failed is computed again when
+    it is needed again.
     """
 
     def __init__(self) -> None:
         self._lock, self._known = threading.Lock(), dict[Key, Future[Outcome]]()
 
     def of(self, key: Key, found: Callable[[], Outcome]) -> Outcome:
-        """The outcome of a key; what is not known yet is `found` now. Raises what raised there."""
+        """The outcome of a key; `found` computes it where it is not known yet. Raises the errors of `found`."""
         with self._lock:
             is_new = key not in self._known
             known = self._known.setdefault(key, Future())

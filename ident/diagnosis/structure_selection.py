@@ -67,7 +67,8 @@ def compared_structures(
 
     Raises Unusable where the channels allow none.
     """
-    return _compared(undone(screen(matrix, preprocessing), CATALOGUE), report, preprocessing)[0]
+    matrix = screen(matrix, preprocessing)
+    return _compared(undone(matrix, undoable(matrix, CATALOGUE)), report, preprocessing)[0]
 
 
 def _compared(

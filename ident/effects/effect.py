@@ -125,9 +125,9 @@ def undoable(matrix: Matrix, effects: Iterable[Effect]) -> tuple[Effect, ...]:
 
 
 def undone(matrix: Matrix, effects: Iterable[Effect]) -> Matrix:
-    """The matrix with each run as it would be without the effects, of those that can be undone in it."""
+    """The matrix with each run as it would be without these effects, which :func:`undoable` gave."""
     runs = matrix.runs
-    for effect in undoable(matrix, effects):
+    for effect in effects:
         assert effect.undone is not None
         runs = tuple(map(effect.undone, runs))
     return replace(matrix, runs=runs) if runs is not matrix.runs else matrix

@@ -21,12 +21,18 @@ Neighbours are half as long again: a sign is then wrong near the zeros alone. Te
 def rectified(matrix: Matrix) -> bool:
     """Whether speeds stay on one side of zero, in all runs the same, although in each the machine is driven both ways.
 
-    Noise of a command passes zero, too. It drives nothing, so the command behind the machine's lag is asked.
+    Noise of a command passes zero, too. It drives nothing, so the command behind the machine's lag decides.
     """
     if not all(run.output == "velocity" and "command" in run.channels for run in matrix.runs):
         return False
     speeds = np.concatenate([run.measured for run in matrix.runs])
-    return one_sided(speeds) and not any(one_sided(followed(run)) for run in matrix.runs)
+    return one_sided(speeds) and all(map(_is_driven_both_ways, matrix.runs))
+
+
+def _is_driven_both_ways(run: Run) -> bool:
+    """Whether the command behind the machine's lag has both signs; a lag makes no sign that the command has not."""
+    has_both_signs = run.command.min() < 0 < run.command.max()
+    return bool(has_both_signs) and not one_sided(followed(run))
 
 
 def with_sign(run: Run) -> Run:

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from ident.chain.chain import integrates
 from ident.checks.feedback import closed_loop
 from ident.custom.definition import preset_with
-from ident.effects.effect import off_values, undone
+from ident.effects.effect import off_values, undoable, undone
 from ident.errors import Unusable
 from ident.fit import genetic
 from ident.fit.bulk_modulus import with_bulk_modulus
@@ -124,7 +124,9 @@ class Identification:
         linear = preset_with(self.settings.model)
         settings = replace(of_model(self.settings, linear), effects=(), custom=(), method="ga", load="none",
                            options={}, budget=None)  # fmt: skip
-        return completed(Identification(undone(self.matrix, self.preset.effects), settings, self.report))
+        return completed(
+            Identification(undone(self.matrix, undoable(self.matrix, self.preset.effects)), settings, self.report)
+        )
 
     def _take_up(self, state: State) -> None:
         """What every process has to know of a search that may have begun in another."""

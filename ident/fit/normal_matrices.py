@@ -34,8 +34,8 @@ ALIKE = 0.01
 Test: tests/fit/test_windows.py::test_an_offset_that_first_states_do_nearly_as_well_is_none_unless_it_is_determined"""
 LETS_GO = 1e-4
 """[of the samples] The same of a speed, whose zero is in question and not its place: a spring that lets go of less than
-a thirtieth over the record, which tells a mean of (1/30)²/12, stands for a force that lasts. What is left of it by the
-model of a spring is told by chance, while the spring itself is not determined.
+a thirtieth over the record, which tells a mean of (1/30)²/12, stands for a force that lasts. The size of that mean is
+then chance, and the spring itself is not determined.
 
 Test: tests/blind/test_offsets.py::test_no_headline_hides_an_offset"""
 RECOGNISED = 3.0
@@ -160,8 +160,8 @@ class NormalMatrices:
 
         Of fewer than a share `least` of the samples it does not, of more than ALIKE it does, between them by chance.
         """
-        told = self.informing / max(self.length, 1)
-        return told > ALIKE or (told > least and self._offset_determined)
+        share = self.informing / max(self.length, 1)
+        return share > ALIKE or (share > least and self._offset_determined)
 
     def begun_at_zero(self) -> Array | None:
         """The sums of the blocks, (b, q, q), without the first state that does nearly the same as an offset.
@@ -267,11 +267,11 @@ def normal_matrices_of(runs: Sequence[Run], blocks: Array, p: int) -> list[Norma
         )
         for i, run in enumerate(runs)
     ]  # fmt: skip
-    return [_told_apart(run, one) for run, one in zip(runs, found, strict=True)]
+    return [_separated(run, one) for run, one in zip(runs, found, strict=True)]
 
 
-def _told_apart(run: Run, found: NormalMatrices) -> NormalMatrices:
-    """What is found of a run where an offset and its first states are told apart, or one of them is left out."""
+def _separated(run: Run, found: NormalMatrices) -> NormalMatrices:
+    """The moments of a run whose offset and first states differ in their effect, or without one of them."""
     of_speed = run.output == "velocity"
     if not len(found.release) or found.tells_offset(LETS_GO if of_speed else TOLD):
         return found

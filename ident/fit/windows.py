@@ -40,7 +40,7 @@ _BRIEFEST, _MEMORIES = 0.3, 25  # samples of the briefest memory of a speed's fi
 def in_windows(optimum: Optimum, report: Report, whole: bool = True) -> Optimum:
     """The optimum over the windows that explain the records best, or as it is where the `whole` run may and does.
 
-    The best length is that with the least that could not be foretold: see :func:`unforeseen`. A speed that is forgotten
+    The best windows have the smallest innovations: see :func:`unforeseen`. A speed that is forgotten
     within a window makes no whole run. But windows over which the model says no more than that the record goes on as
     it did tell nothing of it: a quiet record goes on so nearly everywhere, whatever drives it.
     """
@@ -73,7 +73,7 @@ def _best(
     memory: float | None,
     report: Report,
 ) -> Optimum:
-    """The optimum of an objective, or the one over other windows with less that could not be foretold."""
+    """The optimum of an objective, or the one over other windows with smaller innovations."""
     best = optimum
     for horizon in horizons:
         over = memory if horizon else None

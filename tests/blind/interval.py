@@ -10,3 +10,10 @@ def interval(hits: int, trials: int) -> tuple[float, float]:
     lower = float(beta.ppf(0.025, hits, trials - hits + 1)) if hits else 0.0
     upper = float(beta.ppf(0.975, hits + 1, trials - hits)) if hits < trials else 1.0
     return lower, upper
+
+
+def rate_line(what: str, hits: int, trials: int, goal: str) -> str:
+    """A row of a table: what was counted, how often it was so, the rate with its interval, and the goal."""
+    lower, upper = interval(hits, trials)
+    rate = f"{100 * hits / trials:.1f} ({100 * lower:.1f}-{100 * upper:.1f})"
+    return f"| {what} | {hits} of {trials} | {rate} | {goal} |"

@@ -26,7 +26,7 @@ from ident.readers import from_arrays
 from ident.run import Run
 from ident.workflows import identify
 from tests.blind.campaign import add
-from tests.blind.interval import interval
+from tests.blind.interval import rate_line
 from tests.blind.various import COUNT, KINDS, RATE, Various
 
 SEARCH = {"population": 20.0, "generations": 6.0, "elite": 3.0}
@@ -135,16 +135,16 @@ def trial(seed: int) -> Row:
     of, truths = off.machine, off.truths
     z = {name: (value - truths[name]) / error for name, (value, error) in known.items() if error and name in truths}
     size = float(off._clean(0)[1].std())
-    told = found.transducer_offset.get(KINDS[of.kind][1])
-    if told is not None:
-        z["offset"] = (told.value - off.offset * size) / told.std_error
+    offset = found.transducer_offset.get(KINDS[of.kind][1])
+    if offset is not None:
+        z["offset"] = (offset.value - off.offset * size) / offset.std_error
     place = of.kind == "positioner"  # it has no zero of its own
     return {
         "seed": seed, "kind": of.kind, "hidden": of.hidden, "offset": off.offset, "noise": of.noise,
         "colour": off.colour, "zeroed": off.zeroed, "moving": off.moving, "z": z,
         "large": not place and abs(off.offset) > TOLD * of.noise,
         "said": "offset of" in found.headline or "with the mean" in found.headline,
-        "told": told is not None,
+        "found": offset is not None,
         "errors": [found.error["verify"], found.error_with_mean["verify"]],
         "rmse": [found.rmse["verify"], of.noise * float(matrix.runs[2].measured.std())],
         "headline": found.headline,
@@ -161,19 +161,17 @@ def rates(everything: Sequence[Row]) -> Iterable[str]:
     large = [row for row in everything if row["large"]]
     yield "| what | count | rate in % (95 % interval) | goal |"
     yield "|---|---|---|---|"
-    yield _line("a headline that hides the offset", [not row["said"] for row in large], "none")
-    yield _line("an offset that is found", [row["told"] for row in large], "–")
+    yield _counted("a headline that hides the offset", [not row["said"] for row in large], "none")
+    yield _counted("an offset that is found", [row["found"] for row in large], "–")
     near = [row["rmse"][0] < 1.3 * row["rmse"][1] for row in everything]
-    yield _line("validation with its mean within 1.3 times the noise", near, "–")
+    yield _counted("validation with its mean within 1.3 times the noise", near, "–")
     for what, of in (("parameters", scores(everything, False)), ("offsets", scores(everything, True))):
-        yield _line(f"{what} within three standard errors", (np.abs(of) < 3.0).tolist(), "98 %")
+        yield _counted(f"{what} within three standard errors", (np.abs(of) < 3.0).tolist(), "98 %")
         yield f"| z of {what}, RMS | {len(of)} | {np.sqrt(np.mean(of**2)):.2f} | 0.8 to 1.25 |"
 
 
-def _line(what: str, hits: Sequence[bool], goal: str) -> str:
-    lower, upper = interval(sum(hits), len(hits))
-    rate = f"{100 * sum(hits) / len(hits):.1f} ({100 * lower:.1f}-{100 * upper:.1f})"
-    return f"| {what} | {sum(hits)} of {len(hits)} | {rate} | {goal} |"
+def _counted(what: str, hits: Sequence[bool], goal: str) -> str:
+    return rate_line(what, sum(hits), len(hits), goal)
 
 
 def main() -> None:

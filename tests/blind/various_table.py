@@ -7,7 +7,7 @@ from collections.abc import Iterable, Sequence
 from typing import Any
 
 from tests.blind.campaign import OUT
-from tests.blind.interval import interval
+from tests.blind.interval import rate_line
 
 ROWS = OUT.with_name("blind-various.jsonl")
 Row = dict[str, Any]
@@ -33,7 +33,7 @@ def rates(everything: Sequence[Row]) -> Iterable[str]:
         ("failed", "0", ["failed" in row for row in shown]),
     ):  # fmt: skip
         if right:
-            yield _line(what, sum(right), len(right), goal)
+            yield rate_line(what, sum(right), len(right), goal)
     yield f"\nOf {len(tried)} trials {len(tried) - len(shown)} were dropped: their records do not show it."
     for row in shown:
         if not row["named"] or row.get("structure") is False:
@@ -43,12 +43,6 @@ def rates(everything: Sequence[Row]) -> Iterable[str]:
     for row in everything:
         if "checks" in row:
             yield from _checks(row)
-
-
-def _line(what: str, hits: int, trials: int, goal: str) -> str:
-    lower, upper = interval(hits, trials)
-    rate = f"{100 * hits / trials:.1f} ({100 * lower:.1f}-{100 * upper:.1f})"
-    return f"| {what} | {hits} of {trials} | {rate} | {goal} |"
 
 
 def _checks(row: Row) -> Iterable[str]:
@@ -67,4 +61,4 @@ def _checks(row: Row) -> Iterable[str]:
         ("an oscillation of a stable loop", "stable", "said", "–"),
         ("an oscillation of a stable loop under noise", "stable under noise", "said", "–"),
     ):  # fmt: skip
-        yield _line(what, counts[f"{of}, {said}"], counts[of], goal)
+        yield rate_line(what, counts[f"{of}, {said}"], counts[of], goal)
