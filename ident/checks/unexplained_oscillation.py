@@ -15,6 +15,7 @@ import scipy.fft  # not scipy.signal, which takes a second of every diagnosis to
 from numpy.typing import NDArray
 
 from ident.checks.oscillation_at_rest import DIES, is_of_mains
+from ident.noise.periodic import of_line
 from ident.run import Run, Samples
 
 Spectrum = NDArray[np.complex128]
@@ -30,8 +31,8 @@ FEWER = 12
 """Least number of cycles where the command has no power at their frequency: it drives no mode by chance there."""
 SILENT = 1e-3
 """Largest share of the command's power in the band of an oscillation in which it has no power."""
-LITTLE = 0.7
-"""Share of the output's deviation with which an oscillation in such a band is compared, in place of all of it."""
+LITTLE = 0.2
+"""Least deviation of an oscillation in such a band, over the output's deviation: less is a ripple."""
 STEADY = 0.2
 """std(A)/mean(A) up to which an amplitude is constant; narrow-band noise has 0.52, over 60 cycles 0.3 at least."""
 SHARE = 0.5
@@ -42,9 +43,9 @@ STRAIGHT = 0.98
 """Least correlation of ln A with time for the growth of a mode."""
 REPEATED = 0.9
 """Least correlation of a periodic command with itself a period later."""
-MULTIPLE = 0.1
-"""Distance to a multiple of the frequency of a periodic command, over that frequency: a nearer oscillation is
-driven."""
+DRIFT = 0.25
+"""Turns by which an oscillation and the nearest multiple of a periodic command part over the record: one that parts by
+less is driven."""
 CHANCE = 0.3
 """Coherence of two signals of sixteen frames that have nothing to do with each other: 99 % of it lies below."""
 _FRAMES = 16  # of the averaged spectra
@@ -66,7 +67,7 @@ def unexplained_oscillation(run: Run) -> Unexplained | None:
     u, y = (_detrended(signal[-LONGEST:]) for signal in (run.command, run.measured))
     if not y.std() > 0 or not np.all(np.isfinite(u)):
         return None
-    found = _growing(u, y, run.sample_rate) or _settled(_unexplained(u, y), float(y.std()), run.sample_rate)
+    found = _growing(u, y, run.sample_rate) or _settled(_unexplained(u, y), SHARE * float(y.var()), run.sample_rate)
     if found is None and (found := _beside_silence(u, y, run.sample_rate)) and run.output == "velocity":
         level = abs(float(run.measured[-len(y) // 2 :].mean()))
         found = found if found.amplitude > level else None  # a ripple of what turns is driven round
@@ -74,20 +75,22 @@ def unexplained_oscillation(run: Run) -> Unexplained | None:
 
 
 def _beside_silence(u: Samples, y: Samples, rate: float) -> Unexplained | None:
-    """The strongest oscillation of the last half of an output, or of all of it, about which the command is silent."""
+    """The strongest oscillation of the last half of an output, or of all of it, where the command is silent."""
     for part in (slice(len(y) // 2, None), slice(None)):
         own = _detrended(y[part])
-        found = _settled(own, LITTLE * float(own.std()), rate, FEWER)
-        if found and _is_silent(u[part], found.frequency / rate) and not is_of_mains(found.frequency):
+        loud = _loud(u[part]) / (1.0 - 2.0 * BAND)
+        power = np.abs(np.fft.rfft(own * np.hanning(len(own)))) ** 2
+        share = max(LITTLE**2, SHARE * float(power[int(loud) :].sum() / power.sum()))
+        found = _settled(own, share * float(own.var()), rate, max(FEWER, int(loud)))
+        if found and not is_of_mains(found.frequency):
             return found
     return None
 
 
-def _is_silent(u: Samples, frequency: float) -> bool:
-    """Whether a command has next to no power from an oscillation (1/sample) on, and somewhat below."""
+def _loud(u: Samples) -> int:
+    """The lines of a command's spectrum from which on it has next to no power."""
     power = np.abs(np.fft.rfft(u * np.hanning(len(u)))) ** 2
-    least = int((1.0 - 2.0 * BAND) * frequency * len(u))
-    return bool(power[least:].sum() <= SILENT * power.sum())
+    return int(np.searchsorted(-np.cumsum(power[::-1])[::-1], -SILENT * power.sum()))
 
 
 def _detrended(signal: Samples) -> Samples:
@@ -113,16 +116,16 @@ def _unexplained(u: Samples, y: Samples) -> Samples:
     return left
 
 
-def _settled(left: Samples, size: float, rate: float, cycles: int = CYCLES) -> Unexplained | None:
-    """The strongest oscillation of the residual of an output of a deviation `size`, where its amplitude is constant."""
+def _settled(left: Samples, power: float, rate: float, cycles: int = CYCLES) -> Unexplained | None:
+    """The strongest oscillation of a residual, where its amplitude is constant and it has a mean square `power`."""
     z = _strongest(left, cycles)
     if z is None:
         return None
     amplitude = np.abs(z)
     first, *_, last = (float(part.mean()) for part in np.array_split(amplitude, 4))
-    if cycles < CYCLES and last < (1.0 - DIES) * first:  # it rings down
+    if last < (1.0 - DIES) * first or np.std(amplitude) > STEADY * np.mean(amplitude):  # it rings down, or noise has it
         return None
-    if np.std(amplitude) > STEADY * np.mean(amplitude) or np.mean(amplitude**2) / 2 < SHARE * size**2:
+    if np.mean(amplitude**2) / 2 < power:
         return None
     return Unexplained(_frequency(z, rate), 0.0, float(amplitude.mean()))
 
@@ -187,7 +190,10 @@ def _repeats(u: Samples, frequency: float) -> bool:
         return False
     period = _summit(alike, int(peaks[0]))
     period = _summit(alike, int(peaks[-1])) / max(1, round(peaks[-1] / period))  # of many, whose error is less
-    return bool(abs(frequency * period - round(frequency * period)) < MULTIPLE)
+    highest = 1 + int(np.argmax(np.abs(np.fft.rfft(u * np.hanning(n)))[1:]))
+    order = max(1, round(highest * period / n))  # of the strongest line of the command
+    cycles = of_line(u, order * n / period) / order
+    return bool(abs(frequency * n - round(frequency * n / cycles) * cycles) < DRIFT)
 
 
 def _summit(of: Samples, at: int) -> float:

@@ -42,12 +42,21 @@ def fundamental(signal: Array, sample_rate: float) -> float | None:
     line = spectrum[max(highest - _MAIN_LOBE, 1) : highest + _MAIN_LOBE + 1].sum()
     if highest < PERIODS or highest >= n // 4 or line < _FUNDAMENTAL * spectrum[1:].sum():
         return None
-    cycles = highest + _between_bins(spectrum, highest)  # a record
+    cycles = of_line(signal, highest + _between_bins(spectrum, highest))
+    return cycles * sample_rate / n if not_repeated(signal, cycles / n) < _NOT_REPEATED * np.std(signal) else None
+
+
+def of_line(signal: Array, cycles: float) -> float:
+    """The frequency of a line of a spectrum, in cycles a record, from a value `cycles` that is near it.
+
+    It is corrected by how the phase of the line goes on from the first half of the record to the second.
+    """
+    n = len(signal)
     half = n // 2
     turn = np.exp(-2j * np.pi * cycles * np.arange(half) / n)
     first, second = (_windowed(signal[at : at + half]) @ turn for at in (0, half))
-    cycles += float(np.angle(second / first * np.exp(-2j * np.pi * cycles * half / n))) * n / (2 * np.pi * half)
-    return cycles * sample_rate / n if not_repeated(signal, cycles / n) < _NOT_REPEATED * np.std(signal) else None
+    ahead = float(np.angle(second * np.conj(first) * np.exp(-2j * np.pi * cycles * half / n)))
+    return cycles + ahead * n / (2 * np.pi * half)
 
 
 def periodic_noise(command: Array, measured: Array, sample_rate: float) -> float | None:

@@ -82,6 +82,29 @@ def test_twenty_periods_show_a_limit_cycle_about_which_the_command_is_silent(for
     assert self_oscillation(run_of(u, calm + 0.01 * calm.std() * rng.standard_normal(n))) is None
 
 
+def test_a_multiple_of_a_periodic_command_is_driven_and_what_lies_between_two_is_not():
+    """Seed 60: orders 2 to 39 of 4 to 40 periods; all but one in fifty of each are told right."""
+    rng, wrong = np.random.default_rng(60), {0.0: 0, 0.08: 0}
+    for _ in range(40):
+        periods, order = rng.uniform(4.0, 40.0), int(rng.integers(2, 40))
+        n = int(max(600, periods * order * rng.uniform(6.0, 12.0)))
+        turn, noise = 2 * np.pi * periods * np.arange(n) / n, 10 ** rng.uniform(-3.0, -1.5) * rng.standard_normal(n)
+        for off in wrong:
+            shown = 0.3 * np.sin(turn - 0.3) + np.sin((order + off) * turn + 1.0) + noise
+            said = self_oscillation(run_of(np.sin(turn), shown)) is not None
+            wrong[off] += said != (off > 0)
+    assert max(wrong.values()) <= 1
+
+
+def test_an_oscillation_is_seen_beside_a_slow_motion_three_times_as_large():
+    """Seed 61: 40 cycles on four cycles of a sine; a tenth of the motion is a ripple, of which nothing is said."""
+    rng, turn = np.random.default_rng(61), 2 * np.pi * np.arange(600) / 600
+    slow, quick, noise = np.sin(4.3 * turn), np.sin(40.7 * turn), 0.005 * rng.standard_normal(600)
+    found = self_oscillation(run_of(slow, slow + quick / 3 + noise))
+    assert found.frequency == pytest.approx(40.7 * RATE / 600, rel=0.002)
+    assert self_oscillation(run_of(slow, slow + quick / 10 + noise)) is None
+
+
 def stable(rng, least):
     """A loop, many with little damping, and its gain, `least` to 3 or 12 dB below that which loses stability."""
     spread = {name: rng.uniform(0.6, 1.4) for name in reference.TABLE_4} | {"c": 10 ** rng.uniform(-2, 0)}
