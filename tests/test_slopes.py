@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from ident.run import Run
-from ident.simulation.closed_way import drift
+from ident.simulation.closed_way import covered, drift
+from ident.simulation.inputs import closed
 from ident.slopes import bends, bends_of_way, curvatures, slopes
 
 AT = 7.4  # samples: where the motion begins to brake
@@ -93,6 +94,38 @@ def test_the_way_of_a_speed_that_turns_between_two_samples_closes():
     speed, covered = turning(25, 8)
     assert np.mean(speed[:25]) == pytest.approx(0.04)
     assert drift(speed, covered) == pytest.approx(0.04, abs=1e-9)
+
+
+def creeping(k, period):
+    """A position and its speed per sample: it creeps, goes one way, creeps, and back; it bends twice within a sample."""
+    ends = np.array([0.0, 0.1, 0.23, 0.26, 0.39, 0.5])  # of a half of the period
+    phase = np.mod(k / period, 1.0)
+    side, within = np.where(phase < 0.5, 1.0, -1.0), np.mod(phase, 0.5)
+    rises = np.array([0.03, 0.03, 1.0, 1.0, 0.03, 0.03])
+    way = np.append(0.0, np.cumsum(0.5 * (rises[1:] + rises[:-1]) * np.diff(ends)))
+    piece = np.clip(np.searchsorted(ends, within, side="right") - 1, 0, len(ends) - 2)
+    since, bend = within - ends[piece], np.diff(rises) / np.diff(ends)
+    x = way[piece] + rises[piece] * since + 0.5 * bend[piece] * since**2
+    return period * np.where(side > 0, x, way[-1] - x), side * np.interp(within, ends, rises)
+
+
+def test_a_motion_that_repeats_has_its_way_by_the_samples_of_all_periods():
+    """A top of two samples, and jumps: two samples tell nothing of what lies between them, those of 16 periods do."""
+    x, v = creeping(np.arange(400.0), 25.3)
+    way, of_two = np.diff(x), 0.5 * (v[1:] + v[:-1])
+    lost = np.std(np.cumsum(of_two - way))
+    assert lost > 0.01 * np.std(x)
+    assert np.std(np.cumsum(of_two + closed(v)[:-1] - way)) < 0.1 * lost
+
+
+def test_samples_that_lie_on_no_finer_curve_tell_nothing_of_a_period():
+    """Noise, a stand before the motion, and a period of a whole number of samples, all of which have few phases."""
+    k = np.arange(400.0)
+    _, v = creeping(k, 25.3)
+    assert covered(v) is not None
+    assert covered(v + 0.01 * np.random.default_rng(1).standard_normal(len(v))) is None
+    assert covered(np.append(np.zeros(12), v)) is None
+    assert covered(creeping(k, 25.0)[1]) is None
 
 
 @pytest.mark.parametrize("speed", [turning(25, 8, on=0.3)[0], np.cumsum(np.ones(200))])

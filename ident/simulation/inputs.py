@@ -12,7 +12,7 @@ from ident.chain.channels import BESIDE_MEAN, means
 from ident.chain.varying import MEASURED_CONDITIONS, is_measured
 from ident.run import DISTURBANCES, Run
 from ident.simulation.between import band_limited
-from ident.simulation.closed_way import drift
+from ident.simulation.closed_way import covered, drift
 from ident.simulation.kernel.layout import BEYOND
 from ident.slopes import bends, bends_of_way, curvatures, slopes
 
@@ -105,9 +105,13 @@ def _record(run: Run, name: str) -> Array:
 
 
 def closed(speed: Array) -> Array:
-    """How much the mean from each sample of a speed (n,) to the next is beyond that of the two: see :func:`drift`."""
-    beyond = bends(speed)
-    return beyond - drift(speed, 0.5 * (speed[1:] + speed[:-1]) + beyond[:-1])
+    """How much the mean from each sample of a speed (n,) to the next is beyond that of the two, 0 behind the last.
+
+    See :mod:`ident.simulation.closed_way`.
+    """
+    of_two, by_phase = 0.5 * (speed[1:] + speed[:-1]), covered(speed)
+    beyond = bends(speed) if by_phase is None else np.append(by_phase - of_two, 0.0)
+    return beyond - drift(speed, of_two + beyond[:-1])
 
 
 def jump_share(delay: Array) -> Array:
