@@ -97,7 +97,7 @@ def test_the_way_of_a_speed_that_turns_between_two_samples_closes():
 
 
 def creeping(k, period):
-    """A position and its speed per sample: it creeps, goes one way, creeps, and back; it bends twice within a sample."""
+    """A position and its speed per sample: creeps, goes one way, creeps, goes back, and bends twice within a sample."""
     ends = np.array([0.0, 0.1, 0.23, 0.26, 0.39, 0.5])  # of a half of the period
     phase = np.mod(k / period, 1.0)
     side, within = np.where(phase < 0.5, 1.0, -1.0), np.mod(phase, 0.5)
