@@ -171,8 +171,9 @@ def _simplest(models: Collection[_JudgedStructure]) -> _JudgedStructure:
 def _judged(fitted: Sequence[_FittedStructure]) -> tuple[float | None, list[_JudgedStructure]]:
     """All models judged by one error, and its horizon in s: the longest windows over which one of them is fitted.
 
-    The state that a machine has integrated before a window has no information on its structure. But where the least
-    error over whole runs is smaller than the least error over windows, nothing was integrated: then whole runs count.
+    The state that a machine has integrated before a window has no information on its structure. But where no model
+    that integrates is among the best over windows, or the least error over whole runs is smaller than the least error
+    over windows, nothing was integrated: then whole runs count.
     """
     windows = [one.fit.window for one in fitted if one.fit.window]
     longest = max(windows, key=lambda window: window.horizon, default=None)
@@ -181,7 +182,9 @@ def _judged(fitted: Sequence[_FittedStructure]) -> tuple[float | None, list[_Jud
         return None, tried
     if len(windows) < len(fitted):
         whole = [one.judged(None) for one in fitted]
-        if min(one.error for one in whole) < min(one.error for one in tried):
+        least = min(one.error for one in tried)
+        integrating = min(judged.error for one, judged in zip(fitted, tried, strict=True) if one.fit.window)
+        if integrating > CRITERIA.structure.worse * least or min(one.error for one in whole) < least:
             return None, whole
     return longest.horizon, tried
 

@@ -14,7 +14,7 @@ from ident.diagnosis import structure_selection
 from ident.diagnosis.candidate_models import CandidateModels
 from ident.diagnosis.evidence.comparison import Residuals
 from ident.diagnosis.evidence.energy_bands import EnergyBands, Record
-from ident.diagnosis.structure_selection import _preferred, compared_structures
+from ident.diagnosis.structure_selection import _judged, _preferred, compared_structures
 from ident.fit.result import FitResult, Structure
 from ident.fit.settings import Settings
 from ident.matrix import Actuator, Matrix
@@ -92,6 +92,22 @@ def test_what_follows_whole_runs_is_not_judged_by_windows():
     assert first.error["held_out"] < 0.06
     apart = [one for one in others if one.machine != "two_tanks"]  # of which a quick one leaves a lag
     assert all(one.error["held_out"] > 3 * first.error["held_out"] for one in apart)
+
+
+@pytest.mark.parametrize(("cylinder", "over"), [(0.86, None), (0.295, 900.0), (0.2, 900.0)])
+def test_windows_count_where_a_machine_that_integrates_is_among_the_best_over_them(cylinder, over):
+    """Windows that begin anew forgive a wrong machine what it has done before: they are for what integrates."""
+
+    def fitted(horizon: float | None, windows: float, whole: float) -> SimpleNamespace:
+        window = None if horizon is None else SimpleNamespace(horizon=horizon)
+        return SimpleNamespace(
+            fit=SimpleNamespace(window=window),
+            judged=lambda window: SimpleNamespace(error=whole if window is None else windows),
+        )
+
+    horizon, tried = _judged([fitted(None, 0.29, 0.33), fitted(900.0, cylinder, 0.87)])
+    assert horizon == over
+    assert tried[0].error == (0.33 if over is None else 0.29)
 
 
 @pytest.mark.usefixtures("few_effects")
