@@ -87,11 +87,22 @@ OWN_SERVICE = "tests/browser/test_workbench.py"
 """Has a service of its own, and takes so long that it has a worker to itself."""
 
 
-def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+def asked_for_full(config: pytest.Config) -> bool:
+    """Whether the full forms were asked for, by ``--full`` or SERVOIDENT_FULL=1."""
+    return bool(config.getoption("--full")) or os.environ.get("SERVOIDENT_FULL") == "1"
+
+
+def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
     """Long files go first, so that no core is left alone with one at the end; then those of tests/app, on end.
 
-    They share a service, which takes a fortieth of a core for as long as it is there, whatever runs meanwhile.
+    They share a service, which takes a fortieth of a core for as long as it is there, whatever runs meanwhile. What is
+    marked `full` is skipped in the short form before its fixtures are made: docs/decisions/tests.md says what stands
+    in for it.
     """
+    if not asked_for_full(config):
+        for item in items:
+            if item.get_closest_marker("full"):
+                item.add_marker(pytest.mark.skip(reason="run with --full: docs/decisions/tests.md"))
     places = {f"{name}.py": number for number, name in enumerate(LONGEST)}
 
     def turn(item: pytest.Item) -> tuple[int, int, str]:
@@ -146,7 +157,7 @@ def _rounding() -> Iterator[None]:
 @pytest.fixture(scope="session")
 def full(request: pytest.FixtureRequest) -> bool:
     """True where the full forms were asked for, by ``--full`` or SERVOIDENT_FULL=1."""
-    return bool(request.config.getoption("--full")) or os.environ.get("SERVOIDENT_FULL") == "1"
+    return asked_for_full(request.config)
 
 
 @pytest.fixture(scope="session", autouse=True)

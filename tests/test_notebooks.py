@@ -11,7 +11,6 @@ import pytest
 from docs.notebooks.execute import NOTEBOOKS, executed
 
 FEW = 15  # statements
-LONG = {"find-a-hidden-effect", "own-effect-and-proposal"}  # half a minute and more
 BY_NAME = {path.stem: path for path in NOTEBOOKS}
 
 
@@ -27,11 +26,10 @@ def texts(notebook):
     )
 
 
+@pytest.mark.full
 @pytest.mark.parametrize("name", BY_NAME)
-def test_a_notebook_runs_in_an_empty_folder(name, tmp_path, full):
-    """Each cell, in a kernel of its own; the short ones always, all with --full."""
-    if name in LONG and not full:
-        pytest.skip("--full")
+def test_a_notebook_runs_in_an_empty_folder(name, tmp_path):
+    """Each cell, in a kernel of its own."""
     assert texts(executed(BY_NAME[name], tmp_path))
 
 

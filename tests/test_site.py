@@ -41,6 +41,7 @@ def links(page: Path) -> list[tuple[str, str]]:
     return [tuple(unquote(part) for part in urldefrag(re.sub(r"\?[^#]*", "", link))) for link in local]
 
 
+@pytest.mark.full
 def test_the_site_is_built_without_a_warning_and_no_link_leads_nowhere(site):
     pages = [page for page in site.rglob("*.html") if "_static" not in page.parts]
     places = {page: set(re.findall(r'\bid="([^"]+)"', page.read_text(encoding="utf-8"))) for page in pages}
@@ -54,6 +55,7 @@ def test_the_site_is_built_without_a_warning_and_no_link_leads_nowhere(site):
     assert not lost
 
 
+@pytest.mark.full
 def test_every_page_is_in_the_site_and_every_name_of_the_face_in_its_reference(site):
     written = {page.relative_to(DOCS).with_suffix(".html") for page in DOCS.rglob("*.md") if "_site" not in page.parts}
     assert not [str(page) for page in written if not (site / page).exists()]
@@ -61,6 +63,7 @@ def test_every_page_is_in_the_site_and_every_name_of_the_face_in_its_reference(s
     assert not [name for name in ident.__all__ if f'id="ident.{name}"' not in said]
 
 
+@pytest.mark.full
 def test_a_picture_that_has_a_dark_form_is_shown_by_it_on_dark_pages(site):
     said = (site / "tutorial.html").read_text(encoding="utf-8")
     for picture in ("bode", "residual-correlation"):
@@ -87,6 +90,7 @@ def followed(blocks, full) -> int:
     return compared
 
 
+@pytest.mark.full
 def test_the_tutorial_on_the_measured_machine_does_what_it_says(measured_data, tmp_path, monkeypatch, full):
     """The record stands described as the page describes it; each block of Python is run."""
     record(tmp_path, measured_data / "mts_actuator" / "runs")

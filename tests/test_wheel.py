@@ -105,6 +105,7 @@ print(ident.__file__)
 """
 
 
+@pytest.mark.full
 def test_it_simulates_and_fits_without_the_repository(installed, tmp_path):
     """In one process: the version and the service, in tests of their own, start the program that is installed."""
     asked = [installed / "python", "-c", SIMULATED_AND_FITTED]

@@ -21,6 +21,7 @@ from ident.readers import read_matrix
 from ident.workflows import identify
 from tests.acceptance.matrices import NOISE, as_matrix, records_of
 from tests.reference import qian_reference as reference
+from tests.short_form import short_form
 
 TRUTH = reference.Plant()
 SEEDS, FEW = 30, 3  # of one fit, in the full form and in the short one
@@ -42,6 +43,12 @@ def third_of(hold: str) -> Matrix:
 def third_fitted(seed: int) -> FitResult:
     """Their fit."""
     return identify(third_of("linear"), Settings(seed=seed))
+
+
+@pytest.fixture(params=short_form(["linear", "zoh"], "linear"))
+def hold(request: pytest.FixtureRequest) -> str:
+    """What the command does between samples; a held one has a test of its own below, too."""
+    return str(request.param)
 
 
 @pytest.fixture
@@ -100,7 +107,7 @@ def test_every_seed_ends_at_the_same_optimum(matrix, hold, full):
     assert (max(costs) - min(costs)) / min(costs) < SAME
 
 
-@pytest.mark.parametrize("method", ["differential-evolution", "cma-es"])
+@pytest.mark.parametrize("method", short_form(["differential-evolution", "cma-es"], "differential-evolution"))
 def test_the_other_searches_end_at_the_same_optimum(method):
     """Two independent global searches agree with the default method to 1e-6 in cost."""
     other = identify(third_of("linear"), Settings(method=method, seed=5)).error["fit"]
@@ -154,6 +161,7 @@ print(json.dumps(fit.to_json(), sort_keys=True))
 """
 
 
+@pytest.mark.full
 @pytest.mark.usefixtures("all_cores")
 @pytest.mark.skipif(not hasattr(os, "sched_getaffinity"), reason="cannot bind a process to cores on this system")
 def test_one_core_and_all_cores_give_one_answer(tmp_path):

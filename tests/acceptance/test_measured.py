@@ -64,6 +64,7 @@ def test_the_bounds_of_another_machine_are_not_forced(by_library):
     assert any("not used" in note for note in by_library["notes"])
 
 
+@pytest.mark.full
 def test_table_2_forced_on_this_machine_would_fail(folder):
     """The wide search matters: within Table 2's bounds the error is many times larger."""
     bounds = {p.name: (p.lower, p.upper) for p in PRESETS["qian2014"].parameters}
@@ -95,6 +96,7 @@ def test_a_determined_combination_does_not_depend_on_the_seed(folder, by_library
         assert abs(again[entry["expression"]].value - entry["value"]) < 0.2 * entry["std_error"]
 
 
+@pytest.mark.full
 def test_the_main_job_over_http(folder, tmp_path, by_library):
     """Upload, job, stored set, Bode plot: the same answer as the library's."""
     buffer = io.BytesIO()

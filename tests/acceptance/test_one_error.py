@@ -23,6 +23,7 @@ from tests.fit.test_windows import cylinder
 from tests.presets.test_composed import force_loop
 from tests.presets.test_machines import motor, specimen
 from tests.presets.test_two_tanks import tanks
+from tests.short_form import short_form
 
 RATE = 500.0
 SMALL = {"population": 24.0, "generations": 4.0, "elite": 3.0}  # a search: wherever it ends, the error is one
@@ -120,15 +121,12 @@ def fitted(machine: str) -> tuple[Matrix, FitResult]:
     return matrix, identify(matrix, Settings(model=model, effects=effects, seed=3, options=SMALL))
 
 
-LONG = ("a loop, held", "a loop as a lag", "a driven mass", "a motor as a cylinder", "a cylinder", "a specimen",
-        "a press")  # fmt: skip
-"""Machines whose like is among the others: in the long form."""
+FEW_MACHINES = ("a loop with an effect", "a specimen with an effect", "a motor with an effect", "a disturbed cylinder")
+"""Of the short form: one under its loop, one in open loop, a specimen, and one that is judged by windows."""
 
 
-@pytest.mark.parametrize("machine", MACHINES)
+@pytest.mark.parametrize("machine", short_form(MACHINES, *FEW_MACHINES))
 def test_one_fit_has_one_error(machine, full, request):
-    if machine in LONG and not full:
-        pytest.skip("its like is among the others: run with --full")
     if set(MACHINES[machine][2]) <= FEW:
         request.getfixturevalue("few_effects")
     with short_searches(full):

@@ -6,6 +6,7 @@ Seeds 100 to 199 in the long form, the first twelve of them in the short one.
 from __future__ import annotations
 
 import numpy as np
+import pytest
 
 from ident.fit import identification
 from ident.fit.settings import Settings
@@ -33,6 +34,7 @@ def test_the_gain_lies_within_its_standard_errors_as_often_as_it_should(full):
     assert (0.90 if full else 0.75) <= covered <= (0.98 if full else 1.0)
 
 
+@pytest.mark.full
 def test_over_whole_runs_it_does_not(full, monkeypatch):
     monkeypatch.setattr(identification, "in_windows", lambda optimum, *_, **__: optimum)
     z = deviations(range(100, 200 if full else 112))

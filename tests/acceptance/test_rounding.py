@@ -21,6 +21,7 @@ from tests.fit.recovery import matrix as with_hidden
 from tests.reference import kononykhin_reference
 from tests.reference.qian_reference import band_limited_noise
 from tests.rounding import perturbed
+from tests.short_form import short_form
 
 RATE = 4096.0
 CLOSE = 0.1  # standard errors
@@ -28,6 +29,7 @@ COPIES = 10  # in the full form
 BENCH = kononykhin_reference.scattered(9)
 NEAR = {name: tuple(sorted((0.7 * value, 1.4 * value))) for name, value in sets.true_model(BENCH).values().items()}
 SHORT = Settings("kononykhin", bounds=NEAR, options={"population": 16.0, "generations": 3.0, "elite": 3.0}, seed=4)
+"""A search that the rows of tests/papers make, too."""
 
 
 def simulated(model: str, values: dict[str, float], output: str = "displacement", **of_matrix: object) -> Matrix:
@@ -81,12 +83,10 @@ def known(fit: FitResult) -> dict[str, tuple[float, float]]:
     return found | {entry.expression: (entry.value, entry.std_error) for entry in fit.determined}
 
 
-@pytest.mark.parametrize("case", CASES)
+@pytest.mark.parametrize("case", short_form(CASES, "qian2014 with an effect", "drive under its loop", "open_valve"))
 def test_copies_of_the_data_give_the_same_values(case, full):
     """Within a tenth of a standard error of the fit to the data as they are; ten copies in the full form, else one."""
     make, settings = CASES[case]
-    if not full and case == "kononykhin":
-        settings = SHORT
     matrix = make()
     with short_searches(full):
         _same(matrix, settings, COPIES if full else 1)

@@ -120,6 +120,7 @@ def test_every_figure_is_drawn(service, simulation, controller, fitted, matrix):
         refused_by_service(service.get(f"{API}{place}/figures/{name}.svg?theme=pink"), "unknown-theme")
 
 
+@pytest.mark.full
 def test_what_a_feedforward_is_worth_is_kept_and_drawn(service, tmp_path):
     """Of a rig of fifth order of which two parameters are fitted: limit, draws and their band; figure and page."""
     truth = rig.machine(0)
@@ -426,6 +427,7 @@ def test_two_actuators_over_http_have_their_own_fits_and_controllers(service, fi
     refused_by_service(service.post(f"{API}/controllers", json={"fit": fitted, "case": case}), "several-parts")
 
 
+@pytest.mark.full
 def test_two_actuators_over_http_have_spread_isolator_and_cause(service, fitted):
     """An unstable beam with an isolator on one part, before at a lower gain, over 5 %; what cannot be is refused."""
     parts = [

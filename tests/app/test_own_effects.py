@@ -195,6 +195,7 @@ def test_what_was_proposed_says_so_wherever_it_goes(service: TestClient, found: 
     assert (answer.status_code, answer.json()["code"]) == (422, "no-such-proposal")
 
 
+@pytest.mark.full
 @pytest.mark.usefixtures("few_effects")
 def test_the_next_actuator_has_it_by_name(service: TestClient, found: dict[str, Any]) -> None:
     """In a new fit, in a diagnosis that ranks the lab's own, and in one that names it; else it is not ranked."""

@@ -101,6 +101,7 @@ def test_check_reads_the_set_without_a_fault(servoident, folder):
     assert "Kp = 1" not in done.stdout
 
 
+@pytest.mark.full
 def test_the_whole_model_is_fitted_at_once(servoident, folder, tmp_path):
     """A short genetic search, then least squares; the procedures' values stand beside it in the notes."""
     options = ["--option", "population=20", "--option", "generations=4", "--option", "elite=3"]
@@ -131,6 +132,7 @@ def test_the_gradient_method_is_for_the_bench_only(servoident, folder):
     assert "gradient" in done.stderr
 
 
+@pytest.mark.full
 def test_a_held_value_stays(servoident, folder):
     options = ["--option", "population=20", "--option", "generations=2", "--option", "elite=3"]
     done = servoident("fit", folder, "--model", "kononykhin", "--set", "T=25 ms", "--json", "-", *options)

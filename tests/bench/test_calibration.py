@@ -25,12 +25,14 @@ def found(full: bool) -> list[dict[str, float]]:
     return [wrong(FIRST + i, read, short=True) for i, read in enumerate(INSTRUMENTS) if i in SHORT]
 
 
+@pytest.mark.full
 def test_every_quantity_of_the_sheet_is_judged(found: list[dict[str, float]]) -> None:
     of_regulator = {"gain_margin", "phase_margin"}  # no regulator is stated here
     assert set(QUANTITIES) - of_regulator <= set(found[0])
     assert np.isfinite([list(one.values()) for one in found]).all()
 
 
+@pytest.mark.full
 def test_standard_errors_are_honest_and_nothing_is_biased(found: list[dict[str, float]], full: bool) -> None:
     """Of every quantity over 100 sets; in the short form of all quantities and four sets together."""
     by_name = {name: np.array([one[name] for one in found]) for name in found[0]}

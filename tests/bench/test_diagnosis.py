@@ -66,11 +66,10 @@ def test_a_hidden_effect_is_named_with_its_strength(name, full):
     assert found.ladder[-1].error["fit"] < found.ladder[0].error["fit"]
 
 
+@pytest.mark.full
 @pytest.mark.parametrize("name", HIDDEN)
 def test_an_effect_that_was_named_is_added_to_the_fit_and_the_error_falls_to_the_noise(name, full):
     """Its strength within 5 %; with --full on whole sets, where a diagnosis of that fit finds nothing missing."""
-    if name != "load" and not full:
-        pytest.skip("ten seconds each: run with --full")
     called = CALLED.get(name, name)
     mended = fitted(matrix_with(name, short=not full), called)
     (strength,) = (p for n, p in mended.parameters.items() if "." in n and not p.fixed)

@@ -15,8 +15,10 @@ from ident.fit.settings import Settings
 from ident.workflows import figure, identify, study
 from tests.bench.sets import as_matrix
 from tests.reference import kononykhin_reference as reference
+from tests.short_form import short_form
 
 OF_BENCH = tuple(name for name, drawing in FIGURES.items() if drawing.kind == "bench")
+DRAWN, SHEET = ["time", "evolution", *OF_BENCH], "acceptance-sheet"  # which the test of its quantities draws
 
 
 @pytest.fixture(scope="module")
@@ -44,7 +46,7 @@ def test_a_fit_of_the_bench_has_its_own_figures(fitted):
 
 
 @pytest.mark.parametrize("theme", ["light", "dark"])
-@pytest.mark.parametrize("name", ["time", "evolution", *OF_BENCH])
+@pytest.mark.parametrize("name", short_form(DRAWN, *(name for name in DRAWN if name != SHEET)))
 def test_every_figure_is_drawn(studied, name, theme, full):
     """As SVG, with the actuator's serial in its title."""
     if theme != "light" and name != "time" and not full:

@@ -14,6 +14,7 @@ from ident.fit.settings import Settings
 from ident.workflows import identification, identify
 from tests.bench.sets import as_matrix, true_model
 from tests.reference import kononykhin_reference as reference
+from tests.short_form import short_form
 
 SHORT = Settings(model="kononykhin", options={"population": 16.0, "generations": 3.0, "elite": 3.0}, seed=4)
 TRUTH = reference.scattered(9)
@@ -56,7 +57,10 @@ def test_runs_to_verify_are_seen_by_no_fit(matrix):
     assert np.isfinite(found.noise_floor["verify"])
 
 
-@pytest.mark.parametrize("method", ["differential-evolution", "cma-es", "paper-ga"])
+METHODS = ("differential-evolution", "cma-es", "paper-ga")
+
+
+@pytest.mark.parametrize("method", short_form(METHODS, "cma-es"))
 def test_every_method_of_the_contract_starts(matrix, method):
     """They share the target; only the beginning of each is run here."""
     work = identification(matrix, replace(SHORT, method=method, options={}))

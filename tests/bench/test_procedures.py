@@ -22,6 +22,7 @@ from ident.bench.time_constant import dynamics
 from ident.errors import Unusable
 from tests.bench.sets import as_set, true_model
 from tests.reference import kononykhin_reference as reference
+from tests.short_form import short_form
 
 ALPHA = np.linspace(0, 2 * np.pi, 500, endpoint=False)
 
@@ -93,7 +94,7 @@ def test_gain_and_phase_are_those_of_an_integrator_behind_a_lag():
         assert np.degrees(point.phase) == pytest.approx(90 + np.degrees(np.arctan(w * truth.T)), abs=2)
 
 
-@pytest.mark.parametrize("delay", [0.002, 0.005])
+@pytest.mark.parametrize("delay", short_form([0.002, 0.005], 0.005))
 def test_a_delay_does_not_spoil_the_time_constant_silently(delay):
     """It is said in words, with T as it would be, and with the correlation that makes the two hard to tell apart."""
     truth = reference.scattered(7)._replace(delay=delay)
@@ -222,6 +223,7 @@ def test_a_link_that_never_moves_is_refused_with_the_remedy():
         analyse(replace(bench, records=tuple(still)))
 
 
+@pytest.mark.full
 def test_a_transducer_at_the_end_of_its_range_does_not_spoil_the_result():
     """Where the reading stops at its highest value, those samples are left out."""
     truth = reference.scattered(6)._replace(G=160.0)

@@ -33,6 +33,7 @@ def test_an_equation_as_a_user_writes_it_is_that_of_the_reference(name, full):
         assert np.std(run.measured - linear_outputs[run.id]) > 2e-3 * size
 
 
+@pytest.mark.full
 def test_a_trial_says_what_was_found_and_whether_it_is_the_truth():
     hidden = Hidden(NAMES.index("square_leakage"), 0.2)
     row = {

@@ -150,6 +150,7 @@ def test_every_page_of_the_service_is_visited():
     assert asked <= named | {"static", "fonts", "sign-out"}, asked - named
 
 
+@pytest.mark.full
 @pytest.mark.parametrize("name", PAGES)
 def test_random_clicks_and_forms_are_answered(name, cage, zoo, filled, tmp_path, full):
     seen, random = Seen(), np.random.default_rng([SEED, PAGES.index(name)])
@@ -179,6 +180,7 @@ def test_random_clicks_and_forms_are_answered(name, cage, zoo, filled, tmp_path,
     assert not seen.wrong, "\n".join([f"{name} ({address})", *dict.fromkeys(seen.wrong)])
 
 
+@pytest.mark.full
 def test_what_goes_wrong_on_a_page_is_noted_with_the_way_to_it(cage, zoo):
     """An error in a script, one in the console, an answer of 500, a refusal without a remedy; no other refusal."""
     seen, page = Seen(["click here"]), cage.page

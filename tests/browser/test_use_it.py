@@ -156,6 +156,7 @@ ground: {kind: blwn, band: 20 Hz, amplitude: 0.1 g, duration: 2 s}
 """
 
 
+@pytest.mark.full
 def test_two_actuators_of_an_own_case_have_a_column_and_figures_each(page, site, fitted, screenshots):
     """A case whose physical part is a list: scores side by side, two figures a part, the map over their delays."""
     page.goto(f"{site.address}/fits/{fitted}/use")

@@ -25,6 +25,7 @@ def test_millimetres_called_centimetres_are_doubted(seed):
     assert doubted(replace(matrix, runs=(first, farther))) == [last.id]
 
 
+@pytest.mark.full
 def test_what_is_hidden_in_a_machine_makes_no_such_difference(full):
     for seed in range(4000, 4100 if full else 4003):
         matrix = Lab.drawn(seed, hidden=True).measured()

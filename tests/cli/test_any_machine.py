@@ -28,6 +28,7 @@ def folder(tmp_path_factory) -> Path:
     return place
 
 
+@pytest.mark.full
 @pytest.mark.usefixtures("few_effects")
 def test_the_model_is_chosen_and_what_cannot_be_drawn_is_named(servoident, folder, tmp_path, monkeypatch):
     """It integrates: no frequency response of its own, no curves of what is missing, but the record in time."""

@@ -193,6 +193,7 @@ def test_several_fits_are_one_table_and_one_plot(servoident, few, fit_file, tmp_
     assert servoident("compare", few, *(["--fit", fit_file] * 9)).returncode == 2
 
 
+@pytest.mark.full
 def test_report_is_one_html_file(servoident, few, fit_file, tmp_path):
     """It names the actuator and is written whole."""
     done = servoident("report", few, "--fit", fit_file, "--out", tmp_path / "report.html")

@@ -9,10 +9,12 @@ from pathlib import Path
 import pytest
 import scipy.io
 
+from tests.short_form import short_form
+
 FIT = Path(__file__).resolve().parents[1] / "stored" / "fit.json"
 
 
-@pytest.mark.parametrize("structure", ["feedback", "two-degree"])
+@pytest.mark.parametrize("structure", short_form(["feedback", "two-degree"], "two-degree"))
 def test_a_controller_is_designed_and_written(servoident, tmp_path, structure):
     """JSON, MAT, header and figure; the table says what the loop can stand, and what the design does not know."""
     out = tmp_path / "controller"

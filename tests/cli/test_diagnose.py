@@ -58,6 +58,7 @@ def test_the_tables_say_it_with_units(told):
     assert found["verdict"]["text"] in printed
 
 
+@pytest.mark.full
 @pytest.mark.usefixtures("few_effects")
 def test_an_own_effect_is_ranked_beside_the_catalogue(servoident, matrix, tmp_path):
     """Its definition is in the result, beside a fit too; one that is none of its model is refused with its file."""
@@ -118,6 +119,7 @@ def test_a_fit_from_a_file_is_diagnosed_as_it_is(servoident, matrix, tmp_path):
     assert found["settings"]["bounds"] == {"dead_zone": pytest.approx([1e-6, 4e-4])}
 
 
+@pytest.mark.full
 @pytest.mark.usefixtures("few_effects")
 def test_a_proposed_term_goes_from_a_diagnosis_into_a_fit(servoident, tmp_path):
     matrix, found, fitted = hidden_bump.write(tmp_path / "bump"), tmp_path / "found.json", tmp_path / "fit.json"

@@ -7,6 +7,7 @@ from dataclasses import asdict, replace
 from pathlib import Path
 
 import numpy as np
+import pytest
 
 from app.cli.at_option import moved_to
 from ident.hybrid.controller import no_controller
@@ -103,6 +104,7 @@ ground: {kind: blwn, band: 20 Hz, amplitude: 0.1 g, duration: 1 s}
 """
 
 
+@pytest.mark.full
 def test_two_actuators_have_their_own_fits_controllers_scores_and_figures(servoident, tmp_path):
     """A controller for one part, its file named in the case; then both are simulated, with the map of their delays."""
     case, out, fit = (tmp_path / name for name in ("beam.yaml", "figures", "fit.json"))

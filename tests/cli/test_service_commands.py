@@ -247,6 +247,7 @@ def test_retention_is_shown_and_confirmed(service, servoident):
     assert servoident("retention", "--show", "--confirm", found["digest"], *service.options).returncode == 2
 
 
+@pytest.mark.full
 def test_a_backup_is_asked_for_from_a_running_service(service, servoident, fitted, tmp_path):
     """As a file that is restored; without its token, none."""
     done = servoident("backup", tmp_path / "all.backup", *service.options)

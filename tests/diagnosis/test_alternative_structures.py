@@ -50,6 +50,7 @@ def told(of: Diagnosis) -> set[tuple[str, tuple[str, ...], bool]]:
     return {(one.machine, one.effects, one.better) for one in of.verdict.elsewhere}
 
 
+@pytest.mark.full
 @pytest.mark.usefixtures("few_effects")
 def test_without_mass_dry_friction_and_a_dead_zone_are_one_equation_in_every_model():
     light = found(1.5e-3)

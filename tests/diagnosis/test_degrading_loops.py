@@ -69,10 +69,9 @@ def test_the_energy_with_which_a_record_begins_is_found_in_its_own_unit():
     assert fit.error["verify"] < 0.11
 
 
+@pytest.mark.full
 @pytest.mark.parametrize("seed", [1, 2, 3])
-def test_a_column_that_degrades_and_pinches_is_named(seed, full):
-    if seed > 1 and not full:
-        pytest.skip("the long form")
+def test_a_column_that_degrades_and_pinches_is_named(seed):
     matrix = column(seed, degrades=True)
     found = diagnose(matrix, identify(matrix), propose=False)
     assert "degrading_hysteresis" in found.verdict.effects

@@ -152,6 +152,7 @@ def test_two_hidden_effects_are_both_found(full):
     assert set(found.verdict.effects) == {"dead_zone", "quadratic_damping"}
 
 
+@pytest.mark.full
 @pytest.mark.usefixtures("few_effects")
 def test_a_null_bias_is_found_by_the_offsets():
     found = diagnose(measured(null_bias=1e-4))
@@ -173,6 +174,7 @@ def test_a_wrong_label_is_named_with_what_should_stand_there(full):
     assert wrong.id in found.verdict.text
 
 
+@pytest.mark.full
 @pytest.mark.usefixtures("few_effects")
 def test_what_the_catalogue_does_not_hold_is_called_unexplained(full):
     """The recorder's curve is bent by two thirds of a per cent at 2 mm: no listed effect brings the error to the floor.

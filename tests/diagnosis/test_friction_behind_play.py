@@ -19,11 +19,10 @@ def _few_effects(monkeypatch, full):
         monkeypatch.setattr(candidate_models, "CATALOGUE", few)
 
 
+@pytest.mark.full
 @pytest.mark.parametrize(("half_width", "contact"), [(4e-3, 3e-3), (4e-3, 1e-4), (1e-2, 1e-4)])
-def test_a_play_before_the_friction_is_named_with_its_width_and_its_contact(half_width, contact, full):
+def test_a_play_before_the_friction_is_named_with_its_width_and_its_contact(half_width, contact):
     """Where the contact is hard a sample tells but about on which side of the play it lies: to a few per cent."""
-    if contact < 1e-3 and not full:
-        pytest.skip("the long form")
     damper = PlayedDamper(half_width=half_width, contact=contact, seed=3)
     matrix = damper.matrix()
     found = diagnose(matrix, identify(matrix, model="specimen"), propose=False)

@@ -58,6 +58,7 @@ def test_a_delay_of_a_part_of_a_step_is_found():
     assert found.ladder[-1].error["fit"] == pytest.approx(0.01, rel=0.05)
 
 
+@pytest.mark.full
 @pytest.mark.usefixtures("with_delay")
 def test_a_delay_of_more_than_half_a_step_is_searched_beyond_the_range_of_its_search():
     """The usual range ends at half of the time for which a command is held: 0.25 s."""

@@ -52,14 +52,13 @@ ONE_SIDED = {
 }  # fmt: skip
 
 
+@pytest.mark.full
 @pytest.mark.parametrize("seed", [0, 1, 2])
-def test_each_effect_of_a_measured_crane_helps_on_its_second_half(data, seed, full):
+def test_each_effect_of_a_measured_crane_helps_on_its_second_half(data, seed):
     """Free run, RMSE in the record's unit: the linear chain, the effect that a diagnosis adds, two more of choice.
 
     With three effects there are many optima, and the search narrows into another than the best.
     """
-    if seed and not full:
-        pytest.skip("another seed: run with --full")
     matrix = read_matrix(data / "crane_actuator")
     chains = ((), ("gain_asymmetry",), ("gain_asymmetry", "dead_zone", "one_sided_limit"))
     found = []

@@ -19,6 +19,7 @@ def found(matrix: Matrix) -> tuple[float, Diagnosis]:
     return fit.window.horizon, diagnose(matrix, fit, most=1, propose=False)
 
 
+@pytest.mark.full
 @pytest.mark.usefixtures("few_effects")
 def test_another_gain_each_way_is_judged_over_whole_runs():
     """Over the windows that it made necessary it is worth little: a free run falls to the noise."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+import pytest
 from scipy.signal import lsim
 
 from ident.diagnosis import candidate_models
@@ -28,6 +29,7 @@ def counted(seed: int, use: str) -> Matrix:
     )  # fmt: skip
 
 
+@pytest.mark.full
 def test_a_counter_without_a_sign_is_named_whatever_the_command(monkeypatch):
     few = tuple(effect for effect in candidate_models.CATALOGUE if effect.name in FEW)
     monkeypatch.setattr(candidate_models, "CATALOGUE", few)

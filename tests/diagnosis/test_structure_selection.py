@@ -24,6 +24,7 @@ from ident.workflows import identify
 from tests.blind.any_machine import Lab, sound
 from tests.fit.test_windows import cylinder
 from tests.presets.test_machines import motor, specimen
+from tests.short_form import short_form
 
 RATE = 100.0
 
@@ -84,6 +85,7 @@ def lift(rate: float = 8.0) -> Matrix:
     return Matrix(Actuator("LIFT"), (Run("steps", "", rate, channels, {"command": "V", "displacement": "m"}),))
 
 
+@pytest.mark.full
 @pytest.mark.usefixtures("few_effects")
 def test_what_follows_whole_runs_is_not_judged_by_windows():
     """Over windows that begin with a speed, for want of a better model of one that integrates, it is no better."""
@@ -143,6 +145,7 @@ def test_structures_are_compared_over_one_time():
     assert lag.error["held_out"] > 1.02 * first.error["held_out"]
 
 
+@pytest.mark.full
 @pytest.mark.usefixtures("few_effects")
 def test_more_parameters_do_not_make_up_for_an_effect():
     """A motor with a dead zone: a valve's and an oil's lags leave a little less than the motor, all of them far more
@@ -249,7 +252,7 @@ def test_an_improbable_machine_gives_way_to_the_most_probable(probabilities, tak
     assert _preferred(first, [first, lag, motor], set(), probable)[0].machine == taken
 
 
-@pytest.mark.parametrize("model", ["motor", "open_valve"])
+@pytest.mark.parametrize("model", short_form(["motor", "open_valve"], "motor"))
 def test_a_cylinder_is_found_at_any_rate_of_samples(model):
     """At 4.6 kHz: the gain of a position in one of a drive was bounded by the position, as if it were a speed."""
     lab = sound(Lab.drawn(964, hidden=True))

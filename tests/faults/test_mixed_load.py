@@ -5,10 +5,13 @@ from __future__ import annotations
 import json
 from pathlib import Path
 
+import pytest
+
 from tests.faults import page
 from tests.faults.__main__ import run
 
 
+@pytest.mark.full
 def test_under_faults_nothing_is_lost_stored_twice_or_changed(tmp_path: Path) -> None:
     found = run(tmp_path, "sqlite", kills=1, seed=5, seconds=1.0, between=1.0, in_s3=False, diagnoses=False)
     assert found.kills == {"servoident-1": 1}

@@ -42,6 +42,7 @@ def state(service: Service, name: str) -> str:
     return next(str(each["state"]) for each in service.client.get("/workers").json()["workers"] if each["name"] == name)
 
 
+@pytest.mark.full
 def test_what_a_frozen_worker_had_goes_on_elsewhere_and_once(tmp_path: Path) -> None:
     """Every process that works is stopped but one; whichever had the job, another ends it as if nothing had been."""
     with ExitStack() as stack:

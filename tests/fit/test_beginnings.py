@@ -183,6 +183,7 @@ def test_a_command_is_counted_from_where_it_is_held_while_the_cylinder_stands(ne
     assert all("2.5 V" in note for note in said)
 
 
+@pytest.mark.full
 @pytest.mark.usefixtures("few_effects")
 def test_a_lag_far_below_the_sample_time_is_not_searched_and_the_diagnosis_follows_the_fit():
     """The time constant went to microseconds at a sample of milliseconds; then no simulation followed the fit."""
@@ -217,6 +218,7 @@ def saturated() -> tuple[Matrix, FitResult]:
     return matrix, identify(matrix, SATURATED)
 
 
+@pytest.mark.full
 def test_a_machine_in_saturation_that_moves_at_first_is_found(saturated):
     """The linear model's first states lie hundreds of deviations off, from where no step led back: 65 to 97 % left."""
     matrix, fit = saturated

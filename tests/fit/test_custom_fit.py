@@ -20,6 +20,7 @@ from ident.run import Run, Specimen
 from ident.workflows import identify
 from tests.fit.recovery import NOISE, matrix
 from tests.reference import drifting_reference, qian_reference
+from tests.short_form import short_form
 
 SECONDS, EVERY = 0.5, 6
 OVERLAP = """
@@ -126,7 +127,7 @@ def overlap() -> tuple[Matrix, FitResult]:
     return data, identify(data, settings(OVERLAP))
 
 
-@pytest.mark.parametrize("name", HIDDEN)
+@pytest.mark.parametrize("name", short_form(HIDDEN, "overlap", "supplied"))
 def test_an_own_effect_finds_its_strength(name, overlap):
     """Within 5 %, the error at the floor: a dead zone, damping, a supply with a state or measured, ripple, drift."""
     text, symbol, truth, data = HIDDEN[name]

@@ -15,6 +15,7 @@ from ident.workflows import diagnose, identify
 from tests.blind.any_machine import Lab
 
 
+@pytest.mark.full
 @pytest.mark.usefixtures("few_effects")
 def test_what_a_search_finds_is_followed_by_the_diagnosis():
     """A loop with a dead zone, nothing stated: the oil's compliance went to nothing, 500 radians a sample."""

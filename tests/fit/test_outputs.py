@@ -97,6 +97,7 @@ def test_the_force_tells_what_the_displacement_leaves_open(matrix):
     assert errors[1] < errors[0]
 
 
+@pytest.mark.full
 @pytest.mark.usefixtures("few_effects")
 def test_a_diagnosis_of_both_names_what_is_hidden(matrix):
     found = diagnose(matrix, identify(matrix, Settings(seed=1)), most=1)

@@ -176,6 +176,7 @@ def test_the_error_over_windows_is_counted_from_where_each_was_measured():
     assert np.sqrt(np.mean(parts**2)) / run.measured.std() == pytest.approx(refit.error, rel=1e-6)
 
 
+@pytest.mark.full
 @pytest.mark.usefixtures("few_effects")
 def test_a_dead_zone_is_found_below_the_disturbances():
     """In whole runs it takes nothing off an error of tens of per cent. Friction of a load without mass is the same."""

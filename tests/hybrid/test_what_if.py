@@ -199,6 +199,7 @@ def test_an_effect_without_a_linear_response_is_left_out_and_said():
     assert not any("Not in the response" in note for note in more.notes)
 
 
+@pytest.mark.full
 def test_figures_are_drawn_in_both_themes(small):
     """Response and root locus, from the result alone."""
     for theme, format_ in (("light", "svg"), ("dark", "json")):

@@ -89,6 +89,7 @@ def test_in_units_of_1_a_specimen_is_in_question_beside_what_follows_a_command()
     assert {"specimen", "open_valve"} <= {model.name for model in in_question(runs)}
 
 
+@pytest.mark.full
 def test_in_units_of_1_a_mass_on_a_spring_is_found():
     """It answers a command that is held with a swing, solved exactly from sample to sample; noise of 0.5 %, seed 66."""
     runs = []
@@ -238,6 +239,7 @@ def test_a_measured_damper_lacks_friction_that_yields_first(measured_data):
     assert fit.error["verify"] < 0.195
 
 
+@pytest.mark.full
 @pytest.mark.usefixtures("few_effects")
 def test_a_measured_motor_has_a_dead_zone(measured_data):
     """1.9 V ± 0.15 V; in its group there may be dry friction, which stops the run-down, too. No doubt is raised."""
@@ -284,6 +286,7 @@ def test_the_spring_that_a_force_deflects_may_yield():
     assert "specimen_hysteresis" not in CandidateModels.of(matrix, Settings(model="motor")).effects
 
 
+@pytest.mark.full
 def test_a_force_that_was_recorded_as_the_command_drives_a_mass_on_a_spring(full):
     """m x″ + c x′ + k x + k₃ x³ = F, by a recursion of its own: in question with what a command drives, and chosen."""
     rng, dt = np.random.default_rng(6), 1.0 / 2000.0

@@ -18,7 +18,7 @@ from ident.run import Run
 from ident.units.quantity import si_scale
 from tests.readers.random_tables import Written, drawn
 
-TABLES, SHORT = 500, 200  # with --full, in the short form
+TABLES, SHORT = 500, 60  # with --full, in the short form
 READ = 0.97
 """Share of the tables that must be read: asking about everything would be right and of no use."""
 OF_UNIT = {"mm": 1e-3, "µm": 1e-6, "in": 0.0254, "V": 1.0, "kN": 1e3, "N": 1.0}

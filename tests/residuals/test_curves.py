@@ -20,6 +20,7 @@ from ident.residuals.views import VIEWS, injected, showing, view_of
 from ident.workflows import identify, study
 from tests.fit.test_windows import cylinder
 from tests.residuals.conftest import HIDDEN, TRUE, compared
+from tests.short_form import short_form
 
 PLACES = {
     "dead_zone": "spool", "coulomb_friction": "friction", "pressure_flow": "pressure-flow",
@@ -35,7 +36,7 @@ def best(name):
     return found[0], np.array(found[0].x), np.array(found[0].y)
 
 
-@pytest.mark.parametrize("name", PLACES)
+@pytest.mark.parametrize("name", short_form(PLACES, "dead_zone", "coulomb_friction"))
 def test_the_curve_at_the_place_of_the_effect_explains_most(name):
     """And it takes nearly all of the residual's power but the noise's."""
     curve, _, _ = best(name)
@@ -69,6 +70,7 @@ def test_dry_friction_is_a_step_of_its_force_at_zero_velocity():
     assert y[inner] == pytest.approx(np.sign(x[inner]) * HIDDEN["coulomb_friction"], rel=0.2)
 
 
+@pytest.mark.full
 def test_flow_falls_with_the_pressure_against_it_as_the_root_says():
     """sqrt(1 − r P) − 1 along the flow, but for a constant that is the valve's gain."""
     _, x, y = best("pressure_flow")
@@ -78,6 +80,7 @@ def test_flow_falls_with_the_pressure_against_it_as_the_root_says():
     assert slope == pytest.approx(1.0, rel=0.15)
 
 
+@pytest.mark.full
 def test_turbulent_damping_curves_upwards_with_the_square_of_speed():
     """The curve less a straight line follows v|v| less a straight line, with the right coefficient."""
     curve, x, y = best("quadratic_damping")
@@ -87,6 +90,7 @@ def test_turbulent_damping_curves_upwards_with_the_square_of_speed():
     assert curve.y_unit == "N"
 
 
+@pytest.mark.full
 def test_an_asymmetric_gain_is_a_v():
     """Both directions gain opening of one sign: a |w|."""
     _, x, y = best("gain_asymmetry")

@@ -26,6 +26,7 @@ def report():
     return content(base.matrix, base.fit, Diagnosis.from_json(DIAGNOSIS))
 
 
+@pytest.mark.full
 def test_the_whole_report_becomes_a_pdf_the_same_each_time(report):
     drawn = paper.typeset(report)
     assert drawn.startswith(b"%PDF-")

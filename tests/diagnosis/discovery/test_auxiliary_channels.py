@@ -54,6 +54,7 @@ def diagnosed() -> Diagnosis:
     return diagnose(matrix, identify(matrix, Settings(model="specimen")))
 
 
+@pytest.mark.full
 @pytest.mark.usefixtures("few_effects")
 def test_where_a_machine_that_is_moved_begins_is_no_parameter_of_the_run():
     """With the start free each run had a friction of its own: that of a place, far away, where it never was."""

@@ -33,6 +33,7 @@ def with_a_bent_gain() -> tuple[Matrix, Diagnosis]:
     return matrix, proposed(matrix)
 
 
+@pytest.mark.full
 @pytest.mark.usefixtures("few_effects")
 def test_what_no_form_reaches_is_drawn_as_a_free_curve():
     """It is called one, tells what it is of, goes where the truth does, and holds on runs that nobody fitted."""
@@ -53,6 +54,7 @@ def test_what_no_form_reaches_is_drawn_as_a_free_curve():
     assert gain[1:-1] == pytest.approx(true[1:-1], abs=0.1 * SWING)
 
 
+@pytest.mark.full
 @pytest.mark.usefixtures("few_effects")
 def test_a_free_curve_is_an_effect_that_anyone_may_add():
     matrix, found = with_a_bent_gain()

@@ -29,6 +29,7 @@ from tests.blind.machines import matrix_of
 from tests.diagnosis.vary import vary
 from tests.reference import qian_reference as linear
 from tests.reference.outside_reference import Outside, measure_all
+from tests.short_form import short_form
 
 pytestmark = pytest.mark.usefixtures("few_effects")  # nothing of the catalogue is added here
 PLANT, NOISE = linear.Plant(), 0.005
@@ -66,10 +67,8 @@ TRUTHS = {
 }
 
 
-@pytest.mark.parametrize("kind", TRUTHS)
+@pytest.mark.parametrize("kind", short_form(TRUTHS, "unequal_areas"))
 def test_the_equation_that_no_list_holds_is_found(kind, full):
-    if not full and kind not in ("unequal_areas", "position_friction"):
-        pytest.skip("ten seconds each: run with --full")
     strength, equation, true = TRUTHS[kind]
     found = proposed(machine(2, 12 if full else 6, **{kind: strength}))
     (term,) = found.proposals
@@ -246,6 +245,7 @@ def test_a_model_without_a_term_has_no_bounds_of_its_shapes():
     assert len(with_it) == len(without) + 2
 
 
+@pytest.mark.full
 def test_the_regression_is_that_of_all_terms_and_runs_at_once(monkeypatch):
     """However few columns and runs are worked out together."""
     matrix, _ = with_a_leak()
