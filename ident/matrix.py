@@ -36,6 +36,11 @@ class Actuator:
     rig: RigLimits | None = field(default=None, metadata=WHERE_KNOWN)
 
     @property
+    def states_oil(self) -> bool:
+        """Whether what is stated of it are parts of a machine with oil."""
+        return bool(self.servo_valve) or any((self.piston_area, self.supply_pressure, self.volume))
+
+    @property
     def rig_limits(self) -> RigLimits:
         """The limits of its rig; where they have none, its own stroke and supply."""
         own = RigLimits(stroke=self.stroke, supply_pressure=self.supply_pressure)

@@ -103,6 +103,11 @@ class Chain:
         """The unit of each state and signal, as its stage states it."""
         return {quantity.name: quantity.unit for stage in self.stages for quantity in stage.publishes}
 
+    @property
+    def has_oil(self) -> bool:
+        """Whether one of its quantities is a pressure."""
+        return "Pa" in self.units.values()
+
     @cached_property
     def equations(self) -> tuple[Equation, ...]:
         """Every equation, stage by stage, each with the effects of its place behind it.

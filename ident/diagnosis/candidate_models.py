@@ -11,10 +11,10 @@ import scipy  # stats, which takes half a second to load, is loaded where it is 
 from numpy.typing import NDArray
 
 from ident.cached import cached_property
-from ident.chain.channels import unmeasured
 from ident.diagnosis.compared_records import ComparedRecords
 from ident.diagnosis.criteria import CRITERIA, EPSILON
 from ident.diagnosis.fitted_model import FittedModel
+from ident.diagnosis.offered_effects import offered_effects, place_in_words
 from ident.diagnosis.resting import Resting
 from ident.diagnosis.tie_breaking import stable_minimum, stable_ranking
 from ident.diagnosis.verdict import Residual, is_noise
@@ -37,18 +37,11 @@ from ident.parallel import Once, each
 from ident.preprocessing import prepare
 from ident.presets import Preset
 from ident.presets import preset as preset_named
-from ident.presets.middle import about
-from ident.run import MOTIONS, Run
+from ident.run import Run
 from ident.simulation.steps import MOST
 from ident.words.titles import title
 
 Array = NDArray[np.float64]
-
-
-def _has_specimen(preset: Preset, matrix: Matrix) -> bool:
-    """Whether something may yield: what is moved, a stated or a measured specimen, or a spring of the machine's own."""
-    yields = preset.data.driven_by in MOTIONS or any(p.name == "k0" for p in preset.parameters)
-    return yields or any(run.specimen or "force" in run.channels for run in matrix.runs)
 
 
 def _is_beyond(value: float, lower: float, upper: float) -> bool:
@@ -92,15 +85,7 @@ class CandidateModels:
         """The models of the settings' preset with every effect that it has a place for."""
         preset, prepared = prepare(preset_named(given.model), matrix, given.load, given.preprocessing)
         matrix = with_known_zeros(prepared, given.known_zeros)
-        listed = (*(effect for effect in CATALOGUE if _has_specimen(preset, matrix) or not effect.of_specimen), *custom)
-        known = {
-            effect.name: about(effect, preset.middle)
-            for effect in listed
-            if preset.takes(effect)
-            and not unmeasured(preset.with_effects((effect,)).chain.symbols, matrix.runs)
-            and effect.suits(matrix)
-            and effect.unless not in preset.core.symbols
-        }
+        known = offered_effects(CATALOGUE, custom, preset, matrix)
         return cls(preset, matrix, given, excited_band(matrix.of_use("fit")), known, horizon=horizon, memory=memory)
 
     def described(self, name: str) -> str:
@@ -111,7 +96,8 @@ class CandidateModels:
             described = any(run.specimen for run in runs)
         else:
             described = bool(of.piston_area or of.servo_valve or of.supply_pressure or any(run.gain for run in runs))
-        return title(name) if described or not effect.does else f"{title(name)} ({effect.does}, at the {effect.place})"
+        place = place_in_words(effect, self.preset, self.matrix)
+        return title(name) if described or not effect.does else f"{title(name)} ({effect.does}, at the {place})"
 
     @property
     def runs(self) -> tuple[Run, ...]:

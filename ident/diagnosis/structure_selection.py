@@ -75,13 +75,15 @@ def _compared(
     matrix: Matrix, report: Report, preprocessing: Mapping[str, bool]
 ) -> tuple[tuple[Structure, ...], FitResult | None]:  # fmt: skip
     """The models in question as :func:`compared_structures` has them, and the fit of the first where several were."""
-    models = in_question(matrix.runs, matrix.machine)
+    models = in_question(matrix.runs, matrix.machine, matrix.actuator.states_oil)
     if len(models) == 1:
         only = models[0]
         if matrix.machine:
             why = message("structure.described")
         elif moved_by_command(only, matrix.runs):
             why = message("structure.moved", machine=only.name, unit=matrix.runs[0].units["command"])
+        elif only.data.turns:
+            why = message("structure.turning", machine=only.name)
         elif told_by_following(only, matrix.runs):
             why = message("structure.loop", machine=only.name)
         else:

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable, Mapping
+from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,6 +16,37 @@ ONE_SIDED = 0.05
 """Of the largest value: what may lie below zero by noise or an offset of a record that stays on one side.
 
 Test: tests/effects/test_needs.py::test_a_record_is_one_sided_up_to_a_twentieth"""
+
+_ELECTRIC = ("V", "A", "N*m", "rad", "rad/s")
+"""Units of the command of an electric drive; a voltage is one of a valve, too."""
+
+
+class Recorded(Protocol):
+    """A run, or what is known of one."""
+
+    @property
+    def output(self) -> str:
+        """The channel that a model must reproduce."""
+        ...
+
+    @property
+    def units(self) -> Mapping[str, str]:
+        """The SI units of the channels."""
+        ...
+
+
+def electric(runs: Iterable[Recorded], oil: bool) -> bool:
+    """Whether units show an electric drive: what it turns is recorded in rad or rad/s, and nothing shows oil.
+
+    `oil` is whether parts of a machine with oil are stated (:attr:`ident.matrix.Actuator.states_oil`); a recorded
+    pressure shows it, too. Unknown units (``1``) exclude nothing.
+    """
+    return not oil and all(
+        run.units.get(run.output) in ("rad", "rad/s")
+        and run.units.get("command") in _ELECTRIC
+        and "Pa" not in run.units.values()
+        for run in runs
+    )
 
 
 def angle_measured(matrix: Matrix) -> bool:

@@ -13,4 +13,5 @@ UNDERLAP = Effect(
     units={"w": "m"},
     looks="more bandwidth at small amplitudes",
     source="Merritt, Hydraulic Control Systems, open-centre valve",
+    of_valve=True,
 )

@@ -19,6 +19,7 @@ _FILES = (
     "drive",
     "open_valve",
     "motor",
+    "position_servo",
     "specimen",
     "force_loop",
     "kononykhin",

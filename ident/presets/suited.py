@@ -8,14 +8,15 @@ from typing import Protocol
 import numpy as np
 
 from ident.chain.disturbance import can_be_disturbed
-from ident.effects.needs import one_sided
+from ident.effects.needs import electric, one_sided
 from ident.errors import Unusable
 from ident.presets import PRESETS, Preset, preset
 from ident.run import BENCH, DISTURBANCES, MOTIONS, Run
 from ident.stages import OPENED_BY_COMMAND
 
-_STATED, _OPEN, _UNLIKELY = 0, 2, 5
-"""Ranks: a force, or a motion, by the unit of its command; a command in open loop; a motion of another cause."""
+_STATED, _LOOP, _OTHER_LOOP, _OPEN, _UNLIKELY = 0, 1, 2, 3, 6
+"""Ranks: a force, or a motion, by the unit of its command; a loop, and one that is of another drive as a rule; a
+command in open loop; a motion of another cause."""
 _STRETCHES, _NEAR = 20, 0.1  # of a record whose means are compared; how near they are, a share of the command's
 
 
@@ -48,30 +49,34 @@ class Described(Protocol):
         ...
 
 
-def suited(runs: Sequence[Described]) -> tuple[Preset, ...]:
+def suited(runs: Sequence[Described], oil: bool = False) -> tuple[Preset, ...]:
     """The models that every run drives and shows, the likeliest first, of equals that with the fewest parameters.
 
-    What is driven by a channel of its own comes first. A loop is taken for one where command and what it compares are
-    lengths or forces alike, or in unknown units but the one where the other is, or a loop gain is stated; else the
-    command opens a valve or drives a motor. Raises Unusable where no model has such inputs and outputs.
+    `oil` is whether parts of a machine with oil are stated (:attr:`ident.matrix.Actuator.states_oil`): without them no
+    model of oil is one of an electric drive. What is driven by a channel of its own comes first. A loop is taken for
+    one where command and what it compares are lengths or forces alike, or in unknown units but the one where the other
+    is, or a loop gain is stated; else the command opens a valve or drives a motor. Raises Unusable where no model has
+    such inputs and outputs.
     """
+    without_oil = electric(runs, oil)
     found = [known for known in PRESETS.values() if all(_allows(known, run) for run in runs)]
+    found = [known for known in found if not (known.chain.has_oil and without_oil)]
     if not found:
         channels = ", ".join(sorted({name for run in runs for name in run.channels}))
         raise Unusable("no-model", f"no model is driven by and shows what the runs have: {channels}", "channels",
                        "name command and output, or choose a model")  # fmt: skip
-    return tuple(sorted(found, key=lambda known: (_rank(known, runs), len(known.parameters))))
+    return tuple(sorted(found, key=lambda known: (_rank(known, runs, oil), len(known.parameters))))
 
 
-def in_question(runs: Sequence[Described], machine: str = "") -> tuple[Preset, ...]:
+def in_question(runs: Sequence[Described], machine: str = "", oil: bool = False) -> tuple[Preset, ...]:
     """Those of them between which only a fit can decide: one, where the channels say what the machine is.
 
     A `machine` that the matrix puts together from stages is the only one.
     """
     if machine:
         return (preset(machine),)
-    found = suited(runs)
-    if _rank(found[0], runs) < _OPEN:
+    found = suited(runs, oil)
+    if _rank(found[0], runs, oil) < _OPEN:
         return found[:1]
     return tuple(known for known in found if not known.chain.reads("Kp"))
 
@@ -132,7 +137,7 @@ def _one_sided(run: Described) -> bool:
     return one_sided(run.command) and one_sided(run.measured)
 
 
-def _rank(model: Preset, runs: Sequence[Described]) -> int:
+def _rank(model: Preset, runs: Sequence[Described], oil: bool) -> int:
     if any(_by_force(model, run) for run in runs):
         stated = all(run.units.get("command") != "1" and run.output in MOTIONS for run in runs)
         return _STATED if stated else _OPEN  # what is in units of 1 may be no force, and an output what follows one
@@ -145,7 +150,8 @@ def _rank(model: Preset, runs: Sequence[Described]) -> int:
         compared = _compared(model)
         looped = any(run.gain is not None for run in runs) and compared in {run.output for run in runs}
         looped = looped or all(_comparable(run, compared) for run in runs)
-        return 1 if looped else _UNLIKELY - 1
+        usual = _LOOP if electric(runs, oil) or not model.data.turns else _OTHER_LOOP
+        return usual if looped else _UNLIKELY - 1
     drives = any(stage.place in ("flow", "pressure") for stage in model.chain.stages)
     return _OPEN if drives and OPENED_BY_COMMAND in model.chain.stages else _OPEN + 1  # no machine, but how one follows
 

@@ -255,6 +255,9 @@ STRUCTURES: Mapping[str, str] = {
     "structure.moved":
         "{machine} is used, because a force answers to a command in {unit}, which is taken as the motion; if the "
         "command is that of a valve or a loop, name the model (--model)",
+    "structure.turning":
+        "{machine} is used, an electric drive, because an angle follows an angle and nothing shows oil; if a valve "
+        "drives it, state the supply pressure (actuator: {{supply_pressure: 210 bar}})",
     "structure.driven": "{machine} is used, because {driver} drives it and it shows what was recorded",
 }  # fmt: skip
 """Why a model was chosen where none was named."""

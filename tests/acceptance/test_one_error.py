@@ -22,6 +22,7 @@ from tests.fit import rig
 from tests.fit.test_windows import cylinder
 from tests.presets.test_composed import force_loop
 from tests.presets.test_machines import motor, specimen
+from tests.presets.test_position_servo import servo
 from tests.presets.test_two_tanks import tanks
 from tests.short_form import short_form
 
@@ -99,6 +100,7 @@ MACHINES: dict[str, tuple[str, Callable[[], Matrix], tuple[str, ...]]] = {
     "a driven mass with an effect": ("drive", driven, ("coulomb_friction",)),
     "a motor": ("motor", lambda: motor(5), ()),
     "a motor with an effect": ("motor", lambda: motor(5, 1.0), ("dead_zone",)),
+    "a servo": ("position_servo", lambda: servo(1), ()),
     "a motor as a cylinder": ("open_valve", lambda: motor(5), ()),
     "a specimen": ("specimen", lambda: specimen(4), ()),
     "a specimen with an effect": ("specimen", lambda: specimen(4, friction=50.0), ("presliding_friction",)),

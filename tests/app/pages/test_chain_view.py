@@ -18,6 +18,7 @@ TAKEN = {
     "drive": 28,
     "open_valve": 50,
     "motor": 37,
+    "position_servo": 39,
     "specimen": 17,
     "force_loop": 53,
     "kononykhin": 8,
@@ -25,7 +26,7 @@ TAKEN = {
 }
 LOOPS = {
     "qian2014": {"v", "y"}, "first_order": set(), "drive": set(), "open_valve": {"v"}, "motor": set(),
-    "two_tanks": set(), "specimen": set(), "force_loop": {"v", "y"}, "kononykhin": set(),
+    "position_servo": {"y"}, "two_tanks": set(), "specimen": set(), "force_loop": {"v", "y"}, "kononykhin": set(),
     "strano": {"P", "v", "y"},
 }  # fmt: skip
 
@@ -72,8 +73,8 @@ def test_every_effect_that_is_offered_is_one_that_a_fit_takes(model):
 
 
 def takes(model: str, effect: str) -> bool:
-    """Whether the model can be made with an effect."""
+    """Whether the model can be made with an effect, its signals in an order."""
     try:
-        return bool(preset(model, (effect,)))
+        return bool(preset(model, (effect,)).chain.signals)
     except ValueError:
         return False

@@ -1,0 +1,54 @@
+"""Which effects a diagnosis looks for: those that the machine may have and its records could show."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from ident.chain.channels import unmeasured
+from ident.effects.effect import Effect
+from ident.effects.needs import electric
+from ident.matrix import Matrix
+from ident.presets import Preset
+from ident.presets.middle import about
+from ident.run import MOTIONS
+
+_OF_DRIVE = ("valve", "spool", "flow", "pressure")
+"""Places with the names of hydraulic parts, which an electric drive does not have."""
+
+
+def offered_effects(
+    catalogue: Iterable[Effect], custom: Iterable[Effect], preset: Preset, matrix: Matrix
+) -> dict[str, Effect]:  # fmt: skip
+    """The effects of the catalogue and of the user by their names, each about the middle of the stroke."""
+    listed = (*(effect for effect in catalogue if _is_of(effect, preset, matrix)), *custom)
+    return {
+        effect.name: about(effect, preset.middle)
+        for effect in listed
+        if preset.takes(effect)
+        and not unmeasured(preset.with_effects((effect,)).chain.symbols, matrix.runs)
+        and effect.suits(matrix)
+        and effect.unless not in preset.core.symbols
+    }
+
+
+def place_in_words(effect: Effect, preset: Preset, matrix: Matrix) -> str:
+    """Where an effect acts: an electric drive has no valve and no spool."""
+    return "drive" if effect.place in _OF_DRIVE and _is_electric(preset, matrix) else effect.place
+
+
+def _is_of(effect: Effect, preset: Preset, matrix: Matrix) -> bool:
+    """Whether the machine may have the part whose effect it is: a specimen, or a valve."""
+    if effect.of_specimen and not _has_specimen(preset, matrix):
+        return False
+    return not (effect.of_valve and _is_electric(preset, matrix))
+
+
+def _has_specimen(preset: Preset, matrix: Matrix) -> bool:
+    """Whether something may yield: what is moved, a stated or a measured specimen, or a spring of the machine's own."""
+    yields = preset.data.driven_by in MOTIONS or any(p.name == "k0" for p in preset.parameters)
+    return yields or any(run.specimen or "force" in run.channels for run in matrix.runs)
+
+
+def _is_electric(preset: Preset, matrix: Matrix) -> bool:
+    """Whether the machine is an electric drive: neither the model nor the records show oil."""
+    return not preset.chain.has_oil and electric(matrix.runs, matrix.actuator.states_oil)
