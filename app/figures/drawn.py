@@ -11,7 +11,7 @@ from app.errors import Failure
 from app.lru import LRU
 from ident.errors import Unusable
 from ident.figures import MEDIA, figure, render
-from ident.figures.selection import number
+from ident.figures.options import number
 from ident.words.display import display_units
 from ident.words.nearest import did_you_mean
 

@@ -69,12 +69,12 @@ class RunComparison(Shown):
     @cached_property
     def error(self) -> float:
         """Eq. (17): std(x_m − x) / std(x_m), at most :data:`ident.unstable.UNSTABLE`."""
-        return bounded(float(np.std(self._residual) / np.std(self.run.measured)))
+        return bounded(float(np.std(self.residual) / np.std(self.run.measured)))
 
     @cached_property
     def offset(self) -> float:
         """Difference of the means over the standard deviation, of the model without the offset of its transducer."""
-        offset = float((np.mean(self._residual) + self.of_transducer) / np.std(self.run.measured))
+        offset = float((np.mean(self.residual) + self.of_transducer) / np.std(self.run.measured))
         return math.copysign(bounded(abs(offset)), offset) if self.unstable else offset
 
     @property
@@ -100,7 +100,7 @@ class RunComparison(Shown):
         return ErrorOf(self.error, self.error_with_mean, (self.run.id,) if self.unstable else (), size)
 
     @cached_property
-    def _residual(self) -> Array:
+    def residual(self) -> Array:
         """Measured − modelled, (n,); where the model ran away, the largest finite number."""
         with np.errstate(over="ignore", invalid="ignore"):
             left = np.nan_to_num(self.run.measured - self.modelled, nan=_HUGE)
@@ -117,12 +117,12 @@ class RunComparison(Shown):
 
         None where the model is unstable on the run.
         """
-        return None if self.unstable else float(np.sqrt(np.mean(self._residual**2)))
+        return None if self.unstable else float(np.sqrt(np.mean(self.residual**2)))
 
     @cached_property
     def mae(self) -> float | None:
         """The residual's mean size, mean |x_m − x|, in `unit`; None where the model is unstable on the run."""
-        return None if self.unstable else float(np.mean(np.abs(self._residual)))
+        return None if self.unstable else float(np.mean(np.abs(self.residual)))
 
     @property
     def frequency(self) -> Array:

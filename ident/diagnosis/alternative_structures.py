@@ -43,7 +43,7 @@ class AlternativeModel:
             yield Explanation(models.given.model, (), base.errors)
             return
         ranking = rank(models, base, list(models.effects), report, thorough=False)
-        refits = [one.refit for one in ranking if one.refit is not None and one.improves]
+        refits = [one.refit for one in ranking if one.refit is not None and one.worth_adding]
         equal = [refit for refit in refits if indistinguishable(refit, found)]
         preferred = [refit for refit in refits if better(found, refit)]
         for refit in (preferred or equal)[: CRITERIA.ambiguity.alternatives]:

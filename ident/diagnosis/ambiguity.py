@@ -1,98 +1,21 @@
-"""The challenges to a selection: noise, validation data, other effects, lags and machines that explain as well."""
+"""The groups of effects that are indistinguishable in the place of an added effect."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
-from functools import partial
-from itertools import pairwise
+from collections.abc import Sequence
 
-from ident.diagnosis.alternative_structures import AlternativeModel, alternative_explanations
-from ident.diagnosis.budget import SearchBudget
-from ident.diagnosis.criteria import CRITERIA
-from ident.diagnosis.ladder import Rungs
-from ident.diagnosis.model_comparison import verified_change
-from ident.diagnosis.result import Explanation, Suspect
-from ident.diagnosis.selection import Selection
-from ident.diagnosis.sentences import delay_sentence
-from ident.diagnosis.stages import LAGS, NOISE, OTHERS, VERIFY, Stages
-from ident.diagnosis.total_delay import lag_ambiguities, total_delay
-from ident.diagnosis.verdict import Findings
-from ident.diagnosis.verification import VerifyChange
-from ident.progress import Progress
-from ident.time_budget import in_time
-
-Names = tuple[str, ...]
+from ident.diagnosis.candidate import Candidate, not_dominated
+from ident.diagnosis.fitted_model import FittedModel
+from ident.diagnosis.model_comparison import indistinguishable
 
 
-def challenged(
-    selection: Selection, steps: Rungs, suspects: Sequence[Suspect], stages: Stages, lag_pairs: Sequence[Names] = (),
-    elsewhere: Sequence[Explanation] = (),
-) -> Findings:  # fmt: skip
-    """The findings on a selection: its residual, validation data and bounds, together with those of other stages."""
-    models, fitted = selection.models, selection.fitted
-    residual = in_time(lambda: models.residual(fitted))
-    if residual is None:
-        stages.miss(NOISE)
-    verify = in_time(lambda: tuple(_verify_changes(steps)))
-    if verify is None:
-        stages.miss(VERIFY)
-    return Findings(
-        added=selection.added,
-        alternatives=tuple(tuple(one.effect for one in group) for group in selection.alternatives.values()),
-        lag_pairs=tuple(lag_pairs),
-        residual=residual,
-        set_gains=in_time(selection.refitted_sets.gains),
-        verify=verify or (),
-        at_bound=tuple(name for name in selection.added if models.at_bound(fitted, name)),
-        suspects=tuple(suspects),
-        elsewhere=tuple(elsewhere),
-    )
+def indistinguishable_group(name: str, here: FittedModel, ranking: Sequence[Candidate]) -> list[Candidate]:
+    """The effect itself, and the candidates that are indistinguishable from it.
 
-
-def _verify_changes(steps: Rungs) -> Iterator[VerifyChange]:
-    """The change of the validation error with each effect of the ladder, between rungs that are stable."""
-    stable = [(added, refit) for added, refit in steps if refit.stable]
-    for (_, less), (added, more) in pairwise(stable):
-        if added and (change := verified_change(added, less, more)):
-            yield change
-
-
-def other_machines(
-    known: Sequence[AlternativeModel], selection: Selection, stages: Stages, budget: SearchBudget
-) -> tuple[Explanation, ...]:
-    """The explanations by other machines that are as good, where there are other machines."""
-    if not known or not selection.added or selection.base.effects:
-        return ()
-    explained = partial(alternative_explanations, known, selection, budget.report_progress)
-    return stages.attempt(OTHERS, explained, ())
-
-
-def delay_sentences(selection: Selection, stages: Stages, budget: SearchBudget) -> Sequence[str]:
-    """The sentence on the total delay, where the data do not determine which lag or delay causes it."""
-    return stages.attempt(LAGS, lambda: _delay_sentences(selection, budget), ())
-
-
-def lag_pairs(selection: Selection, stages: Stages, budget: SearchBudget) -> Sequence[Names]:
-    """The groups of lags and delays in which no two can be distinguished from two others."""
-
-    def pairs() -> Sequence[Names]:
-        budget.report_progress(Progress(LAGS, 0, 1))
-        return lag_ambiguities(selection.models, selection.fitted, selection.added)
-
-    return stages.attempt(LAGS, pairs, ())
-
-
-def _delay_sentences(selection: Selection, budget: SearchBudget) -> Sequence[str]:
-    """The sentence on the total delay of the last model; else, where its residual is above the noise, of an earlier
-    one.
-
-    An effect that changes the valve's lag, as its stiction, may fix this lag.
+    A candidate is compared with the effect's model and with the best model, and is left out where another candidate
+    dominates it. The effect itself is in its group in any case.
     """
-    budget.report_progress(Progress(LAGS, 0, 1))
-    models, steps = selection.models, [refit for _, refit in selection.ladder() if refit.stable][::-1]
-    asked = CRITERIA.ambiguity.delay_models if models.residual_above_noise(selection.fitted) else 1
-    for refit in steps[:asked]:
-        if late := total_delay(models, selection.base, refit):
-            without = tuple(name for name in selection.added if name not in refit.effects)
-            return (delay_sentence(late, models.described, without),)
-    return ()
+    refits = [c for c in ranking if c.refit is not None]
+    best = min([here, *(c.refit for c in refits if c.refit)], key=lambda refit: refit.held_out.score)
+    as_good = [c for c in refits if c.refit and any(indistinguishable(model, c.refit) for model in (best, here))]
+    return [*(c for c in refits if c.effect == name), *(c for c in not_dominated(as_good) if c.effect != name)]

@@ -1,23 +1,19 @@
-"""A candidate effect, the order of candidates, ties among them, and the groups that are indistinguishable."""
+"""A candidate effect, the order of candidates, and ties among them."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from itertools import groupby
 
 from ident.diagnosis.candidate_models import CandidateModels
 from ident.diagnosis.criteria import CRITERIA
+from ident.diagnosis.evidence import comparison
 from ident.diagnosis.evidence.comparison import Evidence
 from ident.diagnosis.evidence.criteria import EVIDENCE_CRITERIA, OF_SHOWN
 from ident.diagnosis.fitted_model import FittedModel
-from ident.diagnosis.model_comparison import (
-    dominated,
-    evidence,
-    indistinguishable,
-    is_improvement,
-    is_improvement_on_the_whole,
-)
+from ident.diagnosis.model_comparison import bar, dominated, evidence, indistinguishable
 from ident.diagnosis.screening import Prediction
 from ident.diagnosis.tie_breaking import stable_ranking
 
@@ -26,16 +22,16 @@ from ident.diagnosis.tie_breaking import stable_ranking
 class Candidate:
     """An effect, its prediction, its trial and its refit on all records where they were made, and the evidence for it.
 
-    `improves` is whether it is worth adding to the model without it. It `worsens_part` where it improves the model on
-    the whole, and worsens a condition of the tests, a half of the records, or the free run of a model that is fitted
-    over windows.
+    `worth_adding` is the answer of :func:`~ident.diagnosis.evidence.comparison.worth_adding` on it and the model
+    without it. It `worsens_part` where it improves the model on the whole, and worsens a condition of the tests, a half
+    of the records, or the free run of a model that is fitted over windows.
     """
 
     prediction: Prediction
     trial: FittedModel | None = None
     refit: FittedModel | None = None
     evidence: Evidence | None = None
-    improves: bool = False
+    worth_adding: bool = False
     worsens_part: bool = False
 
     @property
@@ -58,11 +54,12 @@ class Candidate:
     def refitted(self, models: CandidateModels, base: FittedModel, refit: FittedModel) -> Candidate:
         """The candidate with a refit on all records, and the evidence for it against the model without the effect."""
         if not base.finite:
-            return replace(self, refit=refit, evidence=None, improves=True, worsens_part=False)
+            return replace(self, refit=refit, evidence=None, worth_adding=True, worsens_part=False)
         found, criteria = evidence(base, refit), OF_SHOWN if models.is_shown(self.effect) else EVIDENCE_CRITERIA
-        improves = is_improvement(models, base, found, criteria)
-        worsens_part = not improves and is_improvement_on_the_whole(models, base, found, criteria)
-        return replace(self, refit=refit, evidence=found, improves=improves, worsens_part=worsens_part)
+        limit = partial(bar, models, base)
+        worth_adding = comparison.worth_adding(found, limit, criteria)
+        worsens_part = not worth_adding and comparison.improves_on_the_whole(found, limit, criteria)
+        return replace(self, refit=refit, evidence=found, worth_adding=worth_adding, worsens_part=worsens_part)
 
 
 def in_rank_order(models: CandidateModels, candidates: Iterable[Candidate]) -> list[Candidate]:
@@ -89,18 +86,6 @@ def not_dominated(tied: Sequence[Candidate]) -> list[Candidate]:
     """The candidates that no other dominates."""
     refits = [one.refit for one in tied if one.refit is not None]
     return [one for one in tied if one.refit is None or not any(dominated(one.refit, by) for by in refits)]
-
-
-def indistinguishable_group(name: str, here: FittedModel, ranking: Sequence[Candidate]) -> list[Candidate]:
-    """The effect itself, and the candidates that are indistinguishable from it.
-
-    A candidate is compared with the effect's model and with the best model, and is left out where another candidate
-    dominates it. The effect itself is in its group in any case.
-    """
-    refits = [c for c in ranking if c.refit is not None]
-    best = min([here, *(c.refit for c in refits if c.refit)], key=lambda refit: refit.held_out.score)
-    as_good = [c for c in refits if c.refit and any(indistinguishable(model, c.refit) for model in (best, here))]
-    return [*(c for c in refits if c.effect == name), *(c for c in not_dominated(as_good) if c.effect != name)]
 
 
 def _ties(best: Candidate, other: Candidate) -> bool:

@@ -9,9 +9,9 @@ from dataclasses import dataclass, replace
 from ident.checks.missing_input import missing_inputs
 from ident.checks.self_oscillation import self_oscillation
 from ident.diagnosis.alternative_structures import alternative_models
-from ident.diagnosis.ambiguity import challenged, delay_sentences, lag_pairs, other_machines
 from ident.diagnosis.budget import SearchBudget
 from ident.diagnosis.candidate_models import CandidateModels
+from ident.diagnosis.challenges import challenged, delay_sentences, lag_pairs, other_machines
 from ident.diagnosis.discovery.discover import INCOMPLETE, discovered, is_searched
 from ident.diagnosis.discovery.discovery_result import DiscoveryResult
 from ident.diagnosis.fitted_model import FittedModel

@@ -18,7 +18,7 @@ from ident.diagnosis.candidate_models import CandidateModels
 from ident.diagnosis.criteria import CRITERIA
 from ident.diagnosis.fitted_model import FittedModel
 from ident.diagnosis.initial_guesses import in_place_of_spring, way_of
-from ident.diagnosis.model_comparison import improves
+from ident.diagnosis.model_comparison import worth_adding
 from ident.diagnosis.screening import Prediction, predict
 from ident.diagnosis.tie_breaking import stable_minimum
 from ident.effects import CATALOGUE
@@ -101,7 +101,7 @@ def with_free_widths(
         if prediction.after.error < asked or springs(free, base, [prediction.effect])
     ][: CRITERIA.free_widths.tried]
     refits = [freed_refit(free, base, prediction) for prediction in promising]
-    better = [refit for refit in refits if refit is not None and improves(models, best, refit)]
+    better = [refit for refit in refits if refit is not None and worth_adding(models, best, refit)]
     return stable_minimum(better, lambda refit: refit.held_out.score) if better else None
 
 

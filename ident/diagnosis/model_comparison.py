@@ -13,7 +13,6 @@ import numpy as np
 from ident.diagnosis.candidate_models import CandidateModels
 from ident.diagnosis.evidence import comparison
 from ident.diagnosis.evidence.comparison import Evidence, compare
-from ident.diagnosis.evidence.criteria import EVIDENCE_CRITERIA, EvidenceCriteria
 from ident.diagnosis.fitted_model import FittedModel
 from ident.diagnosis.screening import gain_by_chance
 from ident.diagnosis.verification import VerifyChange, verify_change, with_free_run
@@ -27,25 +26,11 @@ def evidence(before: FittedModel, after: FittedModel) -> Evidence:
     return replace(found, by_free_run=lambda: (before.free_run, after.free_run))
 
 
-def improves(models: CandidateModels, less: FittedModel, more: FittedModel) -> bool:
+def worth_adding(models: CandidateModels, less: FittedModel, more: FittedModel) -> bool:
     """Whether a model with more effects is worth them: it gains beyond chance, by a share that matters, everywhere."""
     if not (_is_finite(less) and _is_finite(more)):
         return _is_finite(more)
-    return is_improvement(models, less, evidence(less, more))
-
-
-def is_improvement(
-    models: CandidateModels, less: FittedModel, found: Evidence, criteria: EvidenceCriteria = EVIDENCE_CRITERIA
-) -> bool:  # fmt: skip
-    """Whether a model with more effects is worth them, by the evidence for it."""
-    return comparison.worth_adding(found, partial(bar, models, less), criteria)
-
-
-def is_improvement_on_the_whole(
-    models: CandidateModels, less: FittedModel, found: Evidence, criteria: EvidenceCriteria = EVIDENCE_CRITERIA
-) -> bool:  # fmt: skip
-    """Whether a model with more effects is worth them on the whole, whatever a part of the data loses."""
-    return comparison.improves(found, partial(bar, models, less), criteria)
+    return comparison.worth_adding(evidence(less, more), partial(bar, models, less))
 
 
 def better(before: FittedModel, after: FittedModel) -> bool:

@@ -8,13 +8,14 @@ from dataclasses import dataclass, field, replace
 from functools import partial
 from itertools import combinations
 
-from ident.diagnosis.candidate import Candidate, in_rank_order, indistinguishable_group, not_dominated
+from ident.diagnosis.ambiguity import indistinguishable_group
+from ident.diagnosis.candidate import Candidate, in_rank_order, not_dominated
 from ident.diagnosis.candidate_models import CandidateModels
 from ident.diagnosis.criteria import CRITERIA
 from ident.diagnosis.fitted_model import FittedModel
 from ident.diagnosis.free_shapes import springs, with_free_widths, with_shapes_of
 from ident.diagnosis.ladder import Ladder, score, without_effect
-from ident.diagnosis.model_comparison import better, improves
+from ident.diagnosis.model_comparison import better, worth_adding
 from ident.diagnosis.ranking import deepened, rank, rank_each
 from ident.diagnosis.refitted_sets import RefittedSets
 from ident.diagnosis.selection import Selection
@@ -131,7 +132,7 @@ class Moves:
             if first:
                 selection = self.first_ranking(selection)
             ranking = selection.ranking if first else self._rank(selection.fitted, thorough=False)
-            best = self._shown(ranking) or next((candidate for candidate in ranking if candidate.improves), None)
+            best = self._shown(ranking) or next((candidate for candidate in ranking if candidate.worth_adding), None)
             if first and (known := self._from_start(selection, best) or self._in_place_of_spring(selection, best)):
                 selection = known
                 continue
@@ -158,14 +159,14 @@ class Moves:
     def _shown(self, ranking: Sequence[Candidate]) -> Candidate | None:
         """An effect that the records themselves show, where it improves the model and no other is better beyond
         chance."""
-        improving = (candidate for candidate in not_dominated(ranking) if candidate.improves)
+        improving = (candidate for candidate in not_dominated(ranking) if candidate.worth_adding)
         return next((candidate for candidate in improving if self.models.is_shown(candidate.effect)), None)
 
     def _from_start(self, selection: Selection, best: Candidate | None) -> Selection | None:
         """Begin with the model that was fitted before, where it is better than the best of the first ranking."""
-        if self.start is None or not self.start.finite or not improves(self.models, selection.fitted, self.start):
+        if self.start is None or not self.start.finite or not worth_adding(self.models, selection.fitted, self.start):
             return None
-        if best is not None and best.refit is not None and improves(self.models, self.start, best.refit):
+        if best is not None and best.refit is not None and worth_adding(self.models, self.start, best.refit):
             return None
         return self.step(selection, self.start)
 
@@ -198,7 +199,7 @@ class Moves:
             return None
         for alone in worsening[: CRITERIA.selection.companions]:
             refits = (c.refit for c in self._rank(alone, thorough=False) if c.refit is not None)
-            both = next((refit for refit in refits if improves(self.models, selection.fitted, refit)), None)
+            both = next((refit for refit in refits if worth_adding(self.models, selection.fitted, refit)), None)
             if both is not None:
                 return self.step(selection, both)
         return None
@@ -210,7 +211,7 @@ class Moves:
             return None
         less = self.models.refit(refit.effects[:-1], without_effect(refit.values, name))
         worse = not less.finite or less.held_out.score >= selection.fitted.held_out.score
-        if worse or improves(self.models, less, refit):
+        if worse or worth_adding(self.models, less, refit):
             return None
         base = less if less.effects == selection.base.effects else selection.base
         return self.step(replace(selection, base=base), less)
@@ -224,7 +225,7 @@ class Moves:
         removable = [name for name in selection.added if name != latest and not self.models.is_shown(name)]
         while removable:
             here, tried = selection.fitted, each(partial(self._less, selection), removable)
-            needless = (i for i, less in enumerate(tried) if less.finite and not improves(self.models, less, here))
+            needless = (i for i, less in enumerate(tried) if less.finite and not worth_adding(self.models, less, here))
             first = next(needless, None)
             if first is None:
                 break
@@ -330,7 +331,7 @@ class Moves:
         if best is None or not best.local.error < self.models.trial_error(selection.fitted):
             return None
         refit = self.models.refit(best.effects, best.values)
-        if not refit.finite or not improves(self.models, selection.fitted, refit):
+        if not refit.finite or not worth_adding(self.models, selection.fitted, refit):
             return None
         return self.step(selection, refit)
 
@@ -339,7 +340,7 @@ class Moves:
         if len(selection.added) == self.most:
             return None
         ranking = self._rank(selection.fitted, thorough=True, strong=True)
-        best = next((candidate for candidate in ranking if candidate.improves), None)
+        best = next((candidate for candidate in ranking if candidate.worth_adding), None)
         if best is None or best.refit is None:
             return None
         changed = replace(selection, changes=selection.changes + 1)
@@ -356,8 +357,8 @@ class Moves:
             return None
         for other in self.refitted_sets.as_probable(selection.fitted)[: CRITERIA.selection.runners_up]:
             ranking = self._rank(other, thorough=False)
-            best = next((candidate.refit for candidate in ranking if candidate.improves), None)
-            if best is not None and improves(self.models, selection.fitted, best):
+            best = next((candidate.refit for candidate in ranking if candidate.worth_adding), None)
+            if best is not None and worth_adding(self.models, selection.fitted, best):
                 return self.step(replace(selection, changes=selection.changes + 1), best)
         return None
 
@@ -397,8 +398,8 @@ class Moves:
 
         The search continues with its models.
         """
-        fewer = len(after.added) < len(before.added) and not improves(self.models, after.fitted, before.fitted)
-        best = after if fewer or improves(self.models, before.fitted, after.fitted) else before
+        fewer = len(after.added) < len(before.added) and not worth_adding(self.models, after.fitted, before.fitted)
+        best = after if fewer or worth_adding(self.models, before.fitted, after.fitted) else before
         self.models = best.models
         return self.keep(best)
 
@@ -412,7 +413,7 @@ class Moves:
         for _, rung in selection.ladder()[1:-1]:
             judged = any(rung is fitted for fitted in selection.path)
             judged_again = rung.finite and (not judged or score(rung) < score(selection.fitted))
-            if judged_again and not improves(self.models, rung, selection.fitted):
+            if judged_again and not worth_adding(self.models, rung, selection.fitted):
                 as_few = [fitted for fitted in selection.path if len(fitted.effects) <= len(rung.effects)]
                 back = stable_minimum([rung, *as_few], score)
                 kept = {name: of for name, of in selection.alternatives.items() if name in back.effects}

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from ident.diagnosis.candidate_models import CandidateModels
 from ident.diagnosis.fitted_model import FittedModel
-from ident.diagnosis.model_comparison import improves
+from ident.diagnosis.model_comparison import worth_adding
 
 CONSTANTS = ("static_load", "null_bias")
 """Effects that are a constant of the drive of a machine: at its load, and at its valve or amplifier."""
@@ -21,5 +21,5 @@ def at_operating_point(models: CandidateModels, base: FittedModel) -> FittedMode
         return base
     constants = [name for name in CONSTANTS if name in models.effects and name not in base.effects]
     refits = [models.converged(models.refit((*base.effects, name), base.values)) for name in constants]
-    good = [refit for refit in refits if refit.finite and improves(models, base, refit)]
+    good = [refit for refit in refits if refit.finite and worth_adding(models, base, refit)]
     return min(good, key=lambda refit: refit.held_out.error, default=base)

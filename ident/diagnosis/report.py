@@ -150,7 +150,7 @@ def _ranked(selection: Selection, floor: float | None, verdict: Verdict) -> list
             unstable=refit.unstable if refit else {},
             transducer_offset=refit.transducer_offset if refit else {},
             evidence={"predicted_fall": candidate.prediction.reduction,
-                      **evidence_figures(candidate.evidence, effect, candidate.improves)},
+                      **evidence_figures(candidate.evidence, effect, candidate.worth_adding)},
             why=why(candidate, effect, before, floor, i == 0),
         ))  # fmt: skip
     return listed

@@ -29,21 +29,21 @@ def why(candidate: Candidate, effect: Effect, before: float, floor: float | None
     if candidate.refit is None or candidate.evidence is None:
         return str(message("why.predicted", share=100 * candidate.prediction.reduction))
     errors = before, candidate.refit.held_out.error
-    return why_of_evidence(candidate.evidence, effect, errors, candidate.improves, floor, best)
+    return why_of_evidence(candidate.evidence, effect, errors, candidate.worth_adding, floor, best)
 
 
 def why_of_evidence(
-    found: Evidence, effect: Effect, errors: tuple[float, float], improves: bool, floor: float | None, best: bool
+    found: Evidence, effect: Effect, errors: tuple[float, float], worth_adding: bool, floor: float | None, best: bool
 ) -> str:  # fmt: skip
     """The same of an effect that was refitted; `errors` are those on held-out data without it and with it."""
-    return said(list(_reasons(found, effect, errors, improves, floor, best)))
+    return said(list(_reasons(found, effect, errors, worth_adding, floor, best)))
 
 
 def _reasons(
-    found: Evidence, effect: Effect, errors: tuple[float, float], improves: bool, floor: float | None, best: bool
+    found: Evidence, effect: Effect, errors: tuple[float, float], worth_adding: bool, floor: float | None, best: bool
 ) -> Iterator[Message]:  # fmt: skip
     before, after = errors
-    if matters(found) and generalises(found) and improves and floor is not None:
+    if matters(found) and generalises(found) and worth_adding and floor is not None:
         yield message("why.change_floor", before=before, after=after, floor=floor)
     else:
         yield message("why.change", before=before, after=after)
@@ -53,9 +53,9 @@ def _reasons(
         yield message("why.would_show", looks=effect.looks)
     elif not generalises(found):
         yield _loses(losing_part(found))
-    elif not improves and not runs_freely(found):
+    elif not worth_adding and not runs_freely(found):
         yield _drifts(found)
-    elif not improves:
+    elif not worth_adding:
         yield message("why.chance")
         yield message("why.would_show", looks=effect.looks)
     else:
@@ -76,14 +76,14 @@ def _drifts(found: Evidence) -> Message:
     return message("why.free_run", before=sqrt(before.power), after=sqrt(after.power), expected=sqrt(after.expected))
 
 
-def evidence_figures(found: Evidence | None, effect: Effect, improves: bool) -> dict[str, Any]:
+def evidence_figures(found: Evidence | None, effect: Effect, worth_adding: bool) -> dict[str, Any]:
     """The figures behind an effect that was refitted, or only predicted."""
     if found is None:
         return {"confirmed": False, "looks": effect.looks}
     return {
         "confirmed": True, "nats": found.gain, "nats_without_best_run": found.without, "most_nats": found.most,
         "share": found.share.mean, "share_error": found.share.error if found.share.blocks > 1 else None,
-        "distinct": found.distinct, "beyond_chance": improves, "carries_over": generalises(found),
+        "distinct": found.distinct, "beyond_chance": worth_adding, "carries_over": generalises(found),
         "looks": effect.looks, "meaning": effect.meaning,
     }  # fmt: skip
 

@@ -185,7 +185,7 @@ def _judged(fitted: Sequence[_FittedStructure]) -> tuple[float | None, list[_Jud
     if len(windows) < len(fitted):
         whole = [one.judged(None) for one in fitted]
         least = min(one.error for one in tried)
-        integrating = min(judged.error for one, judged in zip(fitted, tried, strict=True) if one.fit.window)
+        integrating = min(judged.error for model, judged in zip(fitted, tried, strict=True) if model.fit.window)
         if integrating > CRITERIA.structure.worse * least or min(one.error for one in whole) < least:
             return None, whole
     return longest.horizon, tried
@@ -348,7 +348,7 @@ class _JudgedStructure:
         base = at_operating_point(self.models, self.refit)
         others = [name for name in self.models.effects if name not in base.effects]
         ranking = rank(self.models, base, others, told, thorough=False)
-        refits = [one.refit for one in ranking if one.refit is not None and one.improves and one.refit.finite]
+        refits = [one.refit for one in ranking if one.refit is not None and one.worth_adding and one.refit.finite]
         return replace(self, with_effect=min(refits, key=_held_out, default=base if base.effects else None))
 
     def structure(self, over: float | None, more: Message | None, probability: float | None) -> Structure:

@@ -1,5 +1,9 @@
 """The verdict of a diagnosis: a pure function of its findings. The whole rule stands on this page.
 
+The findings come from the stages before: which effects were added from the selection (the rule is `worth_adding` in
+:mod:`ident.diagnosis.evidence.comparison`), their groups from :mod:`ident.diagnosis.ambiguity`, the others from
+:mod:`ident.diagnosis.challenges`.
+
 The *named* effects are the effects that the selection added, without two kinds. A *dispensable* effect is one without
 which the model does as well, given terms that were confirmed. An *unconfirmed* effect was added last, and validation
 data show nothing of it, although it would lower their error if it acted. The residual is *unexplained* unless it is

@@ -1,11 +1,12 @@
-"""The options that several figures take: which runs, which band, which curve."""
+"""The options that several figures take: which runs, which band, which curve; and an option that is a number."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 from typing import Any
 
+from ident.errors import Unusable
 from ident.figures import words
 from ident.figures.drawing import Choices, Offer, OfferedRun, Option
 from ident.presets import preset
@@ -70,3 +71,12 @@ CANDIDATE = Option("candidate", takes=Any)
 """Another fit, judged where it is used."""
 OTHER = Option("other", takes=Any)
 """Other fits, which are drawn over this one."""
+
+
+def number(options: Mapping[str, Any], name: str) -> float | None:
+    """An option that is a number. Raises Unusable."""
+    value = options.get(name)
+    try:
+        return None if value in (None, "") else float(value)
+    except (TypeError, ValueError):
+        raise Unusable("not-a-number", f"{name} is {value!r}", "figure option", "give a number") from None

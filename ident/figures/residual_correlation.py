@@ -11,9 +11,8 @@ from ident.figures import words
 from ident.figures.choose import one, typical
 from ident.figures.drawing import Drawing, Option, Options
 from ident.figures.look import Look
-from ident.figures.options import RUN
+from ident.figures.options import RUN, number
 from ident.figures.render import Chart, Panel, datasets
-from ident.figures.selection import number
 from ident.figures.study import Study
 from ident.fit.result import FitResult
 from ident.matrix import Actuator
@@ -86,4 +85,6 @@ def _draw(study: Study, look: Look, options: Options) -> Chart:
     )
 
 
-RESIDUAL_CORRELATION = Drawing("residual-correlation", "Residual correlation", Study, _draw, (RUN, Option("lags")))
+RESIDUAL_CORRELATION = Drawing(
+    "residual-correlation", "Residual correlation", Study, _draw, (RUN, Option("lags", "Largest lag, samples"))
+)

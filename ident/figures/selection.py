@@ -9,6 +9,7 @@ from typing import Any
 import altair as alt
 
 from ident.errors import Unusable
+from ident.figures.options import number
 
 LOW, HIGH, RUN, BRUSH = "low", "high", "run", "brush"
 _WIDEST = 6.0  # a narrow band is drawn within at least this ratio of frequencies
@@ -35,15 +36,6 @@ class Band:
 
 OPEN = Band()
 """Every frequency."""
-
-
-def number(options: Mapping[str, Any], name: str) -> float | None:
-    """An option that is a number. Raises Unusable."""
-    value = options.get(name)
-    try:
-        return None if value in (None, "") else float(value)
-    except (TypeError, ValueError):
-        raise Unusable("not-a-number", f"{name} is {value!r}", "figure option", "give a number") from None
 
 
 def band_of(options: Mapping[str, Any]) -> Band:

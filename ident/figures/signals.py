@@ -14,9 +14,8 @@ from ident.figures import words
 from ident.figures.drawing import Drawing, Option, Options
 from ident.figures.frame import Filled, Frame, blank, frame
 from ident.figures.look import Look
-from ident.figures.options import RUN
+from ident.figures.options import RUN, number
 from ident.figures.render import Panel
-from ident.figures.selection import number
 from ident.figures.subjects import Recorded
 from ident.figures.thin import Real, significant
 from ident.figures.traces import Trace

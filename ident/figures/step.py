@@ -15,10 +15,9 @@ from ident.figures import words
 from ident.figures.choose import one, typical
 from ident.figures.drawing import Drawing, Option, Options
 from ident.figures.look import Look
-from ident.figures.options import OTHER, RUN
+from ident.figures.options import OTHER, RUN, number
 from ident.figures.others import others_of
 from ident.figures.render import Chart, datasets
-from ident.figures.selection import number
 from ident.figures.study import Study
 from ident.figures.thin import significant
 from ident.run import Run

@@ -17,10 +17,10 @@ from ident.figures.choose import one, typical
 from ident.figures.drawing import Drawing, Option, Options
 from ident.figures.frame import Filled, Frame, blank, frame
 from ident.figures.look import Look
-from ident.figures.options import BAND, OTHER, RUN
+from ident.figures.options import BAND, OTHER, RUN, number
 from ident.figures.others import others_of, titles_of
 from ident.figures.render import Panel
-from ident.figures.selection import OPEN, Band, band_of, number
+from ident.figures.selection import OPEN, Band, band_of
 from ident.figures.study import Study
 from ident.figures.thin import Real, significant
 from ident.fit.reduction import within

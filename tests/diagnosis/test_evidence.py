@@ -20,7 +20,7 @@ from ident.diagnosis.evidence.comparison import (
     compare,
     dominated,
     generalises,
-    improves,
+    improves_on_the_whole,
     indistinguishable,
     worth_adding,
 )
@@ -192,7 +192,7 @@ def test_an_effect_worth_three_deviations_above_the_floor_is_found_among_thirty(
         spectrum = common(bands, [[hidden + noise], [noise]])
         evidence = compared([hidden + noise], [noise], [WHITE], spectrum)
         limit = bar([hidden + noise], [np.empty((n, 0))], [columns], spectrum, seed)
-        found += improves(evidence, lambda limit=limit: limit)
+        found += improves_on_the_whole(evidence, lambda limit=limit: limit)
     assert found >= 0.93 * count
 
 
@@ -239,7 +239,7 @@ def test_a_gain_of_less_than_a_hundredth_of_the_explainable_power_does_not_impro
         after = left * (before - noise) + noise
         evidence = compared([before], [after], [Record(1.0, period=87.3)])
         assert evidence.difference.above(0.0, EVIDENCE_CRITERIA)
-        assert improves(evidence, lambda: 0.0) is expected
+        assert improves_on_the_whole(evidence, lambda: 0.0) is expected
 
 
 def test_an_effect_that_moves_the_means_of_the_runs_alone_matters() -> None:
@@ -250,11 +250,11 @@ def test_an_effect_that_moves_the_means_of_the_runs_alone_matters() -> None:
     means = rng.standard_normal(6) - 0.1
     plain = Residuals(tuple(noise), bands, np.zeros(6))
     moved = [Residuals(tuple(noise), bands, size * means) for size in (1e-4, 0.02)]
-    assert [improves(compare(one, plain), lambda: 5.0) for one in moved] == [False, True]
+    assert [improves_on_the_whole(compare(one, plain), lambda: 5.0) for one in moved] == [False, True]
     assert [indistinguishable(compare(one, plain)) for one in moved] == [True, False]
     lacking = tuple(r + 5 * NOISE * slow(rng, 400) for r in noise)
     before, after = (Residuals(series, bands, 3.0 * means) for series in (lacking, tuple(noise)))
-    assert improves(compare(before, after), lambda: 5.0)
+    assert improves_on_the_whole(compare(before, after), lambda: 5.0)
 
 
 def test_what_noise_leaves_of_the_means_is_not_to_be_gained() -> None:
@@ -280,8 +280,8 @@ def test_what_only_one_of_many_runs_asks_for_does_not_improve() -> None:
     one = [noise[0] + 5 * NOISE * slow(rng, 400), *noise[1:]]
     all_of_them = [r + 5 * NOISE * slow(rng, 400) for r in noise]
     records = [replace(WHITE, condition=i) for i in range(8)]
-    assert not improves(compared(one, noise, records), lambda: 5.0)
-    assert improves(compared(all_of_them, noise, records), lambda: 5.0)
+    assert not improves_on_the_whole(compared(one, noise, records), lambda: 5.0)
+    assert improves_on_the_whole(compared(all_of_them, noise, records), lambda: 5.0)
 
 
 def test_what_helps_one_condition_and_harms_another_does_not_generalise() -> None:
@@ -406,11 +406,11 @@ def test_a_gain_that_is_not_worth_the_prior_of_an_effect_does_not_improve() -> N
     noise = white(np.random.default_rng(15), 500)
     plain = compared([noise], [noise], [WHITE])
     near = replace(plain, gain=1.0, without=1.0, most=1.0, share=BlockMean(0.5, 0.01, 20))
-    assert not improves(near, lambda: 0.0)
+    assert not improves_on_the_whole(near, lambda: 0.0)
     more = replace(near, gain=5.0, without=5.0, most=20.0)
-    assert improves(more, lambda: 4.9)
-    assert not improves(more, lambda: 5.1)
-    assert improves(replace(more, most=9.0), lambda: 5.1)
+    assert improves_on_the_whole(more, lambda: 4.9)
+    assert not improves_on_the_whole(more, lambda: 5.1)
+    assert improves_on_the_whole(replace(more, most=9.0), lambda: 5.1)
 
 
 def test_probabilities_are_those_of_the_models_and_sum_to_one() -> None:
@@ -464,7 +464,7 @@ def test_what_reaches_the_noise_passes_where_one_harmonic_is_all_there_is() -> N
     limit = bar([missing + noise], [np.empty((n, 0))], [columns], spectrum)
     evidence = compared([missing + noise], [noise], record, spectrum)
     assert evidence.gain < 1.2 * limit
-    assert improves(evidence, lambda: 2 * limit)
+    assert improves_on_the_whole(evidence, lambda: 2 * limit)
 
 
 def test_an_error_within_two_per_cent_of_the_floor_leaves_nothing_to_gain() -> None:
@@ -490,4 +490,4 @@ def test_models_that_leave_nothing_are_equal() -> None:
     nothing = np.zeros(500)
     evidence: Evidence = compared([nothing], [nothing], [Record(1.0)])
     assert evidence.gain == 0.0
-    assert not improves(evidence, lambda: 0.0)
+    assert not improves_on_the_whole(evidence, lambda: 0.0)

@@ -8,7 +8,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from ident.diagnosis.candidate import Candidate, in_rank_order, indistinguishable_group
+from ident.diagnosis.ambiguity import indistinguishable_group
+from ident.diagnosis.candidate import Candidate, in_rank_order
 from ident.diagnosis.criteria import CRITERIA
 from ident.diagnosis.evidence.chance import bar
 from ident.diagnosis.evidence.comparison import Residuals, common_disturbance

@@ -9,7 +9,7 @@ from typing import Any
 
 import pytest
 
-from ident.diagnosis import candidate, moves, refitted_sets
+from ident.diagnosis import ambiguity, candidate, moves, refitted_sets
 from ident.diagnosis.moves import Moves
 from ident.diagnosis.selection import Selection
 from ident.diagnosis.selection_loop import add_and_exchange, select
@@ -28,7 +28,7 @@ class Judgement:
 
     effect: str
     refit: Any
-    improves: bool
+    worth_adding: bool
     base: Any = None
     worsens_part: bool = False
 
@@ -44,7 +44,7 @@ class Judgement:
 
     def refitted(self, _models, _base, refit):
         """It helps, since its refit was met on the way."""
-        return replace(self, refit=refit, improves=True)
+        return replace(self, refit=refit, worth_adding=True)
 
 
 class Judged:
@@ -117,12 +117,12 @@ class Judged:
 
         def judged(name):
             if (name in self.far and not strong) or (name in self.late and not base.effects):
-                return Judgement(name, None, improves=False)
+                return Judgement(name, None, worth_adding=False)
             refit = self.refit((*base.effects, name), {})
             together = {"b", "c"} <= set(refit.effects)
             falls = refit.held_out.score < base.held_out.score and not together
             worsens = name in self.worsening and not base.effects
-            return Judgement(name, refit, improves=falls and not worsens, worsens_part=falls and worsens)
+            return Judgement(name, refit, worth_adding=falls and not worsens, worsens_part=falls and worsens)
 
         return moves.in_rank_order(self, map(judged, names))
 
@@ -142,7 +142,7 @@ class Judged:
         """None is worse than another by what matters."""
         return False
 
-    def improves(self, _models, less, more):
+    def worth_adding(self, _models, less, more):
         """Whether an effect that only one of them has was needed, or the other does better by far."""
         less, more = less.held_out, more.held_out
         return bool((more.effects - less.effects) & self.needed) or more.score < 0.3 * less.score
@@ -173,9 +173,10 @@ class Judged:
 
     def stand_in(self, monkeypatch: pytest.MonkeyPatch) -> None:
         """For what a search asks of real refits."""
-        asked = ("rank", "rank_each", "deepened", "improves", "better", "with_free_widths", "with_shapes_of", "springs")
-        equal = ("indistinguishable", "dominated")
-        for module, names in ((moves, asked), (candidate, equal), (refitted_sets, ("both_probable",))):
+        ranked = ("rank", "rank_each", "deepened", "with_free_widths", "with_shapes_of", "springs")
+        judged = ("worth_adding", "better")
+        equal = (candidate, ("indistinguishable", "dominated")), (ambiguity, ("indistinguishable",))
+        for module, names in ((moves, ranked + judged), *equal, (refitted_sets, ("both_probable",))):
             for name in names:
                 monkeypatch.setattr(module, name, getattr(self, name))
 
@@ -284,9 +285,9 @@ def test_a_group_holds_what_cannot_be_told_from_the_best_or_from_the_named_effec
     judged = Judged({"": 1.0, "a": 0.09, "b": 0.092, "c": 0.088}, needed=set(), far="", late="", off="")
     judged.stand_in(monkeypatch)
     apart = {"b", "c"}
-    monkeypatch.setattr(candidate, "indistinguishable", lambda one, other: {*one.effects, *other.effects} != apart)
-    a, b, c = (Judgement(name, judged.refit((name,), {}), improves=True) for name in "abc")
-    group = candidate.indistinguishable_group("a", a.refit, [a, b, c])
+    monkeypatch.setattr(ambiguity, "indistinguishable", lambda one, other: {*one.effects, *other.effects} != apart)
+    a, b, c = (Judgement(name, judged.refit((name,), {}), worth_adding=True) for name in "abc")
+    group = ambiguity.indistinguishable_group("a", a.refit, [a, b, c])
     assert [one.effect for one in group] == ["a", "b", "c"]
 
 

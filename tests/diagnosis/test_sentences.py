@@ -151,7 +151,7 @@ def found(share: float, losing: bool = False) -> Evidence:
 
 
 @pytest.mark.parametrize(
-    ("evidence", "improves", "said", "unsaid"),
+    ("evidence", "worth_adding", "said", "unsaid"),
     [
         (found(0.4), True, "It shows as", "chance"),
         (found(0.4), False, "no more than the best of all effects gains by chance", "It shows"),
@@ -159,8 +159,8 @@ def found(share: float, losing: bool = False) -> Evidence:
         (found(0.4, losing=True), False, "The error rises on the second half of the records", "chance"),
     ],
 )
-def test_an_effect_says_why_it_helps_or_does_not(evidence, improves, said, unsaid):
-    text = why_of_evidence(evidence, EFFECTS[0], (0.0275, 0.0249), improves, 0.02, best=False)
+def test_an_effect_says_why_it_helps_or_does_not(evidence, worth_adding, said, unsaid):
+    text = why_of_evidence(evidence, EFFECTS[0], (0.0275, 0.0249), worth_adding, 0.02, best=False)
     assert said in text
     assert unsaid not in text
 

@@ -8,7 +8,7 @@ from types import SimpleNamespace
 
 import pytest
 
-from ident.diagnosis import ambiguity
+from ident.diagnosis import challenges
 from ident.diagnosis import diagnose as diagnosing
 from ident.diagnosis.budget import SearchBudget
 from ident.diagnosis.discovery import discover
@@ -38,7 +38,7 @@ def failing(*_given, **_named):
 @pytest.mark.usefixtures("few_effects", "survives")
 def test_the_catalogues_verdict_stands_whatever_fails_later(monkeypatch, caplog):
     """Lags, error budget, next run and terms at once: each has its note, and its traceback in the log."""
-    monkeypatch.setattr(ambiguity, "total_delay", failing)
+    monkeypatch.setattr(challenges, "total_delay", failing)
     for name in ("error_budget", "next_run"):
         monkeypatch.setattr(diagnosing, name, failing)
     monkeypatch.setattr(discover.TermSearch, "run", failing)

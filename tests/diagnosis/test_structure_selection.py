@@ -54,8 +54,10 @@ def compared(integrates: bool) -> tuple[Structure, ...]:
 
 @cache
 def of_motor() -> tuple[Structure, ...]:
-    """Its callers rank few effects."""
-    return compared_structures(motor(8))
+    """Its callers rank few effects. The command is in units of 1: a voltage that turns something opens no valve."""
+    matrix = motor(8)
+    runs = (replace(run, units={"command": "1", "velocity": "rad/s"}) for run in matrix.runs)
+    return compared_structures(replace(matrix, runs=tuple(runs)))
 
 
 @pytest.mark.parametrize(("integrates", "model"), [(False, "first_order"), (True, "open_valve")])
@@ -266,7 +268,7 @@ def test_an_effect_that_no_simulation_confirms_helps_no_model(monkeypatch):
     fitted, unsound = (
         SimpleNamespace(finite=finite, effects=(), held_out=SimpleNamespace(error=0.3)) for finite in (True, False)
     )
-    offered = [SimpleNamespace(refit=unsound, improves=True)]
+    offered = [SimpleNamespace(refit=unsound, worth_adding=True)]
     monkeypatch.setattr(structure_selection, "rank", lambda *_args, **_kwargs: offered)
     models = SimpleNamespace(effects={"dead_zone": None}, horizon=None)
     judged = structure_selection._JudgedStructure(models, 2, {}, fitted)

@@ -37,7 +37,7 @@ from ident.diagnosis.discovery.term_to_effect import (
 )
 from ident.diagnosis.evidence.comparison import generalises, matters
 from ident.diagnosis.fitted_model import FittedModel
-from ident.diagnosis.model_comparison import evidence, improves, verified_change
+from ident.diagnosis.model_comparison import evidence, verified_change, worth_adding
 from ident.diagnosis.tie_breaking import stable_minimum, stable_ranking
 from ident.diagnosis.verdict import contradiction
 from ident.diagnosis.verification import Contradiction
@@ -197,7 +197,7 @@ class TermSearch:
                 continue
             values = self._joined(latest, name)
             less = self.models.refit(tuple(e for e in self.base.effects if e != name), values)
-            if less.finite and not improves(self.models, less, self.base):
+            if less.finite and not worth_adding(self.models, less, self.base):
                 self.base = less
         self.beside = tuple(name for name in self.beside if name in self.base.effects)
         self.found = [one for one in self.found if one.effect["name"] in self.base.effects]

@@ -210,7 +210,9 @@ def compare(
     )
 
 
-def improves(evidence: Evidence, bar: Callable[[], float], criteria: EvidenceCriteria = EVIDENCE_CRITERIA) -> bool:
+def improves_on_the_whole(
+    evidence: Evidence, bar: Callable[[], float], criteria: EvidenceCriteria = EVIDENCE_CRITERIA
+) -> bool:  # fmt: skip
     """Whether the second model explains more than chance and, beyond the error of the share, a share that matters.
 
     The gain has to be worth a parameter, and to pass the `bar` of :func:`ident.diagnosis.evidence.chance.bar`, which is
@@ -250,10 +252,11 @@ def worth_adding(
 ) -> bool:  # fmt: skip
     """The rule by which an effect is added: the second model improves on the first, generalises, and runs freely.
 
-    The selection asks it through :mod:`ident.diagnosis.model_comparison`, whose `improves` is this rule. Without a
-    `bar` the second model has to gain half of all that can be gained.
+    The selection asks it of fitted models through :mod:`ident.diagnosis.model_comparison`. Without a `bar` the second
+    model has to gain half of all that can be gained.
     """
-    return improves(evidence, bar, criteria) and generalises(evidence, criteria) and runs_freely(evidence, criteria)
+    improves = improves_on_the_whole(evidence, bar, criteria)
+    return improves and generalises(evidence, criteria) and runs_freely(evidence, criteria)
 
 
 def better(evidence: Evidence, criteria: EvidenceCriteria = EVIDENCE_CRITERIA) -> bool:
