@@ -80,10 +80,14 @@ def missing_inputs(run: Run) -> tuple[MissingInput, ...]:
 
 
 def _by_itself(inputs: Sequence[Samples], begins: Sequence[int], longest: int, samples: int) -> bool:
-    """Whether the output sets out often enough, at any time after a change of the inputs, and not at even times."""
+    """Whether the output sets out often enough, at any time after a change of the inputs, and not at even times.
+
+    A start within the `longest` quick motion after a change may be a delayed answer, and is not counted.
+    """
     changes = np.flatnonzero(np.any([np.abs(np.diff(u, prepend=u[0])) > HELD * np.ptp(u) for u in inputs], axis=0))
     last = [max(changes[changes <= begin], default=-REST * samples) for begin in begins]
-    if len(begins) < LEAST or np.ptp(np.quantile(np.subtract(begins, last), MOST)) <= longest:
+    counted = np.sum(np.subtract(begins, last) > longest)
+    if counted < LEAST or np.ptp(np.quantile(np.subtract(begins, last), MOST)) <= longest:
         return False
     return bool(np.ptp(last) > 0 or np.ptp(np.diff(begins)) > samples)  # else it swings, slowly at each turn
 

@@ -73,7 +73,8 @@ class Levers:
     def shown(self) -> bool:
         """Whether the other lever sets out often enough while the recorded one rests and the machine has settled."""
         first, other = self.turns
-        settle = int(self.rate * 4.0 * (self.lag + self.time))
+        _, _, _, _, w, d = self._parts
+        settle = int(self.rate * 4.0 * (self.lag + (1.0 / (w * d) if self.kind in ("spring", "arm") else self.time)))
         begins = np.flatnonzero((other[1:] != 0.0) & (other[:-1] == 0.0)) + 1
         calm = [k for k in begins if k > settle and not np.any(first[k - settle : k + settle])]
         calm = [k for k in calm if not np.any(other[k - settle : k])]
@@ -94,17 +95,22 @@ class Levers:
             output=output, use=use,
         )  # fmt: skip
 
-    def _moved(self, drive: Array) -> Array:
+    @cached_property
+    def _parts(self) -> tuple[float, float, float, float, float, float]:
+        """Delay in s, half of the dead zone and of the play, bias; and of a spring or arm w in rad/s, and its damping."""
         rng = np.random.default_rng([173, self.seed])
-        late = int(self.rate * rng.uniform(0.0, 0.2))
-        drive = np.concatenate([np.zeros(late), drive[: len(drive) - late]])
-        gap = rng.uniform(0.02, 0.15) * (self.extra == "dead zone")
+        late, gap = rng.uniform(0.0, 0.2), rng.uniform(0.02, 0.15) * (self.extra == "dead zone")
+        play = rng.uniform(0.02, 0.1) if self.extra == "backlash" else 0.0
+        bias = rng.uniform(-0.1, 0.1) if self.extra == "bias" else 0.0
+        return late, gap, play, bias, rng.uniform(1.0, 6.0), rng.uniform(0.2, 0.9)
+
+    def _moved(self, drive: Array) -> Array:
+        late, gap, play, bias, w, d = self._parts
+        behind = int(self.rate * late)
+        drive = np.concatenate([np.zeros(behind), drive[: len(drive) - behind]])
         drive = drive - np.clip(drive, -gap, gap)
-        if self.extra == "backlash":
-            drive = _played(drive, rng.uniform(0.02, 0.1))
-        if self.extra == "bias":
-            drive = drive + rng.uniform(-0.1, 0.1)
-        return self._integrated(drive, rng.uniform(1.0, 6.0), rng.uniform(0.2, 0.9))
+        drive = _played(drive, play) if play else drive
+        return self._integrated(drive + bias, w, d)
 
     def _integrated(self, drive: Array, w: float, d: float) -> Array:
         """Plain steps of Euler's method, the speed first; dry friction stops what is slower than it takes in a step."""
