@@ -42,7 +42,7 @@ STANDS_ON = "null_bias"  # in addition to which the terms were found
 SERVO = ("dead_zone", "sensor_lag", "backlash", "overlap", "proposed_1", "proposed_2")
 BENCH = ("command_delay", "second_lag", "spring_load", "stiction")
 NAMES = (*SERVO, *BENCH)
-TO_THE_END = ("dead_zone", "proposed_2", "command_delay", "second_lag")
+TO_THE_END = ("dead_zone", "proposed_2")
 """In the short form the others are queued, and cancelled once it is known what is fitted."""
 
 

@@ -113,6 +113,7 @@ def test_a_matrix_tells_what_a_revision_changes(service: TestClient, matrix: str
     assert service.get("/api/v1/matrices/none/description").status_code == 404
 
 
+@pytest.mark.full
 def test_the_report_comes_as_page_and_as_pdf(service: TestClient, fitted: str) -> None:
     page, paper = (service.get(f"/api/v1/fits/{fitted}/report.{kind}") for kind in ("html", "pdf"))
     assert page.text.startswith("<!doctype html>")

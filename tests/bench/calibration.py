@@ -45,10 +45,10 @@ def _of_converter(record: reference.Record, bits: int) -> float:
     return float(np.mean(np.std(seen - x, axis=1) / np.std(seen, axis=1)))
 
 
-def wrong(seed: int, read: reference.Instruments, short: bool = False) -> dict[str, float]:
+def wrong(seed: int, read: reference.Instruments) -> dict[str, float]:
     """z of every quantity of the sheet, and of the static procedure's own, for one actuator and its instruments."""
     truth = reference.scattered(seed)
-    records = reference.full_set(truth, seed, read, short)
+    records = reference.full_set(truth, seed, read)
     analysis, true = analyse(as_set(truth, records)), truth_of(truth, records, read.bits)
     found = {name: (one.value, one.deviation) for name, one in found_quantities(analysis).items()}
     z = {name: (found[name][0] - value) / abs(found[name][1]) for name, value in true.items()}

@@ -1,8 +1,7 @@
 """Standard errors of the bench are as large as what is wrong: pass and fail at two standard errors rest on them.
 
-Actuators and records are the independent reference's. In the short form four actuators from 700 on, each with other
-converters, two with each gauge, on fewer records; with ``--full`` the 100 actuators from 800 on, on full sets, each
-with one of the eight instruments in turn: an RMS of z over 100 sets is known to 7 %.
+Actuators and records are the independent reference's: 100 actuators from 800 on, on full sets, each with one of the
+eight instruments in turn: an RMS of z over 100 sets is known to 7 %.
 """
 
 from __future__ import annotations
@@ -11,36 +10,27 @@ import numpy as np
 import pytest
 
 from ident.bench.acceptance import QUANTITIES
-from tests.bench.calibration import INSTRUMENTS, instruments_of, wrong
+from tests.bench.calibration import instruments_of, wrong
 
-FIRST, FIRST_FULL = 700, 800
-SHORT = (0, 2, 5, 7)  # instruments of the short form
+pytestmark = pytest.mark.full
+FIRST = 800
 HONEST, UNBIASED = (0.8, 1.25), 0.5  # RMS of z over many sets; its mean
 
 
 @pytest.fixture(scope="module")
-def found(full: bool) -> list[dict[str, float]]:
-    if full:
-        return [wrong(seed, instruments_of(seed)) for seed in range(FIRST_FULL, FIRST_FULL + 100)]
-    return [wrong(FIRST + i, read, short=True) for i, read in enumerate(INSTRUMENTS) if i in SHORT]
+def found() -> list[dict[str, float]]:
+    return [wrong(seed, instruments_of(seed)) for seed in range(FIRST, FIRST + 100)]
 
 
-@pytest.mark.full
 def test_every_quantity_of_the_sheet_is_judged(found: list[dict[str, float]]) -> None:
     of_regulator = {"gain_margin", "phase_margin"}  # no regulator is stated here
     assert set(QUANTITIES) - of_regulator <= set(found[0])
     assert np.isfinite([list(one.values()) for one in found]).all()
 
 
-@pytest.mark.full
-def test_standard_errors_are_honest_and_nothing_is_biased(found: list[dict[str, float]], full: bool) -> None:
-    """Of every quantity over 100 sets; in the short form of all quantities and four sets together."""
+def test_standard_errors_are_honest_and_nothing_is_biased(found: list[dict[str, float]]) -> None:
+    """Of every quantity over 100 sets."""
     by_name = {name: np.array([one[name] for one in found]) for name in found[0]}
-    if full:
-        rms = {name: float(np.sqrt(np.mean(z**2))) for name, z in by_name.items()}
-        assert not {name: value for name, value in rms.items() if not HONEST[0] <= value <= HONEST[1]}
-        assert not {name: z.mean() for name, z in by_name.items() if abs(z.mean()) > UNBIASED}
-        return
-    every = np.concatenate(list(by_name.values()))
-    assert 0.7 < np.sqrt(np.mean(every**2)) < 1.4
-    assert max(float(np.sqrt(np.mean(z**2))) for z in by_name.values()) < 2.5
+    rms = {name: float(np.sqrt(np.mean(z**2))) for name, z in by_name.items()}
+    assert not {name: value for name, value in rms.items() if not HONEST[0] <= value <= HONEST[1]}
+    assert not {name: z.mean() for name, z in by_name.items() if abs(z.mean()) > UNBIASED}

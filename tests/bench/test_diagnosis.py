@@ -26,10 +26,10 @@ CALLED = {"delay": "command_delay", "load": "spring_load"}  # where the referenc
 
 
 @cache
-def matrix_with(*names: str, short: bool = False) -> Matrix:
-    """A set of an actuator with effects that the model does not have; a short one without the slow sines."""
+def matrix_with(*names: str) -> Matrix:
+    """A set of an actuator with effects that the model does not have."""
     truth = reference.scattered(SEED)._replace(**{name: HIDDEN[name] for name in names})
-    return as_matrix(truth, reference.full_set(truth, SEED, short=short))
+    return as_matrix(truth, reference.full_set(truth, SEED))
 
 
 def fitted(matrix: Matrix, *effects: str) -> FitResult:
@@ -38,9 +38,9 @@ def fitted(matrix: Matrix, *effects: str) -> FitResult:
 
 
 @cache
-def plain(*names: str, short: bool = False) -> FitResult:
+def plain(*names: str) -> FitResult:
     """The fit of a set without the effects that are hidden in it."""
-    return fitted(matrix_with(*names, short=short))
+    return fitted(matrix_with(*names))
 
 
 def diagnosed(*names: str, most: int = 2) -> Diagnosis:
@@ -68,15 +68,13 @@ def test_a_hidden_effect_is_named_with_its_strength(name, full):
 
 @pytest.mark.full
 @pytest.mark.parametrize("name", HIDDEN)
-def test_an_effect_that_was_named_is_added_to_the_fit_and_the_error_falls_to_the_noise(name, full):
-    """Its strength within 5 %; with --full on whole sets, where a diagnosis of that fit finds nothing missing."""
+def test_an_effect_that_was_named_is_added_to_the_fit_and_the_error_falls_to_the_noise(name):
+    """Its strength within 5 %; a diagnosis of that fit finds nothing missing."""
     called = CALLED.get(name, name)
-    mended = fitted(matrix_with(name, short=not full), called)
+    mended = fitted(matrix_with(name), called)
     (strength,) = (p for n, p in mended.parameters.items() if "." in n and not p.fixed)
     assert strength.value == pytest.approx(HIDDEN[name] * SI[name], rel=0.05)
-    assert mended.error["fit"] < 0.95 * plain(name, short=not full).error["fit"]
-    if not full:
-        return
+    assert mended.error["fit"] < 0.95 * plain(name).error["fit"]
     again = diagnose(matrix_with(name), mended, most=1)
     assert (again.effects, again.verdict.effects, again.verdict.unexplained) == ((called,), (), False)
 

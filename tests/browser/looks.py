@@ -27,12 +27,15 @@ def drawn(page: Page, theme: str) -> None:
         expect(page.locator(waiting)).to_have_count(0, timeout=LONG)
 
 
-def everywhere(page: Page, folder: Path | None, name: str) -> None:
+def everywhere(page: Page, folder: Path | None, name: str, dark: bool = False) -> None:
     """Check the page as it is now, and leave screenshots of all of it in the folder, if there is one.
 
-    Without a folder one width a theme does: each draws every figure anew.
+    Without a folder one width a theme does, and the dark one is for the pages of which it is asked: each draws every
+    figure anew.
     """
     for theme, rules, width_of_it in zip(("light", "dark"), ((), COLOURS), WIDTHS, strict=True):
+        if theme == "dark" and not (dark or folder):
+            return
         page.emulate_media(color_scheme=theme)
         for width in WIDTHS if folder else (width_of_it,):
             page.set_viewport_size({"width": width, "height": 900})

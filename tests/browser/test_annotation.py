@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import pytest
 from playwright.sync_api import expect
 
 from tests.browser.looks import everywhere
 
 
+@pytest.mark.full
 def test_a_fit_is_named_tagged_and_noted_on_its_page(page, site, fitted, matrix, screenshots):
     page.goto(f"{site.address}/fits/{fitted}")
     page.get_by_text("Name, tags and note", exact=True).click()

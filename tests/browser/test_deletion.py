@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import pytest
 from playwright.sync_api import expect
 
 from tests.browser.looks import everywhere, on_a_phone
 
 
+@pytest.mark.full
 def test_a_fit_is_deleted_on_its_page_and_its_data_set_stays(page, site, matrix, screenshots):
     fit = site.fit(matrix, options={"population": 20, "generations": 3, "elite": 2})
     assert site.ended(fit)["state"] == "succeeded"

@@ -8,6 +8,7 @@ import pytest
 from playwright.sync_api import expect
 
 from tests.browser.story import LONG
+from tests.short_form import short_form
 
 pytestmark = pytest.mark.usefixtures("watch")
 MAP, BODE = "#figure-residual-map", "#figure-bode"
@@ -75,7 +76,7 @@ def test_a_band_drawn_across_the_map_moves_the_bode_plot_without_the_service(pag
     assert len([url for url in watch.requests if "bode.json" in url]) == asked
 
 
-@pytest.mark.parametrize("name", ["bode", "time", "residual-curve", "sensitivity"])
+@pytest.mark.parametrize("name", short_form(["bode", "time", "residual-curve", "sensitivity"], "time"))
 def test_a_figure_that_follows_a_pick_shows_what_it_would_if_it_were_drawn_anew(name, page, site, fitted):
     figure, runs = f"#figure-{name}", [run["id"] for run in site.client.get(f"/fits/{fitted}").json()["result"]["runs"]]
     canvas = page.locator(f"{figure} canvas")
@@ -171,7 +172,7 @@ def test_two_fits_stand_side_by_side(page, site, fitted, second, screenshots):
     expect(page.locator(f"{BODE} canvas")).to_be_visible(timeout=LONG)
     for theme in ("light", "dark"):
         page.emulate_media(color_scheme=theme)
-        for width in (1280, 820):
+        for width in (1280, 820) if screenshots else (820,):
             page.set_viewport_size({"width": width, "height": 900})
             assert page.evaluate("document.documentElement.scrollWidth") <= width
             if screenshots:

@@ -65,6 +65,7 @@ def test_a_wrong_unit_is_mended_in_place_for_all_runs(page, watch, site, tmp_pat
     expect(page).to_have_url(newest)
 
 
+@pytest.mark.full
 def test_a_sign_is_turned_round_and_back_and_a_zero_is_stated(page, site, tmp_path):
     archive = tmp_path / "matrix.zip"
     archive.write_bytes(archived(files("SW-SIGN")))

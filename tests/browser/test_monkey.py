@@ -24,7 +24,7 @@ from tests.browser.window import LOADED, SETTLED, Window, hearing, signed_in, vi
 from tests.running import Service, process
 
 SEED = 50
-FEW, MANY = 3, 100  # actions on a page: in the short form, and with --full
+MANY = 100  # actions on a page
 FIELDS = 4  # of a form that is filled in before it is sent
 PATIENCE = 1500.0  # ms for an element that something else may cover, or that is gone
 CONTROLS = "a[href], button, summary, input, select, textarea, [role=tab], [tabindex='0'], th button"
@@ -152,13 +152,13 @@ def test_every_page_of_the_service_is_visited():
 
 @pytest.mark.full
 @pytest.mark.parametrize("name", PAGES)
-def test_random_clicks_and_forms_are_answered(name, cage, zoo, filled, tmp_path, full):
+def test_random_clicks_and_forms_are_answered(name, cage, zoo, filled, tmp_path):
     seen, random = Seen(), np.random.default_rng([SEED, PAGES.index(name)])
     page, address = cage.page, zoo.address + filled[name]
     page.set_default_timeout(LOADED)
     with seen.listening(page), streaming(zoo, "rig") if name == "live" else nullcontext():
         visit(page, address)
-        for _ in range(MANY if full else FEW):
+        for _ in range(MANY):
             try:
                 act(page, random, seen, tmp_path)
                 page.wait_for_timeout(SETTLED)

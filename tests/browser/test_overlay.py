@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import json
 
+import pytest
 from playwright.sync_api import expect
 
 from tests.browser.looks import everywhere, on_a_phone
 from tests.browser.story import LONG
 
 
+@pytest.mark.full
 def test_three_fits_are_ticked_and_drawn_over_each_other(page, site, matrix, fitted, screenshots):
     quick = {"options": {"population": 20, "generations": 2}}
     others = [site.fit(matrix, **quick, **chosen) for chosen in ({"set": {"tau": "3 ms"}}, {"effects": ["dead_zone"]})]

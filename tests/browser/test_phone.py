@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 
+import pytest
 from playwright.sync_api import Page, expect
 
 from tests.browser.looks import PHONE, barriers
@@ -46,6 +47,7 @@ def test_a_figure_says_that_it_is_drawn_and_then_what_is_drawn(page: Page, site:
     ) == ("none")
 
 
+@pytest.mark.full
 def test_every_canvas_has_a_name_that_follows_what_it_shows(page: Page, site: Service, fitted: str) -> None:
     """Each figure of a fit, tab by tab; the name of a run's plot names the run that was chosen."""
     page.goto(f"{site.address}/fits/{fitted}#residuals")

@@ -5,6 +5,7 @@ Kept under a name, it stands in the list of another actuator's fit.
 
 from __future__ import annotations
 
+import pytest
 from playwright.sync_api import expect
 
 from tests.browser import story
@@ -12,24 +13,17 @@ from tests.browser.looks import barriers, everywhere
 from tests.hidden_bump import NOISE, zipped
 
 
-def test_a_term_is_proposed_added_and_the_error_is_the_noise_s(page, site, screenshots, full):
-    """In the short form the search that the button began is cancelled for one without the catalogue, which is slow.
-
-    With --full it goes on, and what is kept is in the list of another actuator, where it is deleted.
-    """
+@pytest.mark.full
+def test_a_term_is_proposed_added_and_the_error_is_the_noise_s(page, site, screenshots):
+    """What is kept is in the list of another actuator, where it is deleted."""
     stored = site.client.post("/matrices", files={"files": ("matrix.zip", zipped())}).json()
     fit = site.fit(stored["id"])
     assert site.ended(fit)["state"] == "succeeded"
-    diagnosed(site, fit, propose=False)
+    diagnosed(site, fit)
     page.goto(f"{site.address}/?token={site.token}")
     page.goto(f"{site.address}/fits/{fit}#missing")
     expect(page.locator("#left")).to_contain_text("Unmodelled dynamics remain")
     page.get_by_role("button", name="Search for unknown terms").click()
-    if not full:
-        page.locator("#missing").get_by_role("button", name="Cancel").click(timeout=story.LONG)
-        expect(page.locator("#missing")).to_contain_text("The last search was cancelled", timeout=story.LONG)
-        diagnosed(site, fit, propose=True)
-        page.reload()
     card = page.locator(".card").filter(has_text="proposed by search")
     expect(card).to_be_visible(timeout=story.LONG)
     expect(card).to_contain_text("Acts at one part of the way")
@@ -44,16 +38,14 @@ def test_a_term_is_proposed_added_and_the_error_is_the_noise_s(page, site, scree
     assert first > 5 * 100 * NOISE
     assert second < 1.05 * 100 * NOISE
     expect(page.locator("h1")).to_contain_text("proposed 1")
-    if not full:
-        return
     another_actuator_has_it_in_the_list(page, site, screenshots)
     a_written_one_is_kept_too(page, site)
     it_is_deleted_from_the_list(page, site, screenshots)
 
 
-def diagnosed(site, fit, *, propose):
+def diagnosed(site, fit):
     """Nothing of the catalogue is added."""
-    made = site.client.post("/diagnoses", json={"fit": fit, "max_effects": 0, "propose": propose})
+    made = site.client.post("/diagnoses", json={"fit": fit, "max_effects": 0, "propose": False})
     assert site.ended(made.headers["Location"].rpartition("/")[2])["state"] == "succeeded"
 
 

@@ -14,7 +14,7 @@ from tests.app.conftest import unpacked
 from tests.browser.looks import everywhere
 from tests.cases import CASES
 
-SHORT = ("units", "names", "comma_preamble.csv")
+SHORT = ("names",)
 """Cases that are described on the page in the short form."""
 
 
@@ -31,7 +31,8 @@ def raw_files(folder):
     return [folder / f"run{number}.csv" for number in range(3)]
 
 
-def test_three_raw_files_become_a_fit_without_a_description(page, watch, site, tmp_path, screenshots, full):
+@pytest.mark.full
+def test_three_raw_files_become_a_fit_without_a_description(page, watch, site, tmp_path, screenshots):
     """Chosen, named, their units said, checked, made a matrix, fitted: nothing but the page. Short: until the job."""
     page.goto(f"{site.address}/upload")
     page.get_by_label("Files").set_input_files(raw_files(tmp_path))
@@ -67,19 +68,15 @@ def test_three_raw_files_become_a_fit_without_a_description(page, watch, site, t
     page.get_by_role("button", name="Start the fit").click()
     page.wait_for_url("**/fits/*")
     job = page.url.rpartition("/")[2]
-    if full:
-        assert site.ended(job)["state"] == "succeeded"
-        expect(page.get_by_role("heading", name="Error, eq. (17)")).to_be_visible(timeout=60_000)  # it shows itself
-    else:
-        site.client.delete(f"/jobs/{job}")
-        site.ended(job)
+    assert site.ended(job)["state"] == "succeeded"
+    expect(page.get_by_role("heading", name="Error, eq. (17)")).to_be_visible(timeout=60_000)  # it shows itself
 
 
 @pytest.mark.parametrize("case", CASES, ids=lambda case: case.name)
 def test_files_of_any_form_are_described_each_by_its_own(page, watch, site, tmp_path, case, full):
     """Each has its columns, units and time on the page, as it states them; the matrix has the clock of each.
 
-    Short: those of more than one file, and one with decimal commas below a preamble.
+    Short: one of more than one file.
     """
     if not full and case.name not in SHORT:
         pytest.skip("with --full; over HTTP and with init it is read in the short form, too")
@@ -115,6 +112,7 @@ def of(case, file) -> str:
     return f", in {file.name}" if len(case.files) > 1 else ""
 
 
+@pytest.mark.full
 def test_files_with_the_same_columns_can_be_described_one_by_one(page, site, tmp_path):
     """Three files of one layout have one table, or, where asked for, one each: a unit is said of one of them alone."""
     page.goto(f"{site.address}/upload")

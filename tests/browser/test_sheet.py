@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 
+import pytest
 import typst
 from playwright.sync_api import expect
 
@@ -11,6 +12,7 @@ from tests.app.report.test_sheet import LEAST, inked
 from tests.browser.looks import everywhere, on_a_phone
 
 
+@pytest.mark.full
 def test_a_data_sheet_is_filled_in_approved_and_ready_to_be_signed(page, site, matrix, screenshots):
     fit = site.fit(matrix, options={"population": 20, "generations": 2}, seed=3)
     assert site.ended(fit)["state"] == "succeeded"
@@ -29,6 +31,7 @@ def test_a_data_sheet_is_filled_in_approved_and_ready_to_be_signed(page, site, m
     everywhere(page, screenshots, "sheet")
 
 
+@pytest.mark.full
 def test_a_report_printed_by_the_browser_fills_its_sheets_of_a4(page, site, fitted, tmp_path):
     """All but the last, as Typst draws the pages of the file that is printed."""
     page.goto(f"{site.address}/api/v1/fits/{fitted}/report.html")

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 
+import pytest
 from playwright.sync_api import expect
 
 from tests.browser.looks import everywhere
@@ -43,6 +44,7 @@ def test_a_range_is_chosen_with_the_mouse_and_loses_its_trend(page, site, matrix
     expect(page.locator("#run-0")).to_contain_text("0.2561 s at 4096 Hz")
 
 
+@pytest.mark.full
 def test_a_range_chosen_with_the_mouse_is_validation_data(page, site, matrix):
     """The end of the record, with a stated gap; the page of the data set lists both parts and edits the split."""
     page.goto(f"{site.address}/matrices/{matrix}")

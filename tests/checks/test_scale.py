@@ -26,8 +26,8 @@ def test_millimetres_called_centimetres_are_doubted(seed):
 
 
 @pytest.mark.full
-def test_what_is_hidden_in_a_machine_makes_no_such_difference(full):
-    for seed in range(4000, 4100 if full else 4003):
+def test_what_is_hidden_in_a_machine_makes_no_such_difference():
+    for seed in range(4000, 4100):
         matrix = Lab.drawn(seed, hidden=True).measured()
         first, second, last = matrix.runs
         small = replace(
