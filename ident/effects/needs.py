@@ -79,7 +79,10 @@ def one_sided_command(matrix: Matrix) -> bool:
 
 def resonant(matrix: Matrix) -> bool:
     """Whether a run that is fitted answers its command with a damped oscillation."""
-    return any("command" in run.channels and rings(run.command, run.measured) for run in matrix.of_use("fit"))
+    return any(
+        "command" in run.channels and rings(run.command, run.measured, run.output == "displacement")
+        for run in matrix.of_use("fit")
+    )
 
 
 def speed_measured(matrix: Matrix) -> bool:

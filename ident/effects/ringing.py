@@ -4,11 +4,16 @@ Of y and u, means over q samples, y_k = Σ a_i y_(k−i) + Σ b_i u_(k−i) of f
 1999, section 10.1); it rings where a pair of its poles exp(s) has a damping ratio −Re s/|s| below 0.5. Noise puts pairs
 near half the sample rate, and the poles of what is sampled too finely on the real axis: so pairs above 1.2 rad count
 not, and q is doubled while 100 means are left.
+
+A position integrates, and by least squares the noise of its samples hides the poles. Its equation is solved by
+instrumental variables, which are the past of the model's own output (Ljung 1999, section 7.6, method of Young), from
+the solution by least squares on.
 """
 
 from __future__ import annotations
 
 import numpy as np
+import scipy  # signal, which takes half a second to load, is loaded where it is first used
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
@@ -21,25 +26,47 @@ DAMPING = 0.5
 """Damping ratio below which a step is overshot by a sixth, and one resonance is seen. Test: as above"""
 
 
-def rings(command: Array, output: Array) -> bool:
+REFINED = 3
+"""Times that the instruments are made anew. Test: tests/effects/test_ringing.py"""
+
+
+def rings(command: Array, output: Array, integrates: bool = False) -> bool:
     """Whether an output (n,) answers its command (n,) with a damped oscillation, at any q."""
     q = 1
     while len(output) // q >= FEWEST:
         count = len(output) // q * q
-        means = (signal[:count].reshape(-1, q).mean(axis=1) for signal in (command, output))
-        if _has_pair(*means):
+        u, y = (signal[:count].reshape(-1, q).mean(axis=1) for signal in (command, output))
+        if _has_pair(u - u.mean(), y - y.mean(), integrates):
             return True
         q *= 2
     return False
 
 
-def _has_pair(u: Array, y: Array) -> bool:
-    u, y, n = u - u.mean(), y - y.mean(), len(y)
-    past = [y[ORDER - i : n - i] for i in range(1, ORDER + 1)] + [u[ORDER - i : n - i] for i in range(ORDER + 1)]
-    samples = np.stack((*past, y[ORDER:]), axis=1)
+def _has_pair(u: Array, y: Array, integrates: bool) -> bool:
+    samples = np.column_stack((_regressors(y, u), y[ORDER:]))
     triangle = np.asarray(np.linalg.qr(samples, mode="r"))  # of ten rows, as well conditioned as all samples
     found, *_ = np.linalg.lstsq(triangle[:, :-1], triangle[:, -1], rcond=None)
-    poles = np.log(np.roots(np.append(1.0, -found[:ORDER])).astype(np.complex128) + 1e-12)
+    for _ in range(REFINED if integrates else 0):
+        instruments = _regressors(_answer(found, u), u)
+        found, *_ = np.linalg.lstsq(instruments.T @ samples[:, :-1], instruments.T @ samples[:, -1], rcond=None)
+    poles = np.log(_poles(found).astype(np.complex128) + 1e-12)
     size = np.abs(poles)
     within = (poles.imag > 0) & (size > SLOWEST) & (size < FASTEST)
     return bool(np.any(within & (-poles.real < DAMPING * size)))
+
+
+def _regressors(y: Array, u: Array) -> Array:
+    """The past of y and of u, with u itself, by which each sample of y is told, (n − 4, 9)."""
+    past = [y[ORDER - i : len(y) - i] for i in range(1, ORDER + 1)]
+    return np.stack((*past, *(u[ORDER - i : len(y) - i] for i in range(ORDER + 1))), axis=1)
+
+
+def _poles(found: Array) -> Array:
+    return np.roots(np.append(1.0, -found[:ORDER]))
+
+
+def _answer(found: Array, u: Array) -> Array:
+    """What the model answers to u by itself, (n,); poles outside of the unit circle are mirrored into it."""
+    poles = _poles(found)
+    poles = np.where(np.abs(poles) > 1.0, 1.0 / np.conj(poles), poles)
+    return np.asarray(scipy.signal.lfilter(found[ORDER:], np.real(np.poly(poles)), u))

@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+from itertools import product
+
 import numpy as np
 import pytest
+import scipy
 
 from ident.diagnosis.candidate_models import CandidateModels
 from ident.effects.ringing import rings
@@ -24,6 +27,20 @@ def test_drive_and_load_ring_at_any_rate_of_sampling(seed, seen):
     assert rings(np.interp(fine, t, run.command), np.interp(fine, t, run.measured) + noise)
 
 
+def positions(speed: np.ndarray, rate: float, seed: int) -> np.ndarray:
+    """The way of a speed, with noise of 0.1 % of its own."""
+    way = np.cumsum(speed) / rate
+    return way + 0.001 * way.std() * np.random.default_rng([67, seed]).standard_normal(len(way))
+
+
+@pytest.mark.parametrize("seed", range(4))
+@pytest.mark.parametrize("seen", [0, 1])
+def test_a_position_rings_that_integrates(seed, seen):
+    """Least squares alone are misled by the noise of the position at most seeds."""
+    run = matrix(seed, seen).runs[0]
+    assert rings(run.command, positions(run.measured, run.sample_rate, seed), integrates=True)
+
+
 @pytest.mark.parametrize("seed", range(6))
 @pytest.mark.parametrize("constant", [2.0, 10.0, 50.0])
 def test_a_lag_does_not_ring(seed, constant):
@@ -32,6 +49,17 @@ def test_a_lag_does_not_ring(seed, constant):
     for k in range(1, len(y)):
         y[k] = y[k - 1] + (u[k - 1] - y[k - 1]) * -np.expm1(-1.0 / constant)
     assert not rings(u, y + 0.01 * y.std() * rng.standard_normal(len(y)))
+
+
+def test_few_lags_ring_by_their_positions():
+    """At most six of eighteen: an offer of two effects more, and no verdict."""
+    found = 0
+    for seed, constant in product(range(6), (2.0, 10.0, 50.0)):
+        rng = np.random.default_rng([535, seed])
+        u = np.repeat(rng.uniform(-3.0, 3.0, 250), 8)
+        y = scipy.signal.lfilter([0.0, 1.0], [1.0, -np.exp(-1.0 / constant)], u) * -np.expm1(-1.0 / constant)
+        found += rings(u, positions(y, 100.0, seed), integrates=True)
+    assert found <= 6
 
 
 def test_a_spring_is_looked_for_where_a_record_rings_and_no_oil_is_one():
