@@ -14,6 +14,7 @@ import numpy as np
 import scipy.fft  # not scipy.signal, which takes a second of every diagnosis to load
 from numpy.typing import NDArray
 
+from ident.beginning import ROUNDING
 from ident.checks.oscillation_at_rest import DIES, is_of_mains
 from ident.noise.periodic import of_line
 from ident.run import Run, Samples
@@ -65,7 +66,7 @@ def unexplained_oscillation(run: Run) -> Unexplained | None:
     if "command" not in run.channels or run.length < SHORTEST or run.stepped:
         return None
     u, y = (_detrended(signal[-LONGEST:]) for signal in (run.command, run.measured))
-    if not y.std() > 0 or not np.all(np.isfinite(u)):
+    if not y.std() > ROUNDING * np.abs(run.measured).max() or not np.all(np.isfinite(u)):
         return None
     found = _growing(u, y, run.sample_rate) or _settled(_unexplained(u, y), SHARE * float(y.var()), run.sample_rate)
     if found is None and (found := _beside_silence(u, y, run.sample_rate)) and run.output == "velocity":
@@ -78,6 +79,8 @@ def _beside_silence(u: Samples, y: Samples, rate: float) -> Unexplained | None:
     """The strongest oscillation of the last half of an output, or of all of it, where the command is silent."""
     for part in (slice(len(y) // 2, None), slice(None)):
         own = _detrended(y[part])
+        if own.std() <= ROUNDING * np.abs(y).max():  # it stands, and the last digits oscillate
+            continue
         loud = _loud(u[part]) / (1.0 - 2.0 * BAND)
         power = np.abs(np.fft.rfft(own * np.hanning(len(own)))) ** 2
         share = max(LITTLE**2, SHARE * float(power[int(loud) :].sum() / power.sum()))

@@ -49,7 +49,7 @@ def _has_pair(u: Array, y: Array, integrates: bool) -> bool:
     for _ in range(REFINED if integrates else 0):
         instruments = _regressors(_answer(found, u), u)
         found, *_ = np.linalg.lstsq(instruments.T @ samples[:, :-1], instruments.T @ samples[:, -1], rcond=None)
-    poles = np.log(_poles(found).astype(np.complex128) + 1e-12)
+    poles = np.log(_poles(found) + 1e-12)
     size = np.abs(poles)
     within = (poles.imag > 0) & (size > SLOWEST) & (size < FASTEST)
     return bool(np.any(within & (-poles.real < DAMPING * size)))
@@ -61,8 +61,8 @@ def _regressors(y: Array, u: Array) -> Array:
     return np.stack((*past, *(u[ORDER - i : len(y) - i] for i in range(ORDER + 1))), axis=1)
 
 
-def _poles(found: Array) -> Array:
-    return np.roots(np.append(1.0, -found[:ORDER]))
+def _poles(found: Array) -> NDArray[np.complex128]:
+    return np.roots(np.append(1.0, -found[:ORDER])).astype(np.complex128)
 
 
 def _answer(found: Array, u: Array) -> Array:

@@ -97,7 +97,7 @@ class Levers:
 
     @cached_property
     def _parts(self) -> tuple[float, float, float, float, float, float]:
-        """Delay in s, half of the dead zone and of the play, bias; and of a spring or arm w in rad/s, and its damping."""
+        """Delay in s, half of the dead zone and of the play, bias; of a spring or arm w in rad/s, and its damping."""
         rng = np.random.default_rng([173, self.seed])
         late, gap = rng.uniform(0.0, 0.2), rng.uniform(0.02, 0.15) * (self.extra == "dead zone")
         play = rng.uniform(0.02, 0.1) if self.extra == "backlash" else 0.0

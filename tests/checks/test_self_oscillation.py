@@ -45,6 +45,16 @@ def test_three_gains_past_a_limit_cycle_are_recognised():
     assert {one.severity for one in said} == {"fault"}
 
 
+def test_an_output_that_stands_does_not_oscillate():
+    """A servo that has arrived, in counts of its encoder: what is left beside its mean are last digits."""
+    target, count = 10000.0 * (np.arange(512) > 100), np.zeros(512)
+    for k in range(1, 512):
+        count[k] = np.round(count[k - 1] + 0.2 * (target[k - 1] - count[k - 1]))
+    assert np.ptp(count[256:]) == 0
+    for name, signal in (("arrived", count), ("never moved", np.full(512, 0.1))):
+        assert self_oscillation(run_of(target, signal, name)) is None
+
+
 def test_a_mode_that_grows_has_its_frequency_and_growth():
     """Those of the pole of the loop, whose valve opens as far as it is asked to."""
     command = reference.noise(np.random.default_rng(57), 1024, RATE, 1e-4)
