@@ -12,10 +12,13 @@ OVERFLOW = Effect(
         "inverse_level", "g", "1/m", 0.0, 1e3, 0.0, "inverse of the level of the edge", start=Starts.STROKE_END,
         of_motion=True,
     ),
-    texts=("xo = xo + ro * max(x - 1 / max(g, 1e-9), 0)",),
+    texts=("xo = xo * (1 + ro * max(g * x - 1, 0))",),
     units={"xo": "m"},
     shape=(
-        Parameter("ratio", "ro", "1", 1.0, 30.0, 10.0, "outflow over the edge against the outflow below, for a level"),
+        Parameter(
+            "ratio", "ro", "1", 1.0, 30.0, 10.0, "growth of the outflow by a level above the edge, both of the whole",
+            start=Starts.AS_KNOWN,
+        ),
     ),
     looks="flat tops at one level, whatever the size of the command",
     source="weir, made linear in the small height above its edge",

@@ -19,5 +19,5 @@ ROOT_OUTFLOW = Effect(
     looks="a time constant and a gain that grow with the level",
     source="Torricelli 1643, outflow a sqrt(2 g x); Schoukens and Noël 2017",
     needs=one_sided_position,
-    unless="hr",
+    unless="tau1",
 )

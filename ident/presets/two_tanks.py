@@ -1,7 +1,7 @@
 """Two tanks in series: a pump's command → the level of the lower one."""
 
 from ident.chain.chain import Chain
-from ident.presets.preset import Combined, Preset, RequiredData, SearchPlan
+from ident.presets.preset import Preset, RequiredData, SearchPlan
 from ident.stages import IDEAL_SENSOR, INSTANT_VALVE, LOWER_LEVEL, OPENED_BY_COMMAND, RIGID_SPOOL, UPPER_LEVEL
 
 TWO_TANKS = Preset(
@@ -9,18 +9,13 @@ TWO_TANKS = Preset(
     title="Two tanks in series",
     citation=(
         "M. Schoukens, J.-P. Noël: Three benchmarks addressing open challenges in nonlinear system identification. "
-        "IFAC-PapersOnLine 50 (2017) 446-451; the outflow is laminar at low levels."
+        "IFAC-PapersOnLine 50 (2017) 446-451."
     ),
     chain=Chain(
         stages=(OPENED_BY_COMMAND, INSTANT_VALVE, RIGID_SPOOL, UPPER_LEVEL, LOWER_LEVEL, IDEAL_SENSOR),
         outputs={"displacement": "y"},
     ),
-    combinations=(
-        Combined("hr / tau2**2", "m/s^2", "square of the lower turbulent outflow over the root of the level"),
-        Combined("hr / tau1**2", "m/s^2", "the same of the upper tank"),
-        Combined("gain / tau1", "1/s", "rate of the upper level for each unit of the command"),
-    ),
     static_gains=("gain",),
-    search=SearchPlan(drive_scale="U"),
+    search=SearchPlan(drive_scale="U", relative_ways=True),
     data=RequiredData(one_sided=True),
 )

@@ -27,7 +27,8 @@ from tests.reference.coupled_masses import Coupled
 RATE, SECONDS = 100.0, 8.0
 GAIN, TAU = 0.8, 0.4
 MASS, DAMPING, STIFFNESS = 2.0, 3.0, 40.0
-TURBULENT = 0.5  # level
+LAMINAR = 0.01  # m, level below which an outflow is
+RANGE = 2.0  # m, of a gauge
 CAUGHT = 0.3  # of what runs over
 T = np.arange(round(RATE * SECONDS)) / RATE
 LEVEL = 1.0 + 0.8 * np.sin(1.3 * T) + 0.15 * np.sin(5.0 * T)
@@ -68,13 +69,13 @@ def mass(resists: Callable[[float, float, float], float]) -> np.ndarray:
 
 
 def tanks(edge: float) -> np.ndarray:
-    """The lower of two tanks with laminar and turbulent outflow; the upper runs over an edge, or with 0 over none."""
+    """The lower of two tanks that run out by Torricelli's law; the upper runs over an edge, or with 0 over none."""
 
     def out(level: float) -> float:
-        return level / (1.0 + (level / TURBULENT) ** 2) ** 0.25
+        return float(level / np.sqrt(np.hypot(level, LAMINAR)))
 
     def rates(t: float, s: np.ndarray) -> list[float]:
-        over = 30.0 * max(s[0] - edge, 0.0) if edge else 0.0
+        over = 30.0 * out(s[0]) * max(s[0] / edge - 1.0, 0.0) if edge else 0.0
         return [(GAIN * at(LEVEL, t) - out(s[0]) - over) / TAU, (out(s[0]) + CAUGHT * over - out(s[1])) / TAU]
 
     return solved(rates, 2)[1]
@@ -151,7 +152,7 @@ class Case:
 
 def bent(curvature: float) -> np.ndarray:
     y = lag()
-    return y * (1.0 + curvature * y)
+    return y + curvature * y * (y - RANGE)
 
 
 CASES = {
@@ -161,12 +162,13 @@ CASES = {
         lambda k: lag(lambda x: x + 0.7 * k * (np.sign(x) * np.sqrt(0.6 * abs(x)) - x)), {}),
     "overflow": Case(
         "first_order", {"overflow.inverse_level": 1.0, "overflow.ratio": 30.0},
-        lambda k: lag(lambda x: x + 30.0 * max(x - 1.0 / k, 0.0) if k else x), {}),
+        lambda k: lag(lambda x: x + 30.0 * x * max(k * x - 1.0, 0.0)), {}),
     "upper_overflow": Case(
         "two_tanks",
         {"upper_overflow.inverse_level": 1.25, "upper_overflow.ratio": 30.0, "upper_overflow.caught": CAUGHT},
         lambda k: tanks(0.8 / k if k else 0.0), {}),
-    "sensor_curve": Case("first_order", {"sensor_curve.curvature": 0.3}, lambda k: bent(0.3 * k), {}),
+    "sensor_curve": Case(
+        "first_order", {"sensor_curve.curvature": 0.3, "sensor_curve.end": RANGE}, lambda k: bent(0.3 * k), {}),
     "normal_force_friction": Case(
         "drive", {"normal_force_friction.coefficient": 0.6},
         lambda k: mass(lambda t, _x, v: 0.6 * k * at(SQUEEZE, t) * dry(v)), {"vertical_load": SQUEEZE}, 1e-2),
@@ -224,7 +226,6 @@ def ours(case: Case, factor: float) -> np.ndarray:
         "tau": TAU,
         "tau1": TAU,
         "tau2": TAU,
-        "hr": TURBULENT,
         "Kt": 1.0,
         "m0": MASS,
         "c0": DAMPING,

@@ -21,10 +21,11 @@ READS = 1.5  # above the level
 LIGHT = {"population": 24.0, "generations": 5.0, "elite": 4.0}
 
 
-def tanks(seed: int, use: str, edge: float = np.inf) -> Run:
+def tanks(seed: int, use: str, edge: float = np.inf, bend: float = 0.0) -> Run:
     """A pump under a held voltage of 1 to 3 V: h₁' = k u − a₁ √h₁, h₂' = a₁ √h₁ − a₂ √h₂.
 
-    Above an edge the upper tank runs over, half of it into the lower one.
+    Above an edge the upper tank runs over, half of it into the lower one. What the gauge reads is bent between 0 and
+    25 m.
     """
     rng = np.random.default_rng([71, seed])
     u = np.repeat(rng.uniform(1.0, 3.0, COUNT // 10), 10)
@@ -37,7 +38,8 @@ def tanks(seed: int, use: str, edge: float = np.inf) -> Run:
         return [pumped - first - over, first + 0.5 * over - second]
 
     found = scipy.integrate.solve_ivp(rates, (0.0, t[-1]), [8.0, 20.0], t_eval=t, rtol=1e-8, max_step=PERIOD)
-    level = found.y[1] + READS + 0.005 * found.y[1].std() * rng.standard_normal(COUNT)
+    level = found.y[1] * (1.0 + bend * (found.y[1] - 25.0))
+    level = level + READS + 0.005 * level.std() * rng.standard_normal(COUNT)
     return Run(use, "", 1.0 / PERIOD, {"command": u, "displacement": level}, {"command": "V", "displacement": "m"},
                hold="zoh", use=use)  # fmt: skip
 
@@ -52,11 +54,23 @@ def test_the_tanks_are_followed_and_what_torricelli_s_law_determines_is_found(ma
     lag = identify(matrix, Settings(model="first_order", options=LIGHT, seed=1))
     assert found.error_with_mean["verify"] < 0.03
     assert found.error_with_mean["verify"] < 0.2 * lag.error_with_mean["verify"]
-    gain, upper, lower, level = (found.values[name] for name in ("gain", "tau1", "tau2", "hr"))
-    assert level / lower**2 == pytest.approx(OUT_2**2, rel=0.1)
-    assert level / upper**2 == pytest.approx((OUT_1**2 / OUT_2) ** 2, rel=0.1)  # its level in the unit of the lower one
-    assert gain / upper == pytest.approx(PUMP * (OUT_1 / OUT_2) ** 2, rel=0.1)
+    gain, upper, lower = (found.parameters[name] for name in ("gain", "tau1", "tau2"))
+    assert all(one.std_error is not None and one.std_error < 0.1 * one.value for one in (gain, upper, lower))
+    assert 1.0 / lower.value == pytest.approx(OUT_2, rel=0.05)
+    assert 1.0 / upper.value == pytest.approx(OUT_1**2 / OUT_2, rel=0.05)  # its level in the unit of the lower one
+    assert gain.value / upper.value == pytest.approx(PUMP * (OUT_1 / OUT_2) ** 2, rel=0.05)
     assert found.transducer_offset["displacement"].value == pytest.approx(READS, abs=0.4)
+
+
+def test_a_bent_gauge_leaves_the_time_constants_determined():
+    """A curve that is right at zero alone turns the scale of the level too, on which every parameter hangs."""
+    matrix = Matrix(Actuator("TANKS"), (tanks(0, "fit", bend=0.03),))
+    found = identify(matrix, Settings(model="two_tanks", effects=("sensor_curve",), options=LIGHT, seed=1))
+    assert found.error["fit"] < 0.006
+    for name in ("gain", "tau1", "tau2"):
+        one = found.parameters[name]
+        assert one.std_error is not None
+        assert one.std_error < 0.02 * one.value
 
 
 def test_an_overflow_of_the_upper_tank_is_named(full):
