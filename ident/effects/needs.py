@@ -50,8 +50,8 @@ def electric(runs: Iterable[Recorded], oil: bool) -> bool:
 
 
 def angle_measured(matrix: Matrix) -> bool:
-    """Whether the position of every run is an angle: only then is it known where a weight hangs."""
-    return all(run.units.get("displacement") == "rad" and "displacement" in run.channels for run in matrix.runs)
+    """Whether the position of every run is an angle, or a number, as a radian is: a length is no part of a turn."""
+    return all(run.units.get("displacement") in ("rad", "1") and "displacement" in run.channels for run in matrix.runs)
 
 
 def force_answers(matrix: Matrix) -> bool:

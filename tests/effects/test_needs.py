@@ -286,8 +286,8 @@ def test_an_effect_is_looked_for_only_where_the_record_could_show_it():
     rectified = candidates("motor", volts, command=FORCE, velocity=np.abs(speed))
     assert of_records & rectified - springs == {*motor, "rectified_sensor"}
     assert "rectified_sensor" not in candidates("motor", volts, command=LEVEL, velocity=np.abs(speed))
-    turning = {"command": "N*m", "displacement": "rad"}
-    assert of_records & candidates("drive", turning, **recorded) - springs == {"arm_gravity"}
+    for turning in ({"command": "N*m", "displacement": "rad"}, {"command": "1", "displacement": "1"}):
+        assert of_records & candidates("drive", turning, **recorded) - springs == {"arm_gravity"}
 
 
 @pytest.mark.parametrize(("below", "is_one_sided"), [(0.9 * ONE_SIDED, True), (1.1 * ONE_SIDED, False)])
