@@ -19,6 +19,7 @@ from ident.diagnosis.fitted_model import FittedModel
 from ident.diagnosis.moves import Moves
 from ident.diagnosis.ranking import rank
 from ident.diagnosis.tie_breaking import stable_ranking
+from ident.diagnosis.verdict import Residual, is_noise
 from ident.fit.windows import likelihood, longer
 from ident.parallel import each
 from ident.progress import Progress, Report
@@ -37,11 +38,11 @@ def longer_horizon(moves: Moves, report: Report) -> LongerHorizon | None:
 
     The candidates are the finalists of the first ranking over the fitted windows, refitted over longer ones, and the
     finalists of a ranking over whole runs. The records have to be more likely than by the fitted model, beyond chance
-    for the best of all candidates. None where the fitted windows stay, or their residual is noise. Raises TimeIsUp.
+    for the best of all candidates. None where the fitted windows stay, or hide nothing. Raises TimeIsUp.
     """
     base, models = moves.base, moves.models
     horizons = longer(base.fitness, base.point)
-    if not horizons or not models.residual_above_noise(base):
+    if not horizons or not may_hide_an_effect(models, base):
         return None
     ranking = moves.first_ranking(moves.latest).ranking
     carried = [base, *(one.refit for one in ranking if one.refit is not None)]
@@ -62,6 +63,23 @@ def longer_horizon(moves: Moves, report: Report) -> LongerHorizon | None:
         if likely > asked:
             asked, best = likely, LongerHorizon(far, ahead)
     return best
+
+
+def may_hide_an_effect(models: CandidateModels, base: FittedModel) -> bool:
+    """Whether the windows of a fitted model may hide an effect, so that longer ones make the records more likely.
+
+    So they may where the residual is above the noise. The residual of windows that begin in noise may be no more than
+    this noise makes of them; then they may where the innovations of the records are above the noise of these.
+    """
+    if models.residual_above_noise(base):
+        return True
+    floors, runs = models.over_windows(None, None).floors, models.runs
+    noise = [floor * np.sqrt(run.power / run.length) for run in runs if (floor := floors.by_run[run.id]) is not None]
+    if len(noise) < len(runs):
+        return False
+    samples = sum(run.length for run in runs)
+    unforeseen = float(np.exp(-_log_likelihood(base, models.memory) / samples))
+    return not is_noise(Residual(unforeseen, float(np.exp(np.mean(np.log(noise)))), floors.spread(samples)))
 
 
 def _refitted(models: CandidateModels, found: Sequence[FittedModel], fitted: Mapping[str, float]) -> list[FittedModel]:
