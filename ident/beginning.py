@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
 from typing import Literal
 
 import numpy as np
@@ -20,6 +21,8 @@ COARSEST = 0.1  # of the record's standard deviation: a coarser step is one of t
 DRIVEN = 0.05  # of the command's standard deviation: a first value beyond it is a step at the first sample
 STEP_ANSWER = 0.05  # of the record's standard deviation: what a record of a single step may begin at
 LEAST_HELD = 16  # samples that a command is held
+STILL = 0.25
+"""[of the way that is expected of an output that integrates] Nearer it stands. Test: tests/preprocessing"""
 SETS_OUT, SLOWLY = 1e-3, 0.1
 """[of the record's standard deviation], [of the typical speed] A motion that begins nearer to zero than the first, and
 slower than the second, sets out from rest there; by chance about one record in ten thousand begins so.
@@ -74,6 +77,24 @@ def standing_for(x: Samples, command: Samples | None, sample_rate: float) -> int
     noise = min(noise_of(x), MOST_NOISE * size) if len(x) > 8 else 0.0
     error = np.hypot(noise, step / np.sqrt(12.0)) * np.sqrt(2.0 / min(map(len, parts)))
     return count if np.ptp([part.mean() for part in parts]) <= max(AT_ZERO * size, ERRORS * error) else 0
+
+
+def held_still(x: Samples, command: Samples, neutral: float) -> list[float]:
+    """The values at which a command (n,) is held away from a neutral while an output x (n,) that integrates it stands.
+
+    Friction or a dead zone holds it there. What is `expected` is the way at the typical speed times the value's share
+    of the command's deviation. Standing: the halves of the second half of this time lie nearer than a quarter of it.
+    """
+    found, ends = [], np.flatnonzero(np.abs(np.diff(command)) > ROUNDING * np.abs(command).max()) + 1
+    typical, noise = np.std(np.diff(x)) / np.std(command), noise_of(x) if len(x) > 8 else 0.0
+    for first, last in pairwise([0, *map(int, ends), len(x)]):
+        if last - first >= LEAST_HELD:
+            early, late = np.array_split(x[(first + last) // 2 : last], 2)
+            expected = float(typical * abs(command[first] - neutral) * len(early))
+            error = float(np.hypot(noise, resolution(x) / np.sqrt(12.0)) * np.sqrt(2.0 / len(late)))
+            if abs(late.mean() - early.mean()) + ERRORS * error <= STILL * expected:
+                found.append(float(command[first]))
+    return found
 
 
 def zero_at_rest(x: Samples, begins: Beginning, sample_rate: float) -> tuple[float, float] | None:

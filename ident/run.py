@@ -9,7 +9,7 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ident.beginning import ROUNDING, Beginning, beginning, standing_for, zero_at_rest
+from ident.beginning import ROUNDING, Beginning, beginning, held_still, standing_for, zero_at_rest
 from ident.cached import cached_property
 from ident.slopes import slopes
 from ident.words.engineering import multiple
@@ -248,6 +248,10 @@ class Run(Shown):
     def stands(self) -> int:
         """For how many samples the command is held first while the output stands; 0 where it is not, or moves."""
         return standing_for(self._shown_by, self.channels.get("command"), self.sample_rate)
+
+    def held_still(self, neutral: float) -> list[float]:
+        """The values at which the command is held away from a neutral while an output that integrates it stands."""
+        return held_still(self._shown_by, self.command, neutral)
 
     @property
     def _shown_by(self) -> Samples:

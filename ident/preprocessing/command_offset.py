@@ -22,7 +22,8 @@ def _act(prepared: Prepared) -> tuple[Prepared, tuple[str, ...]]:
     """Count commands from their neutral, where the chain integrates them.
 
     A null bias, a dead zone that is not in the middle and a recorder's zero are one thing there, and any of them makes
-    the model run away. One machine has one neutral: the middle one of the runs to fit that show it.
+    the model run away. One machine has one neutral: the middle one of the runs to fit that show it. Where friction or a
+    dead zone holds the machine at commands of either sign, none of them is its neutral.
     """
     matrix, preset = prepared.matrix, prepared.model
     if preset.kind != "chain" or preset.data.driven_by != "command":
@@ -31,6 +32,10 @@ def _act(prepared: Prepared) -> tuple[Prepared, tuple[str, ...]]:
     neutral = float(np.median(shown)) if shown else 0.0
     felt = neutral and abs(neutral) > FELT.value * max(run.drive for run in matrix.runs)
     if not felt or not integrates(preset.core, matrix.runs, matrix.actuator):
+        return prepared, ()
+    if any(level * neutral <= 0 for run in matrix.of_use("fit") for level in run.held_still(neutral)):
+        return prepared, ()
+    if any(level * neutral <= 0 for run in matrix.of_use("fit") for level in run.held_still(neutral)):
         return prepared, ()
     text = with_unit(f"{neutral:.4g}", matrix.runs[0].units.get("command", "1"))
     said = (
