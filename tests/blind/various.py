@@ -25,7 +25,7 @@ Array = NDArray[np.float64]
 Rates = Callable[[tuple[float, ...], float], tuple[float, ...]]
 RATE, COUNT = 100.0, 600  # Hz and samples of a run
 _FINE = 32  # parts of a sample in which a band-limited command is straight
-_STEEP = 0.01  # of a machine's usual speed: of what slides more slowly dry friction is less
+_STEEP = 1e-4  # of a machine's usual speed: of what slides more slowly dry friction is less, so slowly it creeps
 
 KINDS: dict[str, tuple[str, str, str, str, tuple[str, ...]]] = {
     "motor": ("V", "velocity", "rad/s", "motor", ("coulomb_friction", "quadratic_damping", "dead_zone")),
