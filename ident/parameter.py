@@ -24,6 +24,9 @@ class Starts(Enum):
     """An angle, rad: all around."""
     SPECTRAL_LINES = "spectral lines"
     """A frequency, 1/s: where the residual's rate beats with the motion's."""
+    RESONANCE = "resonance"
+    """A frequency, 1/s, of a part that is held still: below the one at which the output answers its command by ringing,
+    by what of the mass hangs there."""
     STROKE_END = "end of the stroke"
     """The inverse of a way, 1/m: of the largest way that was covered, where a stop that was hit stands."""
     STROKE_MIDDLE = "middle of the stroke"

@@ -186,6 +186,10 @@ class InitialGuesses:
     """[places] Where a searched shape begins with which the output jumps. Why: over two decades each is a fifth longer
     than the one before, about the resolution of a play in a sample.
     Test: test_friction_behind_play.py::test_a_play_before_the_friction_is_named_with_its_width_and_its_contact"""
+    hanging_shares: tuple[float, ...] = (0.1, 0.4, 0.7, 0.9)
+    """[of the moving mass] That may hang behind a spring, where the search for its frequency begins. Why: each place is
+    a third lower than the one before, and the refit follows a resonance over a fifth.
+    Test: test_initial_guesses.py::test_a_part_behind_a_spring_begins_below_the_resonance_of_the_record"""
     spring_shares: tuple[float, ...] = (0.3, 0.6)
     """[of the machine's spring] Share that an effect which is a spring at first has taken over. Why: from either share
     the refit of a Bouc-Wen oscillator reaches its optimum, from none and from all of the spring it does not.

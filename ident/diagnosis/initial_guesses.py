@@ -12,6 +12,7 @@ from scipy.fft import next_fast_len
 from ident.diagnosis.criteria import CRITERIA
 from ident.diagnosis.fitted_model import FittedModel
 from ident.effects.effect import Effect
+from ident.effects.ringing import resonances
 from ident.fit.space import Space
 from ident.parameter import AtReversals, Parameter, Starts
 from ident.run import Run
@@ -75,6 +76,8 @@ def _guesses_of(base: FittedModel, parameter: Parameter, space: Space, known: Ma
         return tuple(np.arange(angles) * np.pi / (angles / 2))
     if parameter.start is Starts.SPECTRAL_LINES:
         return spectral_lines(base, *space.bounds(known)[parameter.in_equations])
+    if parameter.start is Starts.RESONANCE and (found := _below_resonance(base)):
+        return tuple(map(float, np.clip(found, *space.bounds(known)[parameter.in_equations])))
     axis = space.names.index(parameter.in_equations)
     criteria = CRITERIA.initial_guesses
     places = np.arange(1, criteria.finely + 1) / (criteria.finely + 1)
@@ -82,6 +85,15 @@ def _guesses_of(base: FittedModel, parameter: Parameter, space: Space, known: Ma
     points = space.point(known) + np.zeros((len(along), 1))
     points[:, axis] = along
     return tuple(float(value) for value in space.values(points)[parameter.in_equations])
+
+
+def _below_resonance(base: FittedModel) -> list[float]:
+    """The frequencies (1/s) of a part of the moving mass with the drive standing: ω √(1 − μ), ω that of the records.
+
+    Of several records the median; none where none rings.
+    """
+    found, shares = resonances(base.fitness.runs), CRITERIA.initial_guesses.hanging_shares
+    return [float(np.median(found) * np.sqrt(1.0 - share)) for share in shares] if found else []
 
 
 def spectral_lines(base: FittedModel, lower: float, upper: float) -> tuple[float, ...]:

@@ -8,7 +8,7 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from ident.effects.ringing import rings
+from ident.effects.ringing import resonances
 from ident.matrix import Matrix
 
 Need = Callable[[Matrix], bool]
@@ -79,10 +79,7 @@ def one_sided_command(matrix: Matrix) -> bool:
 
 def resonant(matrix: Matrix) -> bool:
     """Whether a run that is fitted answers its command with a damped oscillation."""
-    return any(
-        "command" in run.channels and rings(run.command, run.measured, run.output == "displacement")
-        for run in matrix.of_use("fit")
-    )
+    return bool(resonances(matrix.of_use("fit")))
 
 
 def speed_measured(matrix: Matrix) -> bool:

@@ -1,9 +1,9 @@
 """Whether a record rings: whether its output answers the command with a damped oscillation.
 
 Of y and u, means over q samples, y_k = Σ a_i y_(k−i) + Σ b_i u_(k−i) of fourth order is fitted by least squares (Ljung
-1999, section 10.1); it rings where a pair of its poles exp(s) has a damping ratio −Re s/|s| below 0.5. Noise puts pairs
-near half the sample rate, and the poles of what is sampled too finely on the real axis: so pairs above 1.2 rad count
-not, and q is doubled while 100 means are left.
+1999, section 10.1); it rings where a pair of its poles exp(s) has a damping ratio −Re s/|s| below 0.5, at |s|. Noise
+puts pairs near half the sample rate, and the poles of what is sampled too finely on the real axis: so pairs above 1.2
+rad count not, and q is doubled while 100 means are left. Of several pairs the least damped is the machine's.
 
 A position integrates, and by least squares the noise of its samples hides the poles. Its equation is solved by
 instrumental variables, which are the past of the model's own output (Ljung 1999, section 7.6, method of Young), from
@@ -12,9 +12,13 @@ the solution by least squares on.
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+
 import numpy as np
 import scipy  # signal, which takes half a second to load, is loaded where it is first used
 from numpy.typing import NDArray
+
+from ident.run import Run
 
 Array = NDArray[np.float64]
 ORDER = 4
@@ -30,19 +34,33 @@ REFINED = 3
 """Times that the instruments are made anew. Test: tests/effects/test_ringing.py"""
 
 
-def rings(command: Array, output: Array, integrates: bool = False) -> bool:
-    """Whether an output (n,) answers its command (n,) with a damped oscillation, at any q."""
+def resonances(runs: Iterable[Run]) -> list[float]:
+    """The frequencies, rad/s, at which the runs that have a command answer it with a damped oscillation."""
+    found = (
+        (run.sample_rate, ringing(run.command, run.measured, run.output == "displacement"))
+        for run in runs if "command" in run.channels
+    )  # fmt: skip
+    return [rate * frequency for rate, frequency in found if frequency is not None]
+
+
+def ringing(command: Array, output: Array, integrates: bool = False) -> float | None:
+    """The frequency, rad a sample, at which an output (n,) answers its command (n,) with a damped oscillation.
+
+    `integrates` is whether the output is a position. None where it does at no q.
+    """
+    found: list[tuple[float, float]] = []
     q = 1
     while len(output) // q >= FEWEST:
         count = len(output) // q * q
         u, y = (signal[:count].reshape(-1, q).mean(axis=1) for signal in (command, output))
-        if _has_pair(u - u.mean(), y - y.mean(), integrates):
-            return True
+        pairs = _pairs(u - u.mean(), y - y.mean(), integrates)
+        found += [(damping, frequency / q) for damping, frequency in pairs]
         q *= 2
-    return False
+    return min(found)[1] if found else None
 
 
-def _has_pair(u: Array, y: Array, integrates: bool) -> bool:
+def _pairs(u: Array, y: Array, integrates: bool) -> list[tuple[float, float]]:
+    """Damping ratio and frequency, rad a sample, of each pair of poles with which y answers u."""
     samples = np.column_stack((_regressors(y, u), y[ORDER:]))
     triangle = np.asarray(np.linalg.qr(samples, mode="r"))  # of ten rows, as well conditioned as all samples
     found, *_ = np.linalg.lstsq(triangle[:, :-1], triangle[:, -1], rcond=None)
@@ -51,8 +69,8 @@ def _has_pair(u: Array, y: Array, integrates: bool) -> bool:
         found, *_ = np.linalg.lstsq(instruments.T @ samples[:, :-1], instruments.T @ samples[:, -1], rcond=None)
     poles = np.log(_poles(found) + 1e-12)
     size = np.abs(poles)
-    within = (poles.imag > 0) & (size > SLOWEST) & (size < FASTEST)
-    return bool(np.any(within & (-poles.real < DAMPING * size)))
+    within = (poles.imag > 0) & (size > SLOWEST) & (size < FASTEST) & (-poles.real < DAMPING * size)
+    return [(float(-pole.real / abs(pole)), float(abs(pole))) for pole in poles[within]]
 
 
 def _regressors(y: Array, u: Array) -> Array:

@@ -7,13 +7,13 @@ Of the moving mass m₀ a share μ hangs behind a spring with a damper, ω its f
 Its own quantities are xj = x − x₁ and vj = x₁'.
 """
 
-from ident.parameter import Parameter
+from ident.parameter import Parameter, Starts
 
 SHARE = Parameter("share", "mu", "1", 0.0, 0.98, 0.0, "share of the moving mass that is behind the spring")
 SHAPE = (
     Parameter(
         "frequency", "wj", "1/s", 1.0, 1e3, 30.0, "frequency of the mass behind the spring, the drive at rest, rad/s",
-        searched=True,
+        searched=True, start=Starts.RESONANCE,
     ),
     Parameter("damping", "zeta", "1", 0.01, 1.0, 0.1, "damping ratio of this motion"),
 )  # fmt: skip

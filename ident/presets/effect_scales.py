@@ -6,7 +6,7 @@ import re
 from collections.abc import Mapping
 
 from ident.effects.effect import Effect
-from ident.parameter import Parameter
+from ident.parameter import Parameter, Starts
 from ident.stages import Scale
 
 _OWN = ("1", None)
@@ -29,6 +29,10 @@ _OF_MOTION = {"m": ("L", 2.0), "1/m": ("1/L", 2.0), "m/s": ("V", 1.0)}
 
 A way of up to two deviations of the motion: a specimen may yield, or a spring begin to act, at the end of a sine only.
 """
+_RINGING = 4.0
+"""Times the highest frequency that the commands excite, up to which a part of the machine may ring: what is held, or
+straight between the samples, has little power there, and a light damping needs little.
+Test: tests/diagnosis/test_hanging_mass.py"""
 
 
 def scale_of(effect: Effect, parameter: Parameter, sizes: Mapping[str, str]) -> Scale:
@@ -37,6 +41,8 @@ def scale_of(effect: Effect, parameter: Parameter, sizes: Mapping[str, str]) -> 
     A user's effect states its own bounds, which hold. So they do where the model has no force.
     """
     text, reach = _SCALES.get(parameter.unit, _OWN)
+    if parameter.start is Starts.RESONANCE and reach is not None:
+        reach *= _RINGING
     if parameter.of_motion:
         text, reach = _OF_MOTION[parameter.unit]
     logarithmic = parameter.searched and parameter.logarithmic

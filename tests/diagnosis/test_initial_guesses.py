@@ -9,8 +9,10 @@ from typing import Any
 import numpy as np
 import pytest
 
-from ident.diagnosis.initial_guesses import spectral_lines
+from ident.diagnosis.criteria import CRITERIA
+from ident.diagnosis.initial_guesses import initial_guesses, spectral_lines
 from ident.diagnosis.screening import _trials
+from ident.effects.elastic_load import ELASTIC_LOAD
 from ident.effects.end_stop import END_STOP
 from ident.run import Run
 
@@ -63,3 +65,18 @@ def test_a_stop_that_gives_way_lies_before_the_end_of_the_way():
     assert 0.9 * 0.02 < max(ways) < 0.02
     base.fitness.runs = (replace(run, channels={"velocity": x}),)
     assert len({trial.strength for trial in _trials(models, base, space, "end_stop", {})}) > len(ways)
+
+
+def test_a_part_behind_a_spring_begins_below_the_resonance_of_the_record():
+    """ω √(1 − μ) of a record that rings at 40 rad/s, by the part μ of the mass, within the bounds of the search."""
+    rate, omega, damping = 200.0, 40.0, 0.1
+    t, u = np.arange(2000) / rate, np.repeat(np.random.default_rng(3).uniform(-1, 1, 50), 40)
+    steps = [(k / rate, step) for k, step in enumerate(np.diff(u, prepend=0.0)) if step]
+    y = sum(step * np.where(t > at, 1 - np.exp(-damping * omega * (t - at)) * np.cos(omega * (t - at)), 0.0)
+            for at, step in steps)  # fmt: skip
+    run = Run("run", "", rate, {"command": u, "velocity": y}, output="velocity", hold="zoh")
+    name = "elastic_load__frequency"
+    space: Any = SimpleNamespace(names=(name,), bounds=lambda _: {name: (1.0, 35.0)})
+    found = initial_guesses(SimpleNamespace(fitness=SimpleNamespace(runs=(run,))), ELASTIC_LOAD, space, {})
+    shares = np.array(CRITERIA.initial_guesses.hanging_shares)
+    assert [one[name] for one in found] == pytest.approx(np.minimum(omega * np.sqrt(1 - shares), 35.0), rel=0.02)

@@ -9,7 +9,7 @@ import pytest
 import scipy
 
 from ident.diagnosis.candidate_models import CandidateModels
-from ident.effects.ringing import rings
+from ident.effects.ringing import ringing
 from ident.fit.settings import Settings
 from ident.matrix import Actuator, Matrix
 from ident.run import Run
@@ -21,10 +21,10 @@ from tests.presets.test_two_masses import SEEN, matrix
 def test_drive_and_load_ring_at_any_rate_of_sampling(seed, seen):
     """As they were recorded, and from sixteen samples between each two, with noise of their own."""
     run = matrix(seed, seen).runs[0]
-    assert rings(run.command, run.measured)
+    assert ringing(run.command, run.measured) is not None
     t, fine = np.arange(run.length), np.arange(16 * (run.length - 1)) / 16
     noise = 0.005 * run.measured.std() * np.random.default_rng(seed).standard_normal(len(fine))
-    assert rings(np.interp(fine, t, run.command), np.interp(fine, t, run.measured) + noise)
+    assert ringing(np.interp(fine, t, run.command), np.interp(fine, t, run.measured) + noise) is not None
 
 
 def positions(speed: np.ndarray, rate: float, seed: int) -> np.ndarray:
@@ -38,7 +38,7 @@ def positions(speed: np.ndarray, rate: float, seed: int) -> np.ndarray:
 def test_a_position_rings_that_integrates(seed, seen):
     """Least squares alone are misled by the noise of the position at most seeds."""
     run = matrix(seed, seen).runs[0]
-    assert rings(run.command, positions(run.measured, run.sample_rate, seed), integrates=True)
+    assert ringing(run.command, positions(run.measured, run.sample_rate, seed), integrates=True) is not None
 
 
 @pytest.mark.parametrize("seed", range(6))
@@ -48,7 +48,7 @@ def test_a_lag_does_not_ring(seed, constant):
     u, y = np.repeat(rng.uniform(-3.0, 3.0, 250), 8), np.zeros(2000)
     for k in range(1, len(y)):
         y[k] = y[k - 1] + (u[k - 1] - y[k - 1]) * -np.expm1(-1.0 / constant)
-    assert not rings(u, y + 0.01 * y.std() * rng.standard_normal(len(y)))
+    assert ringing(u, y + 0.01 * y.std() * rng.standard_normal(len(y))) is None
 
 
 def test_few_lags_ring_by_their_positions():
@@ -58,7 +58,7 @@ def test_few_lags_ring_by_their_positions():
         rng = np.random.default_rng([535, seed])
         u = np.repeat(rng.uniform(-3.0, 3.0, 250), 8)
         y = scipy.signal.lfilter([0.0, 1.0], [1.0, -np.exp(-1.0 / constant)], u) * -np.expm1(-1.0 / constant)
-        found += rings(u, positions(y, 100.0, seed), integrates=True)
+        found += ringing(u, positions(y, 100.0, seed), integrates=True) is not None
     assert found <= 6
 
 

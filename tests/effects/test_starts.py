@@ -89,7 +89,7 @@ def test_what_an_effect_states_is_of_its_kind():
     units = {
         Starts.PHASE: "1", Starts.SPECTRAL_LINES: "1/s", Starts.STROKE_END: "1/m", Starts.STROKE_MIDDLE: "m",
         Starts.TIME: "s", Starts.FRICTION: "Pa", Starts.FRICTION_GRADIENT: "Pa/m",
-        Starts.FINELY: "m", Starts.AS_KNOWN: "m",
+        Starts.FINELY: "m", Starts.AS_KNOWN: "m", Starts.RESONANCE: "1/s",
     }  # fmt: skip
     stated = [(p.start, p.unit) for e in CATALOGUE for p in e.parameters if p.start is not Starts.ALONG_RANGE]
     assert {start for start, _ in stated} == units.keys()
