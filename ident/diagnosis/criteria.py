@@ -428,6 +428,22 @@ class LabelChecks:
 
 
 @dataclass(frozen=True)
+class RunConsistency:
+    """When the values that runs alone give of a parameter disagree."""
+
+    most_runs: int = 12
+    """[runs] Up to which the model is refitted to each alone. Why: each costs a refit; with more runs whole runs are
+    held out in turn, so that evidence and standard errors hold between runs.
+    Test: test_run_consistency.py::test_runs_of_one_machine_agree"""
+    chance: float = 1e-3
+    """[probability] That runs of one machine disagree in any parameter. Why: the sentence sends a user to the test rig.
+    Test: test_run_consistency.py::test_runs_of_one_machine_agree"""
+    ratio: float = 1.3
+    """[ratio] Of the largest value to the least, at least. Why: oil and windings that warm up make less of it.
+    Test: test_run_consistency.py::test_a_machine_that_differs_by_little_is_one_machine"""
+
+
+@dataclass(frozen=True)
 class Conclusion:
     """What a report says, and which models it says are in question."""
 
@@ -456,6 +472,7 @@ class Criteria:
     ambiguity: Ambiguity = Ambiguity()
     verification: Verification = Verification()
     labels: LabelChecks = LabelChecks()
+    consistency: RunConsistency = RunConsistency()
     conclusion: Conclusion = Conclusion()
     discovery: Discovery = Discovery()
     terms: TermShapes = TermShapes()

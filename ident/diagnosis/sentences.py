@@ -15,6 +15,7 @@ from ident.diagnosis.evidence.criteria import EVIDENCE_CRITERIA
 from ident.diagnosis.evidence.free_run import FreeRun, drifts
 from ident.diagnosis.evidence.probability import is_improbable
 from ident.diagnosis.result import Explanation, Suspect
+from ident.diagnosis.run_consistency import InconsistentParameter
 from ident.diagnosis.total_delay import TotalDelay
 from ident.diagnosis.verification import Contradiction, VerifyChange
 from ident.effects.effect import Effect
@@ -296,6 +297,20 @@ def _alternative(one: Explanation) -> Message:
     if one.effects:
         return message("machine.effect", machine=one.machine, effect=one.effects[-1])
     return message("machine", machine=one.machine)
+
+
+def inconsistent_sentence(parameters: Sequence[InconsistentParameter], moved: bool) -> Iterator[str]:
+    """The sentence that runs alone give different parameters; none where they agree.
+
+    `moved` is whether a recorded motion drives the machine: then no drive stands between the command and the machine.
+    """
+    if parameters:
+        listed = [
+            message("inconsistent.parameter", name=p.name, least=(p.least, p.unit), most=(p.most, p.unit))
+            for p in parameters
+        ]
+        cause = message("inconsistent.moved" if moved else "inconsistent.driven")
+        yield str(message("inconsistent", parameters=listed, names=[p.name for p in parameters], cause=cause))
 
 
 def proposed_text(terms: Sequence[Proposal]) -> str:

@@ -16,11 +16,12 @@ from ident.words.message import Message, message
 
 EFFECTS, FURTHER = "effects of the library", "further effects"
 LABELS, OTHERS, LAGS = "labels of the runs", "other models", "lags and delays"
+CONSISTENCY = "parameters of single runs"
 VERIFY, NOISE = "validation data", "whether the residual is noise"
 TERMS, NEXT_RUN, ERROR_BUDGET = "search for unknown terms", "next run", "error budget"
 _GIVEN = (NEXT_RUN, ERROR_BUDGET)
 """Stages that give a figure of their own, null where there was no time for them."""
-LATER = (FURTHER, LABELS, OTHERS, LAGS, ERROR_BUDGET, NEXT_RUN, TERMS)
+LATER = (FURTHER, LABELS, OTHERS, LAGS, CONSISTENCY, ERROR_BUDGET, NEXT_RUN, TERMS)
 """The stages that follow while effects are added."""
 _IN_ORDER = (EFFECTS, FURTHER, NOISE, VERIFY, *LATER[1:])
 

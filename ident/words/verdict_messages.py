@@ -143,6 +143,16 @@ VERDICT: Mapping[str, str] = {
         "twice. Record one run twice with the same command to learn how much of the error is noise.",
     "verdict.not_repeated_floor_unknown":
         "Record one run twice with the same command to learn how much of the error is noise.",
+    "inconsistent":
+        "Fitted to each run alone, the model has {parameters:all}. A machine has one value of each, so these records "
+        "determine no value of {names:all}. {cause}",
+    "inconsistent.parameter": "{name} from {least:quantity} to {most:quantity}",
+    "inconsistent.driven":
+        "Either the machine differed from run to run, or the drive did not give what was commanded. Record the torque, "
+        "force, pressure or current that drives the machine, as measured.",
+    "inconsistent.moved":
+        "Either the machine differed from run to run, or something that was not recorded acts on it. Repeat one run to "
+        "learn whether the machine stays the same.",
     "group": "These data cannot distinguish {group:all}.",
     "group.two": "These data cannot tell which two of these are present: {group:listed}.",
     "contradicted.rises":

@@ -1,0 +1,62 @@
+"""Runs that ask for different parameters: an inertia with viscous friction, solved exactly, another in each run."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from ident.diagnosis.candidate_models import CandidateModels
+from ident.diagnosis.run_consistency import inconsistent_parameters
+from ident.diagnosis.sentences import inconsistent_sentence
+from ident.fit.settings import Settings
+from ident.matrix import Actuator, Matrix
+from ident.run import Run
+
+RATE, INERTIA, FRICTION = 100.0, 2e-3, 1e-2
+
+
+def turned(number: int, inertia: float, seed: int) -> Run:
+    """Held torques into J ω' + c ω = M, with 1 % of coloured noise on ω."""
+    rng = np.random.default_rng([seed, number])
+    torque = np.repeat(rng.uniform(-0.1, 0.1, 20), 25)
+    held = np.exp(-FRICTION / inertia / RATE)
+    speed = np.zeros(len(torque))
+    for k in range(1, len(speed)):
+        speed[k] = held * speed[k - 1] + (1 - held) * torque[k - 1] / FRICTION
+    noise = np.convolve(rng.standard_normal(len(speed) + 4), np.ones(5) / np.sqrt(5), mode="valid")
+    channels = {"command": torque, "velocity": speed + 0.01 * speed.std() * noise}
+    units = {"command": "N*m", "velocity": "rad/s"}
+    return Run(f"run {number}", "", RATE, channels, units, output="velocity", hold="zoh")
+
+
+def found(*inertias: float, seed: int = 1):
+    """The parameters in which runs of machines with these inertias disagree."""
+    runs = tuple(turned(number, inertia, seed) for number, inertia in enumerate(inertias))
+    models = CandidateModels.of(Matrix(Actuator("D"), runs), Settings(model="drive"), ())
+    return inconsistent_parameters(models, models.refit((), {"m0": INERTIA, "c0": FRICTION}))
+
+
+def test_runs_of_one_machine_agree():
+    """Seeds 1 to 12, three runs each; a run by itself has none to agree with."""
+    assert not any(found(INERTIA, INERTIA, INERTIA, seed=seed) for seed in range(1, 13))
+    assert not found(INERTIA)
+
+
+def test_a_machine_that_differs_by_little_is_one_machine():
+    assert not found(INERTIA, 1.15 * INERTIA)
+
+
+def test_runs_of_two_machines_disagree_in_what_differs():
+    (inertia,) = found(INERTIA, 1.8 * INERTIA)
+    assert (inertia.name, inertia.unit) == ("m0", "kg*m^2")
+    assert (inertia.least, inertia.most) == pytest.approx((INERTIA, 1.8 * INERTIA), rel=0.03)
+
+
+def test_the_sentence_says_what_to_record():
+    (text,) = inconsistent_sentence(found(INERTIA, 1.8 * INERTIA), moved=False)
+    assert "m0 from 0.00" in text
+    assert "determine no value of m0." in text
+    assert "Record the torque" in text
+    (of_specimen,) = inconsistent_sentence(found(INERTIA, 1.8 * INERTIA), moved=True)
+    assert "Repeat one run" in of_specimen
+    assert not list(inconsistent_sentence((), moved=False))
