@@ -329,6 +329,7 @@ def test_a_diagnosis_is_no_fit_of_the_actuators_page(service, diagnosis, linear)
     assert f"/fits/{diagnosis['id']}" not in page
 
 
+@pytest.mark.full
 @pytest.mark.usefixtures("few_effects")
 def test_an_own_effect_is_ranked_beside_the_catalogue_and_added(service, linear):
     """A dead zone under another name: the data cannot tell the two apart, and either can be added."""

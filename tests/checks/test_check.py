@@ -345,11 +345,14 @@ DOUBTED = {
 """What the README of a measured record confirms."""
 
 
-def test_measured_records_raise_no_doubt_but_what_is_known_of_them(measured_data):
-    """No step that is answered too quickly where a counter does not see the sign, no lever clipped at its stop."""
+def test_measured_records_raise_no_doubt_but_what_is_known_of_them(measured_data, full):
+    """No step that is answered too quickly where a counter does not see the sign, no lever clipped at its stop.
+
+    In the short form every third.
+    """
     folders = sorted(path.parent for path in measured_data.glob("*/matrix.yaml"))
     assert len(folders) >= 21
-    for folder in folders:
+    for folder in folders if full else folders[::3]:
         found = {finding.code for finding in check(read_matrix(folder)) if finding.severity != "note"}
         assert found == DOUBTED.get(folder.name, set()), folder.name
 

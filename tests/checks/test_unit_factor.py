@@ -95,10 +95,10 @@ def test_nothing_is_doubted_of_simulated_machines(plain, tmp_path):
         assert doubts(made.runs) == []
 
 
-def test_nothing_is_doubted_of_measured_machines(measured_data):
+def test_nothing_is_doubted_of_measured_machines(measured_data, full):
     folders = [path.parent for path in sorted(measured_data.glob("*/matrix.yaml"))]
     assert len(folders) > 15
-    for folder in folders:
+    for folder in folders if full else folders[1::3]:
         assert doubts(read_matrix(folder).runs) == [], folder.name
 
 

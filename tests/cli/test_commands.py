@@ -88,6 +88,7 @@ def test_tables_stand_in_the_units_that_are_chosen_and_json_in_si(servoident, fe
     assert json.loads(sent.stdout)["parameters"]["m0"]["value"] == 4.25
 
 
+@pytest.mark.full
 def test_a_profile_is_told_and_written_beside_the_fit(servoident, few, tmp_path):
     """The JSON is still that of a fit, which `compare` reads."""
     held = [f"--set={text}" for text in ("Cl=1e-11", "c0=3200", "m0=4.25", "Ka=1.39e-13", "Z0=2.592e-6")]
@@ -187,6 +188,7 @@ def test_one_figure_with_options_as_a_page_draws_it(servoident, few, fit_file, t
     assert "bode" in servoident(*asked[:-1], "bod").stderr
 
 
+@pytest.mark.full
 def test_several_fits_are_one_table_and_one_plot(servoident, few, fit_file, tmp_path):
     """A column each, also where they were fitted to other runs."""
     out = ("--out", tmp_path / "out", "--json", tmp_path / "c.json")

@@ -35,6 +35,7 @@ def test_a_controller_is_designed_and_written(servoident, tmp_path, structure):
     assert "without dead_zone" in done.stdout
 
 
+@pytest.mark.full
 def test_a_target_of_a_file_is_used(servoident, tmp_path):
     """A slower target: a smaller bandwidth, under the name that the file gives it."""
     target = tmp_path / "target.yaml"

@@ -16,13 +16,13 @@ from ident.hybrid.linear_plant import linear_plant
 from ident.hybrid.rig import simulate_hybrid
 from ident.hybrid.share_map import share_map
 from tests.hybrid.cases import fitted, of_qian
-from tests.short_form import short_form
 
 FIT = fitted()
 LOOSE = of_qian(3.0, damping=np.array([[100.0]]), gain=5.0)
 
 
-@pytest.mark.parametrize("theme", short_form(["light", "dark"], "light"))
+@pytest.mark.full
+@pytest.mark.parametrize("theme", ["light", "dark"])
 def test_figures_are_drawn_also_of_what_ran_away(theme):
     """Displacement, response and map of a stable and an unstable simulation side by side."""
     shown = {

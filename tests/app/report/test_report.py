@@ -74,6 +74,7 @@ def test_it_says_parameters_errors_budget_and_verdict(told):
         assert said in told
 
 
+@pytest.mark.full
 def test_without_a_diagnosis_it_is_a_report_of_the_fit():
     """No empty chapter."""
     base = compared("coulomb_friction")

@@ -95,6 +95,7 @@ def test_a_logo_that_is_no_picture_is_refused(tmp_path):
             logo(tmp_path / "logo.png")
 
 
+@pytest.mark.full
 def test_no_page_of_the_printed_report_is_half_empty(base, picture, monkeypatch):
     """But the last; as Typst draws the pages, from the first to the last line with ink above the foot."""
     compile_pdf, filled = typst.compile, []

@@ -263,6 +263,7 @@ def test_the_regression_is_that_of_all_terms_and_runs_at_once(monkeypatch):
         assert (strength, share) == pytest.approx((same, left), rel=1e-6)
 
 
+@pytest.mark.full
 def test_of_each_form_the_term_that_explains_most_is_set_beside_the_others(monkeypatch):
     """Where its shapes begin is all that tells a form's terms apart: the regression of every term leads to the same."""
     matrix = machine(2, gain_bump=0.25)
