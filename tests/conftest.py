@@ -60,23 +60,20 @@ def pytest_addoption(parser: pytest.Parser) -> None:
 
 
 LONGEST = (
-    "browser/test_workbench", "browser/test_monkey", "cli/test_postgresql", "cli/test_service_commands",
-    "faults/test_workers", "faults/test_kill", "faults/test_mixed_load", "faults/test_older_jobs",
-    "app/backup/test_backup", "test_project", "diagnosis/test_diagnose",
-    "diagnosis/discovery/test_search", "diagnosis/test_structure_selection", "test_readme", "app/test_hybrid",
-    "test_site", "app/test_contract", "app/test_diagnoses", "cli/test_diagnose", "acceptance/test_identification",
-    "cli/test_commands", "checks/test_check", "app/access/test_roles", "app/test_own_effects", "test_windows",
-    "test_wheel", "bench/test_figures", "effects/test_contract", "diagnosis/test_prediction_horizon",
-    "app/test_bad_inputs", "presets/test_machines", "effects/test_every_pair", "diagnosis/test_time_budget",
-    "acceptance/test_rounding", "bench/test_acceptance", "app/test_service", "acceptance/test_one_error",
-    "bench/test_procedures", "diagnosis/test_alternative_structures", "fit/test_beginnings", "cli/test_any_machine",
-    "residuals/test_curves", "app/test_bench", "hybrid/test_what_if", "app/access/test_audit",
-    "diagnosis/discovery/test_free_curves", "cli/test_effects", "fit/test_windows", "test_additions", "app/test_adding",
-    "bench/test_calibration", "readers/test_random_tables", "acceptance/test_measured", "diagnosis/test_free_shapes",
-    "bench/test_recovery", "fit/test_custom_fit", "test_notebooks", "reference/test_nonlinear_reference",
-    "app/test_misspelt", "figures/test_figures", "diagnosis/test_measured",
-    "diagnosis/discovery/test_auxiliary_channels", "readers/test_lab_formats", "diagnosis/discovery/test_any_machine",
-    "app/test_older_database", "checks/test_unit_factor",
+    "browser/test_workbench", "browser/test_pages", "cli/test_postgresql", "cli/test_service_commands",
+    "test_readme", "test_project", "test_windows", "test_wheel", "diagnosis/test_diagnose",
+    "diagnosis/discovery/test_search", "cli/test_commands", "acceptance/test_identification",
+    "diagnosis/test_structure_selection", "effects/test_every_pair", "reference/test_nonlinear_reference",
+    "cli/test_diagnose", "bench/test_figures", "fit/test_windows", "bench/test_procedures",
+    "diagnosis/test_time_budget", "test_docs", "bench/test_acceptance", "test_wrong_arguments",
+    "residuals/test_curves", "hybrid/test_what_if", "test_imports", "bench/test_identification",
+    "presets/test_machines", "checks/test_check", "test_alone", "acceptance/test_one_error", "fit/test_beginnings",
+    "diagnosis/test_measured", "fit/test_custom_fit", "cli/test_effects", "acceptance/test_measured",
+    "diagnosis/discovery/test_any_machine", "stability/test_hybrid_judgement", "figures/test_figures",
+    "readers/test_lab_formats", "app/test_hybrid", "app/test_bench", "app/access/test_roles", "app/test_adding",
+    "app/test_diagnoses", "app/test_older_database", "app/webhooks/test_webhooks", "app/access/test_audit",
+    "app/test_contract", "app/test_own_effects", "app/test_size", "app/test_service", "app/test_bad_inputs",
+    "app/test_side_by_side",
 )  # fmt: skip
 """Files that take longest, those that wait for a browser or a service before the others, the dearest first.
 
