@@ -118,6 +118,7 @@ def test_the_bode_plot_shows_a_few_verify_runs_and_says_of_how_many(matrix, fit)
     assert f"{len(shown)} of 21 runs" in spec["title"]["subtitle"][1]
 
 
+@pytest.mark.full
 def test_all_84_runs_become_one_column_a_gain_with_shared_scales(matrix, fit):
     spec = drawn("bode", matrix, fit, use="all")
     headings = [panel["title"]["text"] for panel in spec["concat"] if "title" in panel]

@@ -201,14 +201,14 @@ SECONDS = 10.0
 
 
 def test_a_file_with_bytes_changed_at_random_is_refused_or_read(form, full):
-    """A thousand times each; in the short form 20, or 3 where a process is started for each.
+    """A thousand times each; in the short form 8, or 2 where a process is started for each.
 
     Within ten seconds each, and all within three times the memory that a file may have.
     """
     ending, made, _ = FILES[form]
     whole = np.frombuffer(made(), np.uint8)
     random = np.random.default_rng(7)
-    for _ in range(1000 if full else 3 if form in APART else 20):
+    for _ in range(1000 if full else 2 if form in APART else 8):
         damaged = whole.copy()
         places = random.integers(0, random.choice([len(whole), min(300, len(whole))]), random.integers(1, 6))
         damaged[places] = random.choice([0, 255, 48, 57, 10, *random.integers(0, 256, 8)], len(places))
