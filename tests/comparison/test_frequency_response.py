@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from types import ModuleType
+from typing import Any
 
-import control
 import numpy as np
 import pytest
 
@@ -57,7 +58,15 @@ def fit_of(effects: dict[str, float]) -> FitResult:
 
 
 @pytest.fixture(scope="module")
-def loops() -> tuple[control.TransferFunction, control.TransferFunction]:
+def control() -> ModuleType:
+    """The control library: here, for each worker collects this file and one needs it, which brings Matplotlib."""
+    import control as library
+
+    return library
+
+
+@pytest.fixture(scope="module")
+def loops(control) -> tuple[Any, Any]:
     """The open loop and the closed one, from the equations of the paper."""
     s = control.tf("s")
     pressure, load = PLANT.Ka * s + PLANT.Cl, (PLANT.m0 + MASS) * s**2 + PLANT.c0 * s + STIFFNESS
@@ -79,7 +88,7 @@ def linear(command):
     return found
 
 
-def test_the_readouts_of_a_linear_model_are_those_of_the_control_library(linear, loops):
+def test_the_readouts_of_a_linear_model_are_those_of_the_control_library(linear, loops, control):
     opened, closed = loops
     found = readouts(linear, fit_of({}), ACTUATOR, BAND)
     gain, phase, _, _ = control.margin(opened)
@@ -101,7 +110,7 @@ def test_poles_and_zeros_are_those_of_the_control_library(linear, loops):
     assert (2 * np.pi * zero.real, zero.imaginary) == pytest.approx((-20.0, 0.0), rel=1e-6)
 
 
-def test_a_step_has_the_rise_overshoot_and_settling_of_the_control_library(linear, loops):
+def test_a_step_has_the_rise_overshoot_and_settling_of_the_control_library(linear, loops, control):
     seconds = duration(fit_of({}), linear.run, ACTUATOR)
     found = step_response(fit_of({}), linear.run, ACTUATOR, 1.27e-3, seconds)
     known = control.step_info(loops[1], T=found.time[found.time >= 0])
