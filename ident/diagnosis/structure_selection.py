@@ -85,7 +85,8 @@ def _compared(
         elif only.data.turns:
             why = message("structure.turning", machine=only.name)
         elif told_by_following(only, matrix.runs):
-            why = message("structure.loop", machine=only.name)
+            of_position = "displacement" in only.chain.outputs
+            why = message("structure.position_loop" if of_position else "structure.loop", machine=only.name)
         else:
             why = message("structure.driven", machine=only.name, driver=only.data.driven_by)
         return (Structure(only.name, {"held_out": None}, len(only.parameters), str(why)),), None

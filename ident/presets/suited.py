@@ -18,6 +18,7 @@ _STATED, _LOOP, _OTHER_LOOP, _OPEN, _UNLIKELY = 0, 1, 2, 3, 6
 """Ranks: a force, or a motion, by the unit of its command; a loop, and one that is of another drive as a rule; a
 command in open loop; a motion of another cause."""
 _STRETCHES, _NEAR = 20, 0.1  # of a record whose means are compared; how near they are, a share of the command's
+_RESTS, _RESTED = 3, 4  # rests of a command at whose ends an output may have arrived, and samples of one
 
 
 class Described(Protocol):
@@ -101,6 +102,8 @@ def _follows(run: Described, channel: str) -> bool:
         return False
     if run.units.get("command") != "1" or run.units.get(channel) != "1":
         return False
+    if _arrives(run, channel):
+        return True
     r, y = (np.array_split(run.channels[name], _STRETCHES) for name in ("command", channel))
     command, shown = np.array([part.mean() for part in r]), np.array([part.mean() for part in y])
     terms = np.column_stack([command, np.ones(_STRETCHES), [part[-1] - part[0] for part in y]])
@@ -109,6 +112,17 @@ def _follows(run: Described, channel: str) -> bool:
     apart = abs(offset + (gain - 1) * command.mean())
     near = abs(gain - 1) < _NEAR and apart < _NEAR * np.std(run.command)
     return bool(near and np.std(off) < _NEAR * np.std(command))
+
+
+def _arrives(run: Run, channel: str) -> bool:
+    """Whether a channel is where a command was that rests, at the end of each of several rests.
+
+    However it came there, as slowly as its drive allows: a motor whose voltage is limited does so by no lag.
+    """
+    command, shown, near = run.command, run.channels[channel], _NEAR * np.std(run.command)
+    ends = np.append(np.flatnonzero(np.abs(np.diff(command)) > near), run.length - 1)
+    ends = ends[np.diff(ends, prepend=-1) >= _RESTED]  # between rests a sample of an uneven clock is of both
+    return len(ends) >= _RESTS and bool(np.max(np.abs(shown[ends] - command[ends])) < near)
 
 
 def unusual(model: Preset, runs: Sequence[Described]) -> bool:

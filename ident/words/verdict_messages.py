@@ -262,6 +262,9 @@ STRUCTURES: Mapping[str, str] = {
     "structure.described": "the data set describes the machine",
     "structure.loop":
         "{machine} is used, a position loop, because the recorded output follows the command",
+    "structure.position_loop":
+        "{machine} is used, a position loop, because the recorded output follows the command; if a motor drives it and "
+        "no oil, name that model (--model position_servo)",
     "structure.moved":
         "{machine} is used, because a force answers to a command in {unit}, which is taken as the motion; if the "
         "command is that of a valve or a loop, name the model (--model)",

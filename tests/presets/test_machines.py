@@ -335,11 +335,23 @@ def lagging(seed: int, gain: float = 1.0, beside: float = 0.0, wander: float = 0
 def test_in_unknown_units_a_loop_is_known_by_where_its_output_is(seed):
     matrix = lagging(seed)
     assert [model.name for model in in_question(matrix.runs)] == ["qian2014"]
-    said = "No model was named: qian2014 is used, a position loop, because the recorded output follows the command."
-    assert said in choose_structure(matrix).matrix.notices
+    said = "No model was named: qian2014 is used, a position loop, because the recorded output follows the command; "
+    (notice,) = (one for one in choose_structure(matrix).matrix.notices if one.startswith(said))
+    assert notice.endswith("(--model position_servo).")
     of_force = replace(matrix.runs[0], output="force", units={"command": "1", "force": "1"},
                        channels={"command": matrix.runs[0].command, "force": matrix.runs[0].measured})  # fmt: skip
     assert [model.name for model in in_question([of_force])] == ["force_loop"]
+
+
+@pytest.mark.parametrize(("end", "models"), [(1.0, ["qian2014"]), (0.8, ["drive"])])
+def test_in_unknown_units_a_loop_is_known_by_where_its_output_arrives(end, models):
+    """At a limited speed, which no lag is: 40 counts a sample towards each target, or `end` of the way to it."""
+    target = np.repeat(np.random.default_rng(67).integers(0, 9000, 6), 300).astype(float)
+    count = np.zeros(len(target))
+    for k in range(1, len(target)):
+        count[k] = count[k - 1] + np.clip(end * target[k - 1] - count[k - 1], -40.0, 40.0)
+    run = Run("r", "", RATE, {"command": target, "displacement": count}, {"command": "1", "displacement": "1"})
+    assert [model.name for model in in_question([run])][:1] == models
 
 
 @pytest.mark.parametrize(
