@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from ident.chain.chain import integrates
 from ident.checks.missing_input import missing_inputs
 from ident.checks.unit_factor import unit_causes
+from ident.fit.contradicted import contradicting
 from ident.fit.ends import SETTLED, parted
 from ident.fit.far_bounds import far_bounds
 from ident.fit.fitness import Fitness
@@ -48,7 +49,7 @@ _AT_BOUND = "the estimate is at its bound: the best value is outside it"
 _VAGUE = "its standard error is {:.3g} times its value"
 _FELT = 1.001  # times the error: a strength that is not off by chance
 HARDLY = 0.8  # of the output left: no fit to be trusted
-_SAID_FIRST = tuple(MESSAGES[key].partition("{")[0] for key in ("hardly", "missing_input.fit"))
+_SAID_FIRST = tuple(MESSAGES[key].partition("{")[0] for key in ("hardly", "missing_input.fit", "contradicted"))
 Array = NDArray[np.float64]
 
 
@@ -152,6 +153,7 @@ def summarise(
         version=version("servoident"),
         data_hash=matrix.data_hash,
         notes=(
+            *(() if window else contradicting(verify_runs, verify_errors)),
             *_notes(settings, objective, floors, fit_errors),
             *_known_zeros(settings, objective.runs, offsets),
             *_read_offsets({name: one for name, one in offsets.items() if name not in settings.known_zeros}, matrix),

@@ -224,6 +224,13 @@ CAUSES: Mapping[str, str] = {
     "cause.searched": "without it {range} is searched",
     "hardly":
         "The model explains almost nothing: the error is {error:error} of the output. Likely causes: {causes:terms}.",
+    "cause.conditions": "the machine, its load or its operating point differs in that run",
+    "cause.held":
+        "a controller holds the {channel} and makes the force (then name the command force, set output: force, and the "
+        "motion drives)",
+    "contradicted":
+        "Validation data contradict the model: of {run:run} it leaves {error:error}, where the mean of the run leaves "
+        "100 %. Likely causes: {causes:terms}.",
     "missing_input.fit":
         "An input is not recorded: {evidence}. Add its channel, or keep only the rows in which it rests.",
     "transducer_offset":
