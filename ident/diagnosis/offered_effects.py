@@ -20,7 +20,8 @@ def offered_effects(
     catalogue: Iterable[Effect], custom: Iterable[Effect], preset: Preset, matrix: Matrix
 ) -> dict[str, Effect]:  # fmt: skip
     """The effects of the catalogue and of the user by their names, each about the middle of the stroke."""
-    listed = (*(effect for effect in catalogue if _is_of(effect, preset, matrix)), *custom)
+    yields = _has_specimen(preset, matrix)
+    listed = (*(effect for effect in catalogue if yields or not effect.of_specimen), *custom)
     return {
         effect.name: about(effect, preset.middle)
         for effect in listed
@@ -33,22 +34,11 @@ def offered_effects(
 
 def place_in_words(effect: Effect, preset: Preset, matrix: Matrix) -> str:
     """Where an effect acts: an electric drive has no valve and no spool."""
-    return "drive" if effect.place in _OF_DRIVE and _is_electric(preset, matrix) else effect.place
-
-
-def _is_of(effect: Effect, preset: Preset, matrix: Matrix) -> bool:
-    """Whether the machine may have the part whose effect it is: a specimen, or a valve."""
-    if effect.of_specimen and not _has_specimen(preset, matrix):
-        return False
-    return not (effect.of_valve and _is_electric(preset, matrix))
+    is_electric = not preset.chain.has_oil and electric(matrix.runs, matrix.actuator.states_oil)
+    return "drive" if is_electric and effect.place in _OF_DRIVE else effect.place
 
 
 def _has_specimen(preset: Preset, matrix: Matrix) -> bool:
     """Whether something may yield: what is moved, a stated or a measured specimen, or a spring of the machine's own."""
     yields = preset.data.driven_by in MOTIONS or any(p.name == "k0" for p in preset.parameters)
     return yields or any(run.specimen or "force" in run.channels for run in matrix.runs)
-
-
-def _is_electric(preset: Preset, matrix: Matrix) -> bool:
-    """Whether the machine is an electric drive: neither the model nor the records show oil."""
-    return not preset.chain.has_oil and electric(matrix.runs, matrix.actuator.states_oil)

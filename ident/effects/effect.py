@@ -53,8 +53,6 @@ class Effect:
     """What it does in a few words, where its name is of a part that a machine need not have."""
     of_specimen: bool = False
     """Whether it is a specimen's: no diagnosis names it where nothing is known of a specimen."""
-    of_valve: bool = False
-    """Whether it is of a valve's parts alone: no diagnosis names it of an electric drive (:func:`~needs.electric`)."""
     needs: Need | None = None
     """What a matrix must have for a diagnosis to look for it (:mod:`ident.effects.needs`); None is nothing."""
     shown: bool = False

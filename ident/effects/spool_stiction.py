@@ -15,5 +15,4 @@ SPOOL_STICTION = Effect(
     source="stiction of the spool; dither is its remedy",
     steps=4,
     stride=1e-2,
-    of_valve=True,
 )

@@ -13,5 +13,4 @@ UNDERLAP = Effect(
     units={"w": "m"},
     looks="more bandwidth at small amplitudes",
     source="Merritt, Hydraulic Control Systems, open-centre valve",
-    of_valve=True,
 )

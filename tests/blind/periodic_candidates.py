@@ -79,7 +79,7 @@ _OF_DRIVE = (
 )  # fmt: skip
 APPLICABLE: dict[str, tuple[str, ...]] = {
     "specimen": (*_OF_LOAD, "specimen_hysteresis", "specimen_free_play"),
-    "motor": (*(name for name in _OF_DRIVE if name != "underlap"), *_OF_LOAD),  # it has no valve lands
+    "motor": (*_OF_DRIVE, *_OF_LOAD),
     "drive": (*_OF_LOAD, "sensor_lag", "acquisition_lag", "sensor_nonlinearity"),
     "loop": (
         *_OF_DRIVE, *_OF_LOAD, "integral_action", "lead", "loop_delay", "sensor_lag", "acquisition_lag", "sensor_gain",

@@ -22,7 +22,6 @@ from tests.conftest import of_few_effects
 RATE, COUNT = 50.0, 500
 STIFF, DAMPED = 220.0, 21.0  # 1/s², 1/s
 LIMIT = 0.2  # rad of error above which the bridge gives all its voltage
-OF_VALVE = {"underlap", "spool_stiction"}
 OF_OIL = {known.name for known in CATALOGUE if {"Q", "P"} & {e.target for e in known.equations} or known.units.get("Q")}
 TURNING = {"command": "rad", "displacement": "rad"}
 
@@ -81,17 +80,13 @@ def test_no_cylinder_is_in_question_where_a_motor_turns(volts):
     assert [known.name for known in suited([run], oil=True) if known.chain.has_oil]
 
 
-def test_an_electric_drive_has_no_effect_of_oil_or_of_a_valve():
-    """What it has of a servo's own: a limit, a dead zone, a delay, friction. A machine of unknown units has all."""
-    matrix = servo(1)
+def test_an_electric_drive_has_no_effect_of_oil():
+    """What it has of a servo's own: a limit, a dead zone, a delay, friction."""
     assert {"pressure_flow", "pressure_dependent_gain", "supply_droop"} <= OF_OIL
-    found = set(CandidateModels.of(matrix, Settings(model="position_servo")).effects)
-    assert not found & (OF_OIL | OF_VALVE)
+    found = set(CandidateModels.of(servo(1), Settings(model="position_servo")).effects)
+    assert not found & OF_OIL
+    assert not found & {"spool_stiction", "valve_rate_limit"}
     assert {"command_limit", "flow_saturation", "dead_zone", "command_delay", "coulomb_friction", "backlash"} <= found
-    unknown = servo(1, units={"command": "1", "displacement": "1"})
-    assert set(CandidateModels.of(unknown, Settings(model="position_servo")).effects) & OF_VALVE == {"underlap"}
-    stated = replace(matrix, actuator=Actuator("A", supply_pressure=2e7))
-    assert set(CandidateModels.of(stated, Settings(model="qian2014")).effects) >= OF_VALVE
 
 
 def test_a_part_of_an_electric_drive_has_no_name_of_a_hydraulic_one():
