@@ -15,11 +15,11 @@ from ident.words.nearest import did_you_mean
 _FILES = (
     "qian2014",
     "first_order",
-    "two_tanks",
     "drive",
     "open_valve",
     "motor",
     "position_servo",
+    "two_tanks",
     "specimen",
     "force_loop",
     "kononykhin",

@@ -130,8 +130,8 @@ def check(equations: Iterable[Equation], known: Mapping[str, Dimension]) -> None
             try:
                 made = eval(compile(tree, "<dimension>", "eval"), {"__builtins__": {}, **FUNCTIONS}, names)
                 left = (made if isinstance(made, Dimension) else PLAIN) * (of("s") if equation.is_rate else 1.0)
-                zero = isinstance(made, float | int) and not made
+                number = isinstance(made, float | int)  # alone: a constant of the unit that its quantity has
                 target = found.get(equation.target, UNKNOWN)
-                found[equation.target] = target if zero else same(target, left)
+                found[equation.target] = target if number else same(target, left)
             except Mixed as error:
                 raise Mixed(f"{equation.text}: {error}") from None

@@ -72,7 +72,7 @@ def tanks(edge: float) -> np.ndarray:
     """The lower of two tanks that run out by Torricelli's law; the upper runs over an edge, or with 0 over none."""
 
     def out(level: float) -> float:
-        return float(level / np.sqrt(np.hypot(level, LAMINAR)))
+        return float(level / np.sqrt(max(abs(level), LAMINAR)))
 
     def rates(t: float, s: np.ndarray) -> list[float]:
         over = 30.0 * out(s[0]) * max(s[0] / edge - 1.0, 0.0) if edge else 0.0
