@@ -70,6 +70,7 @@ OF_RECORDS = _of_files(
     "overflow",
     "normal_force_friction",
     "pressure_friction",
+    "current_friction",
     "pressure_force",
     "arm_gravity",
     "damping_asymmetry",

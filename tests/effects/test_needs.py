@@ -81,6 +81,11 @@ def tanks(edge: float) -> np.ndarray:
     return solved(rates, 2)[1]
 
 
+def behind(samples: np.ndarray, lag: float) -> np.ndarray:
+    """What follows the samples by a lag, from its first value on."""
+    return solved(lambda t, s: [(at(samples, t) - samples[0] - s[0]) / lag], 1)[0] + samples[0]
+
+
 def counted(share: float) -> np.ndarray:
     """The speed of a motor that a command drives, some of it without its sign."""
     speed = solved(lambda t, s: [(at(FORCE, t) - DAMPING * s[0]) / MASS], 1)[0]
@@ -182,6 +187,10 @@ CASES = {
         {"friction_behind_play.force": 25.0, "friction_behind_play.half_width": 0.2,
          "friction_behind_play.contact": 0.1},
         lambda k: played(25.0 * k), {"velocity": SPEED}, output="force"),
+    "current_friction": Case(
+        "specimen", {"current_friction.force": 5.0, "current_friction.lag": 0.1},
+        lambda k: moved() + 5.0 * k * behind(SQUEEZE, 0.1) * np.sign(SPEED),
+        {"velocity": SPEED, "current": SQUEEZE}, 2e-2, output="force"),
     "pressure_force": Case(
         "specimen", {"pressure_force.area": 5e-3},
         lambda k: moved() - 5.0 * k * SQUEEZE, {"velocity": SPEED, "load_pressure": 1e3 * SQUEEZE}, output="force"),

@@ -129,6 +129,24 @@ def motor(seed: int, half_width: float = 0.0) -> Matrix:
     return Matrix(Actuator("MOTOR"), tuple(runs))
 
 
+@pytest.mark.parametrize("of_current", [True, False])
+def test_friction_that_a_current_commands_is_named_where_it_follows_the_current(full, of_current):
+    """Of 20 N while the current is on, 20 ms behind it; or of 10 N whatever the current is."""
+    runs = []
+    for number, run in enumerate(specimen(5).runs):
+        current = np.repeat(np.random.default_rng([7, number]).integers(0, 2, len(run.measured) // 40 + 1), 40) * 2.0
+        current, held = current[: len(run.measured)], np.exp(-1 / (RATE * 0.02))
+        field = scipy.signal.lfilter([1 - held], [1, -held], current)
+        largest = 10.0 * field if of_current else 10.0
+        force = run.measured + largest * np.tanh(run.channels["velocity"] / 1e-3)
+        runs.append(replace(run, channels={**run.channels, "current": current, "force": force}))
+    with of_few_effects(full, "current_friction", "coulomb_friction"):
+        found = diagnose(
+            replace(specimen(5), runs=tuple(runs)), settings=Settings(model="specimen"), most=1, propose=False
+        )
+    assert ("current_friction" in found.verdict.effects) is of_current
+
+
 @pytest.mark.parametrize("seed", [1, 2, 3])
 def test_a_moved_specimen_is_found(seed):
     """Stiffness and damping within 1 % and four standard errors; the error is the noise."""

@@ -12,17 +12,17 @@ from ident.fit.settings import Settings
 from ident.presets import PRESETS, preset
 
 TAKEN = {
-    "qian2014": 53,
+    "qian2014": 54,
     "first_order": 19,
     "two_tanks": 20,
-    "drive": 28,
-    "open_valve": 50,
-    "motor": 37,
-    "position_servo": 39,
-    "specimen": 17,
-    "force_loop": 53,
+    "drive": 29,
+    "open_valve": 51,
+    "motor": 38,
+    "position_servo": 40,
+    "specimen": 18,
+    "force_loop": 54,
     "kononykhin": 8,
-    "strano": 48,
+    "strano": 49,
 }
 LOOPS = {
     "qian2014": {"v", "y"}, "first_order": set(), "drive": set(), "open_valve": {"v"}, "motor": set(),
