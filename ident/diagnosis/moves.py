@@ -163,10 +163,12 @@ class Moves:
         return next((candidate for candidate in improving if self.models.is_shown(candidate.effect)), None)
 
     def _from_start(self, selection: Selection, best: Candidate | None) -> Selection | None:
-        """Begin with the model that was fitted before, where it is better than the best of the first ranking."""
-        if self.start is None or not self.start.finite or not worth_adding(self.models, selection.fitted, self.start):
-            return None
-        if best is not None and best.refit is not None and worth_adding(self.models, self.start, best.refit):
+        """Begin with the model that was fitted before, where it improves on the best of the first ranking.
+
+        Of two that are as good the ranking has the simpler one first.
+        """
+        best_so_far = selection.fitted if best is None or best.refit is None else best.refit
+        if self.start is None or not self.start.finite or not worth_adding(self.models, best_so_far, self.start):
             return None
         return self.step(selection, self.start)
 

@@ -369,3 +369,19 @@ def test_the_loop_is_read_at_a_glance_and_a_selection_is_never_changed():
     judged = Judged({"": 1.0}, needed=set(), far="", late="", off="")
     with pytest.raises(FrozenInstanceError):
         Moves(judged, judged.refit((), {}), 2, lambda *_: None).latest.path = ()  # type: ignore[arg-type, misc]
+
+
+@pytest.mark.parametrize(
+    ("of_start", "of_best", "is_taken"), [(1.0, 2.0, True), (1.0, 1.0, False), (1.0, None, True), (5.0, None, False)]
+)
+def test_a_model_that_was_fitted_before_is_taken_where_it_improves_on_the_best_of_the_ranking(
+    monkeypatch, of_start, of_best, is_taken
+):
+    """Of two that are as good the ranking has the simpler one first; errors, that of the base is 5."""
+    monkeypatch.setattr(moves, "worth_adding", lambda _models, before, after: after.error < 0.9 * before.error)
+    start, best = SimpleNamespace(error=of_start, finite=True), None
+    if of_best is not None:
+        best = SimpleNamespace(refit=SimpleNamespace(error=of_best))
+    search: Any = SimpleNamespace(models=None, start=start, step=lambda _selection, fitted: fitted)
+    selection: Any = SimpleNamespace(fitted=SimpleNamespace(error=5.0))
+    assert Moves._from_start(search, selection, best) is (start if is_taken else None)
