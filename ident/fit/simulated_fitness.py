@@ -15,6 +15,7 @@ from ident.fit.fitness import STEP, Local, Steps, Worth, local
 from ident.fit.levenberg_marquardt import Way, levenberg_marquardt
 from ident.fit.normal_matrices import NormalMatrices
 from ident.fit.recent_moments import RecentMoments
+from ident.fit.side_by_side import outputs_at_each
 from ident.fit.simulated_runs import SimulatedRuns
 from ident.fit.space import Space
 from ident.parallel import each
@@ -174,7 +175,7 @@ class SimulatedFitness(SimulatedRuns):
     def outputs_of_points(self, points: Sequence[Array]) -> Iterator[dict[str, Array]]:
         """The same at several points, each from the first states that are known here."""
         values = (self.space.values(point[None]) for point in points)
-        return self.outputs_at_each([{name: float(value[0]) for name, value in one.items()} for one in values])
+        return outputs_at_each(self, [{name: float(value[0]) for name, value in one.items()} for one in values])
 
     @cached_property
     def _strides(self) -> Array:

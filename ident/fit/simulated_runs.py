@@ -7,7 +7,7 @@ moved begins where it was measured. Were it free, what hangs on the position cou
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from itertools import zip_longest
 from typing import Self
@@ -32,7 +32,6 @@ from ident.parameter import AtReversals
 from ident.presets import Preset
 from ident.run import MOTIONS, Run
 from ident.simulation.equilibrium import equilibrium
-from ident.simulation.kernel import WIDE
 from ident.simulation.simulate import Simulation, side_by_side
 from ident.simulation.steps import Modes, steps_at_jumps, steps_at_passages, steps_at_reversals, steps_needed
 
@@ -91,40 +90,6 @@ class SimulatedRuns:
         found = zip(todo, each(of_runs, todo), strict=True)
         return {run.id: y for runs, outputs in found for run, y in zip(runs, outputs, strict=True)}
 
-    def outputs_at_each(self, points: Sequence[Mapping[str, float]]) -> Iterator[dict[str, Array]]:
-        """The same at several values, each from the first states that are known here.
-
-        A simulation takes as long for one vector as for a few: as many are simulated at once as fill its lanes.
-        """
-        at_once = max(1, WIDE // len(self.runs))
-        for begin in range(0, len(points), at_once):
-            few = points[begin : begin + at_once]
-            alone = [replace(self, starts=dict(self.starts)) for _ in few]
-            settled = each(lambda one: (one[0], *one[0].settle(one[1])), zip(alone, few, strict=True))
-            found: list[dict[str, Array]] = [{} for _ in few]
-            for numbers in self._alike([(vector, steps) for _, vector, steps in settled]):
-                for run, outputs in self._simulated_together([settled[i] for i in numbers]):
-                    for i, output in zip(numbers, outputs, strict=True):
-                        found[i][run.id] = output
-            yield from found
-
-    def _alike(self, settled: Sequence[tuple[Mapping[str, Array], int]]) -> Iterable[list[int]]:
-        """The numbers of those that one simulation may hold: with as many steps and, in its code, the same powers."""
-        kinds: dict[tuple[float, ...], list[int]] = {}
-        for number, (vector, steps) in enumerate(settled):
-            powers = (vector[name].item() for name in self.chain.exponents if name in vector)
-            kinds.setdefault((steps, *powers), []).append(number)
-        return kinds.values()
-
-    def _simulated_together(
-        self, settled: Sequence[tuple[SimulatedRuns, Mapping[str, Array], int]]
-    ) -> Iterator[tuple[Run, Array]]:  # fmt: skip
-        """Each run with the outputs (v, n) of what was settled, side by side."""
-        for runs in self.together(len(settled)):
-            joint = side_by_side([of.simulation(runs, vector, steps) for of, vector, steps in settled])
-            outputs = np.concatenate([rows for rows, _, _ in joint.outputs()])
-            yield from ((run, outputs[:, number].T) for number, run in enumerate(runs))
-
     def settle(self, values: Mapping[str, float]) -> tuple[dict[str, Array], int]:
         """Find the first states of runs that start moving; the values as a vector of one, and the steps a sample.
 
@@ -161,7 +126,7 @@ class SimulatedRuns:
                 found.update((run.id, moments) for run, moments in zip(some, part, strict=True))
             if len(strides):
                 return found
-            pending = tuple(run for run in pending if self._goes_on(run, settling, found[run.id]))
+            pending = tuple(run for run in pending if self.goes_on(run, settling, found[run.id]))
             if not pending:
                 break
         for run, least in settling.least.items():
@@ -172,36 +137,48 @@ class SimulatedRuns:
         self, runs: tuple[Run, ...], values: Mapping[str, Array], strides: Array, steps: int
     ) -> list[NormalMatrices]:
         """The moments of runs of one length, from one simulation of all of them."""
-        found = normal_matrices_of(runs, self._products(runs, values, strides, steps), len(strides))
-        if runs[0].output in self.absolute:
-            found = [replace(run, transducer="", counted=False) for run in found]
-        if self.horizon is None:
-            return found
-        # Where each window begins anew no mean is left that would tell an offset.
-        return [replace(run, offset=0.0, means=run.means[:0], transducer="", counted=False) for run in found]
+        return self.normal_matrices_of_each(runs, [self.released(runs, values, steps)], strides)[0]
 
-    def _products(self, runs: tuple[Run, ...], values: Mapping[str, Array], strides: Array, steps: int) -> Array:
-        """Σ of products of [J, N, 1, r] of runs of one length and of each block of them, (runs, blocks, q, q).
+    def normal_matrices_of_each(
+        self, runs: tuple[Run, ...], simulations: Sequence[Simulation], strides: Array
+    ) -> list[list[NormalMatrices]]:
+        """The moments of runs of one length in each of several simulations of them, which are carried out as one.
+
+        `strides` (p,) are those of the vectors behind the first of each.
+        """
+        return [self._as_seen(runs, normal_matrices_of(runs, products, len(strides)))
+                for products in self._products(runs, simulations, strides)]  # fmt: skip
+
+    def _as_seen(self, runs: tuple[Run, ...], found: list[NormalMatrices]) -> list[NormalMatrices]:
+        """The moments of runs as the objective counts their means."""
+        if self.horizon is not None:
+            # Where each window begins anew no mean is left that would tell an offset.
+            return [replace(run, offset=0.0, means=run.means[:0], transducer="", counted=False) for run in found]
+        absolute = runs[0].output in self.absolute
+        return [replace(run, transducer="", counted=False) for run in found] if absolute else found
+
+    def _products(self, runs: tuple[Run, ...], simulations: Sequence[Simulation], strides: Array) -> list[Array]:
+        """Σ of products of [J, N, 1, r] of runs of one length and of each block of them, (runs, blocks, q, q) each.
 
         J are the differences of the vectors behind the first to it, over `strides`.
         """
-        released = self.released(runs, values, steps)
         length, anchoring = max(16, -(-runs[0].length // _BLOCKS)), self.anchoring(runs[0])
         free = runs[0].output not in self.absolute
         records = np.column_stack([run.centred if free else run.measured for run in runs])
         if window := anchoring.window:
             length, records = -(-length // window) * window, anchoring(records)
-        q = released.shape[1] + 1
-        sums = np.zeros((-(-runs[0].length // length), len(runs), q, q))
-        anchored = anchoring.from_start()
+        q = simulations[0].shape[1] + 1
+        sums = np.zeros((len(simulations), -(-runs[0].length // length), len(runs), q, q))
+        anchored, joint = anchoring.from_start(), side_by_side(simulations)
         together = max(1, _BLOCK // length) * length
-        for rows, begin, end in released.outputs(together):
-            add_block_products(anchored(rows), records[begin:end], q - 2, length, sums[begin // length :])
-            if begin == 0 and window and len(self._free(runs[0])):
-                sums[0] += self._beginning(runs, rows, sums[0])
+        for rows, begin, end in joint.outputs(together):
+            for own, raw, shown in zip(sums, *(_parts(of, len(sums)) for of in (rows, anchored(rows))), strict=True):
+                add_block_products(shown, records[begin:end], q - 2, length, own[begin // length :])
+                if begin == 0 and window and len(self._free(runs[0])):
+                    own[0] += self._beginning(runs, raw, own[0])
         if window or not free:
             sums[..., -2, :] = sums[..., :, -2] = 0.0  # no mean is free: each window begins where it was measured
-        return completed(sums, strides).transpose(1, 0, 2, 3)
+        return [completed(own, strides).transpose(1, 0, 2, 3) for own in sums]
 
     def _beginning(self, runs: tuple[Run, ...], rows: Array, like: Array) -> Array:
         """Products of [J, N, 0, r] of where the runs begin, (runs, q, q): the mean of the first samples, not anchored.
@@ -385,7 +362,7 @@ class SimulatedRuns:
                 found[i] = max(float(np.abs(rows).max()) for rows, _, _ in simulation.outputs())
         return np.where(np.isfinite(found), found, 0.0)
 
-    def _goes_on(self, run: Run, settling: Settling, found: NormalMatrices) -> bool:
+    def goes_on(self, run: Run, settling: Settling, found: NormalMatrices) -> bool:
         """Whether a run goes on to better first states, which it then begins in."""
         if not len(self._free(run)):
             return False
@@ -493,3 +470,9 @@ def is_simulated(preset: Preset, matrix: Matrix) -> bool:
 def every_run(preset: Preset, matrix: Matrix) -> SimulatedRuns:
     """All runs of a matrix; those that fit it, where there are some, say what its commands excite."""
     return SimulatedRuns(preset, matrix, matrix.runs, excited_band(matrix.of_use("fit") or matrix.runs))
+
+
+def _parts(rows: Array, count: int) -> list[Array]:
+    """Of rows (samples, runs, vectors) of so many simulations that were carried out as one, those of each."""
+    own = rows.shape[2] // count
+    return [rows[:, :, first : first + own] for first in range(0, rows.shape[2], own)]

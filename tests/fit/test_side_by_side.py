@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from ident.effects import CATALOGUE
+from ident.fit.side_by_side import outputs_at_each
 from ident.fit.simulated_runs import every_run
 from ident.matrix import Actuator, Matrix
 from ident.presets import preset
@@ -46,11 +49,28 @@ def test_side_by_side_each_answers_to_the_bit_as_it_does_alone(begins, count):
     """Whatever it begins with, however many steps it asks for, and whatever power stands in its code."""
     of, asked = matrix(begins, count), points(11)
     alone = [every_run(MODEL, of).outputs_at(values) for values in asked]
-    together = list(every_run(MODEL, of).outputs_at_each(asked))
+    together = list(outputs_at_each(every_run(MODEL, of), asked))
     assert len({run for found in together for run in found}) == count
     for one, other in zip(alone, together, strict=True):
         assert all(np.array_equal(one[run], other[run]) for run in one)
     assert not np.array_equal(together[0]["r0"], together[1]["r0"])
+
+
+@pytest.mark.parametrize("count", [1, 3])
+def test_first_states_settle_side_by_side_to_the_bit_as_they_do_alone(count):
+    """From those that are known of another model, in as many rounds as each takes, with a model that is unstable."""
+    noise, asked = matrix("moving", count), points(11)
+    made = every_run(MODEL, noise).outputs_at(asked[0])
+    measured = [replace(run, channels={**run.channels, "displacement": made[run.id]}) for run in noise.runs]
+    of = every_run(MODEL, replace(noise, runs=tuple(measured)))
+    of.settle(asked[8])
+    known = {run: start.copy() for run, start in of.starts.items()}
+    models = [replace(of, starts=dict(of.starts)) for _ in asked]
+    alone = [model.outputs_at(values) for model, values in zip(models, asked, strict=True)]
+    assert any(not np.array_equal(model.starts["r0"], known["r0"]) for model in models)
+    for one, other in zip(alone, outputs_at_each(of, asked), strict=True):
+        assert all(np.array_equal(one[run], other[run], equal_nan=True) for run in one)
+    assert all(np.array_equal(of.starts[run], known[run]) for run in known)
 
 
 def test_models_that_are_alike_are_simulated_at_once(monkeypatch):
@@ -64,5 +84,25 @@ def test_models_that_are_alike_are_simulated_at_once(monkeypatch):
     asked = [{**points(1)[0], "c0": 6.0 + 0.1 * number} for number in range(8)]
     runs = every_run(MODEL, matrix("at rest", 1))
     monkeypatch.setattr(Simulation, "outputs", counting)
-    assert len(list(runs.outputs_at_each(asked))) == 8
+    assert len(list(outputs_at_each(runs, asked))) == 8
     assert simulated == [8]
+
+
+def test_first_states_of_models_that_are_alike_settle_at_once(monkeypatch):
+    """Each round is one simulation of all of them, with each first state moved; and then one of their outputs."""
+    simulated, outputs = [], Simulation.outputs
+
+    def counting(simulation, *asked):
+        simulated.append(simulation.shape[1])
+        return outputs(simulation, *asked)
+
+    asked = [{**points(1)[0], "c0": 6.0 + 0.01 * number} for number in range(4)]
+    runs = every_run(MODEL, matrix("moving", 1))
+    runs.settle(asked[0])
+    monkeypatch.setattr(Simulation, "outputs", counting)
+    assert len(list(outputs_at_each(runs, asked))) == 4
+    *rounds, last = simulated
+    lanes = 1 + len(runs.chain.begun)
+    assert last == 4
+    assert rounds[0] == 4 * lanes
+    assert all(of % lanes == 0 for of in rounds)
