@@ -13,6 +13,7 @@ the solution by least squares on.
 from __future__ import annotations
 
 from collections.abc import Iterable
+from weakref import WeakKeyDictionary
 
 import numpy as np
 import scipy  # signal, which takes half a second to load, is loaded where it is first used
@@ -28,19 +29,22 @@ FASTEST, SLOWEST = 1.2, 0.05
 """Radians in q samples between which a pair of poles is one of the machine. Test: tests/effects/test_ringing.py"""
 DAMPING = 0.5
 """Damping ratio below which a step is overshot by a sixth, and one resonance is seen. Test: as above"""
-
-
 REFINED = 3
 """Times that the instruments are made anew. Test: tests/effects/test_ringing.py"""
+_known: WeakKeyDictionary[Run, float | None] = WeakKeyDictionary()
 
 
 def resonances(runs: Iterable[Run]) -> list[float]:
     """The frequencies, rad/s, at which the runs that have a command answer it with a damped oscillation."""
-    found = (
-        (run.sample_rate, ringing(run.command, run.measured, run.output == "displacement"))
-        for run in runs if "command" in run.channels
-    )  # fmt: skip
+    found = ((run.sample_rate, _of_run(run)) for run in runs if "command" in run.channels)
     return [rate * frequency for rate, frequency in found if frequency is not None]
+
+
+def _of_run(run: Run) -> float | None:
+    """The frequency, rad a sample, at which a run rings: worked out once, though several effects ask for it."""
+    if run not in _known:
+        _known[run] = ringing(run.command, run.measured, run.output == "displacement")
+    return _known[run]
 
 
 def ringing(command: Array, output: Array, integrates: bool = False) -> float | None:

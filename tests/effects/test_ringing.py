@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from itertools import product
 
 import numpy as np
@@ -9,6 +10,8 @@ import pytest
 import scipy
 
 from ident.diagnosis.candidate_models import CandidateModels
+from ident.effects import CATALOGUE, needs
+from ident.effects import ringing as of_records
 from ident.effects.ringing import ringing
 from ident.fit.settings import Settings
 from ident.matrix import Actuator, Matrix
@@ -73,3 +76,21 @@ def test_a_spring_is_looked_for_where_a_record_rings_and_no_oil_is_one():
     assert springs("motor", run) == set(SEEN)
     assert not springs("motor", still)
     assert not springs("open_valve", run)
+
+
+def test_a_record_is_looked_at_once_by_the_effects_of_two_masses(monkeypatch):
+    """Two effects need a resonance, and so does each machine that is compared; another record is looked at anew."""
+    looked_at = []
+
+    def counting(command, output, integrates):
+        looked_at.append(len(output))
+        return ringing(command, output, integrates)
+
+    monkeypatch.setattr(of_records, "ringing", counting)
+    asked = [effect.needs for effect in CATALOGUE if effect.needs is needs.resonant]
+    assert len(asked) == 2
+    of, other = (replace(one, runs=tuple(map(replace, one.runs))) for one in (matrix(0, 0), matrix(1, 0)))
+    assert all(need(of) for need in asked)
+    assert len(looked_at) == len(of.of_use("fit"))
+    assert needs.resonant(other)
+    assert len(looked_at) == 2 * len(of.of_use("fit"))
