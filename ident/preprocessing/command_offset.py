@@ -35,8 +35,6 @@ def _act(prepared: Prepared) -> tuple[Prepared, tuple[str, ...]]:
         return prepared, ()
     if any(level * neutral <= 0 for run in matrix.of_use("fit") for level in run.held_still(neutral)):
         return prepared, ()
-    if any(level * neutral <= 0 for run in matrix.of_use("fit") for level in run.held_still(neutral)):
-        return prepared, ()
     text = with_unit(f"{neutral:.4g}", matrix.runs[0].units.get("command", "1"))
     said = (
         f"The command is counted from {text}, at which it is held first while the output stands: that is the neutral "
