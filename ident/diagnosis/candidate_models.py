@@ -174,6 +174,14 @@ class CandidateModels:
         """Whether the records show an effect by themselves: they have a mark that only such a machine makes."""
         return self.effects[effect].shown
 
+    def is_called_for(self, effect: str) -> bool:
+        """Whether the records have the mark that an effect needs, and its shapes are searched.
+
+        A fit without a spring may lie so far off that none of its shapes promises anything there.
+        """
+        of = self.effects[effect]
+        return of.needs is not None and of.has_searched_shapes
+
     def strength(self, effect: str) -> str:
         """The name of an effect's strength in the equations."""
         return self.effects[effect].added[0].in_equations

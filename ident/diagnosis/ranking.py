@@ -60,7 +60,7 @@ def rank_each(
     listener(_so_far(predicted[0]))
     models_of = [base for base, _ in bases]
     near = (_near(models, *of) for of in zip(models_of, predicted, strict=True))
-    on_trial = [of[: CRITERIA.ranking.contenders] for of in predicted] if thorough else list(near)
+    on_trial = [_contenders(models, of) for of in predicted] if thorough else list(near)
     finalists_at_least = CRITERIA.ranking.finalists if thorough else 2
     targets = {base.effects: _target(models, base, incumbent) for base in models_of}
     below_incumbent = CRITERIA.ranking.found_again * models.trial_error(incumbent) if incumbent is not None else np.inf
@@ -263,6 +263,12 @@ def _target(models: CandidateModels, base: FittedModel, incumbent: FittedModel |
         if incumbent is None
         else CRITERIA.ranking.close_trial * models.trial_error(incumbent)
     )
+
+
+def _contenders(models: CandidateModels, predictions: Sequence[Prediction]) -> list[Prediction]:
+    """Those that promise most, and those that the records call for, whatever is predicted of them."""
+    most = CRITERIA.ranking.contenders
+    return [p for rank, p in enumerate(predictions) if rank < most or models.is_called_for(p.effect)]
 
 
 def _near(models: CandidateModels, base: FittedModel, predictions: Sequence[Prediction]) -> list[Prediction]:

@@ -14,7 +14,7 @@ from ident.diagnosis.criteria import CRITERIA
 from ident.diagnosis.evidence.chance import bar
 from ident.diagnosis.evidence.comparison import Residuals, common_disturbance
 from ident.diagnosis.evidence.energy_bands import EnergyBands, Record
-from ident.diagnosis.ranking import _confirmed, _finalists, rank_each
+from ident.diagnosis.ranking import _confirmed, _contenders, _finalists, rank_each
 from ident.diagnosis.screening import _without_first_state
 
 MODELS: Any = SimpleNamespace(simplicity=lambda name: (1, name))
@@ -49,6 +49,14 @@ def candidate(effect: str, found: Any) -> Candidate:
 def group(first: Candidate, *others: Candidate) -> list[str]:
     """The names of what cannot be told from the first."""
     return [one.effect for one in indistinguishable_group(first.effect, first.refit, [first, *others])]  # type: ignore[arg-type]
+
+
+def test_what_the_records_call_for_is_tried_whatever_is_predicted():
+    """A record that rings has a spring tried, though a fit without it lies where no spring promises anything."""
+    names = [f"effect_{number}" for number in range(20)] + ["spring"]
+    models: Any = SimpleNamespace(is_called_for=lambda name: name == "spring")
+    found = _contenders(models, [SimpleNamespace(effect=name) for name in names])  # type: ignore[arg-type,misc]
+    assert [one.effect for one in found] == [*names[: CRITERIA.ranking.contenders], "spring"]
 
 
 def test_what_nothing_replaced_is_in_its_group():

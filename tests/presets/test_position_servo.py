@@ -105,3 +105,32 @@ def test_a_servo_whose_speed_is_limited_has_a_limit_of_its_drive(full):
     assert 1 / found.ladder[-1].parameters["command_limit.inverse_limit"].value == pytest.approx(LIMIT, rel=0.03)
     assert found.ladder[-1].error["verify"] < 0.01
     assert preset("position_servo").data.turns
+
+
+def beam(seed: int, use: str) -> Run:
+    """The same servo, behind whose motor 65 % of the inertia swings on a spring at 15 rad/s; the motor is recorded."""
+    rng, t = np.random.default_rng([68, seed]), np.arange(4 * COUNT) / RATE / 2
+    r, rigid, mu, omega = np.repeat(rng.uniform(-1.0, 1.0, 4 * COUNT // 100), 100), 60.0, 0.65, 15.0
+
+    def rates(now: float, at: np.ndarray) -> list[float]:
+        swing = omega**2 * (at[0] - at[2]) + 0.1 * omega * (at[1] - at[3])
+        drive = rigid * (r[min(int(now * 2 * RATE + 1e-9), len(r) - 1)] - at[0]) - 14.0 * at[1]
+        return [at[1], (drive - mu * swing) / (1.0 - mu), at[3], swing]
+
+    found = scipy.integrate.solve_ivp(rates, (0.0, t[-1]), np.zeros(4), t_eval=t, rtol=1e-7, max_step=0.01)
+    y = found.y[0] + 0.005 * found.y[0].std() * rng.standard_normal(len(t))
+    return Run(use, "", 2 * RATE, {"command": r, "displacement": y}, TURNING, hold="zoh", use=use)
+
+
+def test_a_servo_that_swings_a_beam_has_it_tried_and_named(full):
+    """In the long form with the whole catalogue, of which others promise more: its share and frequency are found."""
+    matrix = Matrix(Actuator("BEAM"), (beam(1, "fit"), beam(2, "verify")))
+    models = CandidateModels.of(matrix, Settings(model="position_servo"))
+    assert models.is_called_for("elastic_load")
+    assert not models.is_called_for("command_limit")
+    with of_few_effects(full, "elastic_load", "elastic_coupling"):
+        found = diagnose(matrix, settings=Settings(model="position_servo"), most=1, propose=False)
+    assert found.verdict.effects == ("elastic_load",)
+    values = {name: one.value for name, one in found.ladder[-1].parameters.items()}
+    assert values["elastic_load.share"] == pytest.approx(0.65, abs=0.05)
+    assert values["elastic_load.frequency"] == pytest.approx(15.0, rel=0.05)
