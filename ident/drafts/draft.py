@@ -103,7 +103,7 @@ class Draft:
             raise Unusable("column-twice", f"{', '.join(sorted(twice))} is asked to be two channels", file.name,
                            "give each channel its own column")  # fmt: skip
         hold = str(self.answers.common.get("hold", "")) or self._hold(file, found)
-        return Known(found, time, rate, hold, (*doubts, *assumed))
+        return Known(found, time, rate, hold, (*doubts, *assumed, *_unused(file, used)))
 
     def _columns(self, file: RawFile, channel: str, answer: Answer) -> list[Column]:
         """The columns of an answer. Raises Unusable; where another file has it, with what to type of this one."""
@@ -333,6 +333,14 @@ def _columns(file: RawFile, column: str | int, where: str) -> list[Column]:
         what = f"column {shown(column)!r} does not hold numbers throughout"
         raise Unusable("not-numeric", f"{what}: {why}" if why else what, file.name, "name another column")
     return found
+
+
+def _unused(file: RawFile, used: Sequence[str | int]) -> Iterator[str]:
+    """The columns of numbers that no answer names: one may be a channel that nobody thought of."""
+    numbers = {number for column in used for number in file.table.numbers(column, file.name)}
+    unused = [repr(shown(column.name)) for column in file.columns if column.number not in numbers]
+    if unused:
+        yield str(message("draft.unused", columns=first_of(unused)))
 
 
 def _unit(columns: Sequence[Column]) -> str:

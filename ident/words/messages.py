@@ -13,6 +13,7 @@ DRAFTS: Mapping[str, str] = {
     "draft.command_whole": "type: {command}",
     "draft.say": "say it, as {options:listed}",
     "draft.named": "'{column}' is used as {use}, because of its name",
+    "draft.unused": "no channel is taken from {columns}",
     "draft.first_is_time": "column {number} has no name and increases in equal steps, so it is used as time",
     "draft.rate": "the sample rate {rate:g} Hz is from the lines above the table",
     "draft.rate_without_unit":

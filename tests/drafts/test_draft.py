@@ -322,6 +322,17 @@ def test_a_unit_said_of_all_files_against_what_one_of_them_states_is_doubted_wit
         assert not any("the file states ms" in doubt for doubt in doubts)
 
 
+def test_a_column_that_is_no_channel_is_said():
+    """It may be one that nobody thought of, such as the voltage of a damper's coil."""
+    text = "time_s,displacement_mm,force_N,voltage_V,stage\n" + "".join(
+        f"{k / 100},{np.sin(k)},{np.cos(k)},{k % 2},{k // 3}\n" for k in range(100)
+    )
+    said = Answers(serial="S", output="force")
+    assert "no channel is taken from 'voltage_V', 'stage'" in Draft([raw(text, "a.csv")], said).doubts
+    with_coil = replace(said, channels={"current": Answer("voltage_V", "V")})
+    assert "no channel is taken from 'stage'" in Draft([raw(text, "a.csv")], with_coil).doubts
+
+
 def test_files_with_other_names_have_columns_units_and_clocks_of_their_own():
     """What is said of a file outweighs what is said of all; each is asked for what it lacks, by its name."""
     files = [raw(IN_MS, "a.csv"), raw(OTHER_NAMES, "b.csv"), raw(OTHER_NAMES, "c.csv")]
