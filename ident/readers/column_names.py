@@ -38,6 +38,7 @@ WORDS = {
         "istwert weg", "hub", "kolbenweg", "kolbenposition", "kolbenhub", "zylinderweg", "auslenkung",
         "verschiebung", "deplacement", "position mesuree", "deplacement mesure", "course", "position reelle",
         "posizione", "spostamento", "corsa", "posizione misurata", "posizione reale", "posicion", "desplazamiento",
+        "damper displacement", "lateral displacement",
     ),
     "velocity": (
         "velocity", "vel", "speed", "rpm", "actual velocity", "actual speed", "measured velocity", "measured speed",
@@ -47,7 +48,8 @@ WORDS = {
     "force": (
         "force", "load", "load cell", "measured force", "actual force", "force feedback", "torque", "axial force",
         "kraft", "istkraft", "zylinderkraft", "kolbenkraft", "kraftmessdose", "drehmoment", "effort", "couple",
-        "force mesuree", "forza", "cella di carico", "coppia", "fuerza",
+        "force mesuree", "forza", "cella di carico", "coppia", "fuerza", "actuator force", "actuator load",
+        "damper force", "lateral force", "lateral load", "base shear",
     ),
     "load_pressure": (
         "load pressure", "differential pressure", "delta p", "dp", "pl", "lastdruck", "differenzdruck",
