@@ -70,14 +70,15 @@ LONGEST = (
     "presets/test_machines", "checks/test_check", "test_alone", "acceptance/test_one_error", "fit/test_beginnings",
     "diagnosis/test_measured", "fit/test_custom_fit", "cli/test_effects", "acceptance/test_measured",
     "diagnosis/discovery/test_any_machine", "stability/test_hybrid_judgement", "figures/test_figures",
-    "readers/test_lab_formats", "app/test_hybrid", "app/test_bench", "app/access/test_roles", "app/test_adding",
-    "app/test_diagnoses", "app/test_older_database", "app/webhooks/test_webhooks", "app/access/test_audit",
-    "app/test_contract", "app/test_own_effects", "app/test_size", "app/test_service", "app/test_bad_inputs",
-    "app/test_side_by_side",
+    "readers/test_lab_formats", "app/backup/test_backup", "app/test_hybrid", "app/test_bench",
+    "app/access/test_roles", "app/test_adding", "app/test_diagnoses", "app/test_older_database",
+    "app/webhooks/test_webhooks", "app/access/test_audit", "app/test_contract", "app/test_own_effects",
+    "app/test_size", "app/test_service", "app/test_bad_inputs", "app/test_side_by_side",
 )  # fmt: skip
 """Files that take longest, those that wait for a browser or a service before the others, the dearest first.
 
-The files of the browser stay together and go with their first; mypy takes a minute in a fresh clone.
+The files of the browser stay together and go with their first; mypy takes a minute in a fresh clone. Of tests/app the
+backup comes first: what it compares is all that the shared service holds.
 """
 
 OWN_SERVICE = "tests/browser/test_workbench.py"
