@@ -212,13 +212,6 @@ class LadderView(BaseModel):
     rungs: list[LadderRung]
 
 
-class FitPage(BaseModel):
-    """A page of fits, newest first, without their results' evolution."""
-
-    items: list[FitView]
-    next: str | None = None
-
-
 class ComparedRun(BaseModel):
     """Eq. (17) and offset of a run; root mean square and mean size of its residual in `unit`, and the first over std.
 

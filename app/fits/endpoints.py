@@ -9,7 +9,7 @@ from fastapi import APIRouter, Query, Response
 from app.access.roles import READERS
 from app.context import Here
 from app.errors import COMMON
-from app.fits import export, service, sizes
+from app.fits import error_sizes, export, service
 from ident.residuals.budget import Budget
 from schemas.fit import (
     ComparisonView,
@@ -48,7 +48,7 @@ def compare_fits(here: Here, fit: str, other: Annotated[list[str], Query(max_len
 @router.get("/{fit}/error-sizes", dependencies=[READERS])
 def get_error_sizes(here: Here, fit: str) -> ErrorSizesView:
     """RMSE and MAE of each run in the unit of its output, beside which eq. (17) is a ratio."""
-    return sizes.sizes(here, fit)
+    return error_sizes.sizes(here, fit)
 
 
 @router.get("/{fit}/budget", dependencies=[READERS])

@@ -50,7 +50,7 @@ class Estimation:
     Test: test_fitted_model.py::test_of_first_steps_the_eight_that_leave_least_go_on"""
     effects_a_chain: int = 8
     """[effects] Of one simulated chain, one for each lane. Why: registers of the kernel.
-    Test: test_groups.py::test_what_an_effect_promises_hangs_on_none_beside_it"""
+    Test: test_effects_side_by_side.py::test_what_an_effect_promises_hangs_on_none_beside_it"""
     new_optimum: float = 0.99
     """[ratio of errors] Below which a refit is a new optimum. Why: refits of one optimum end far closer
     together."""
@@ -125,7 +125,7 @@ class Screening:
     """[samples] Of all runs that an effect is simulated on. Why: all effects in about a second."""
     strengths: tuple[float, ...] = (0.01, 0.03, 0.1, 0.3, 1.0)
     """[of the way to each bound] At which an effect is simulated. Why: a response scales over a factor of three.
-    Test: test_groups.py::test_what_an_effect_promises_hangs_on_none_beside_it"""
+    Test: test_effects_side_by_side.py::test_what_an_effect_promises_hangs_on_none_beside_it"""
     weak_strengths: tuple[float, ...] = (1e-4, 3e-4, 1e-3, 3e-3)
     """[of the way to each bound] In addition, for a machine of unknown size. Why: its bounds are wide."""
     many_shapes: int = 10
