@@ -18,6 +18,7 @@ import pytest
 
 from tests.conftest import ROOT
 from tests.running import FEW_EFFECTS, Process, process
+from tests.short_form import short_form
 
 STORED = ROOT / "tests" / "stored"
 KEPT = STORED / "before"
@@ -37,7 +38,7 @@ class Older:
         return found
 
 
-@pytest.fixture(scope="module", params=["before", "revision_0004"])
+@pytest.fixture(scope="module", params=short_form(["before", "revision_0004"], "before"))
 def older(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory, full: bool) -> Iterator[Older]:
     """Each of them, on a data folder of its own; in the short form eight effects are ranked."""
     folder, data = STORED / request.param, Path(tmp_path_factory.mktemp("older"))

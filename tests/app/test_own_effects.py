@@ -165,6 +165,7 @@ def test_they_are_listed_page_by_page_and_by_the_model_that_can_take_them(servic
     assert service.get(AT, params={"cursor": "nothing"}).status_code == 422
 
 
+@pytest.mark.full
 def test_a_dropped_effect_is_gone_and_the_fit_that_has_it_stays(service: TestClient, fitted: str) -> None:
     keep(service, "lapped")
     asked = {"effect": "lapped"}

@@ -89,6 +89,7 @@ def test_an_improvement_reads_as_a_fall_whichever_fit_was_picked_first(service, 
     assert not re.search(r"[+>]\d{3,}\.\d %", pages[0])
 
 
+@pytest.mark.full
 def test_the_command_line_says_whose_fit_each_column_is(service, servoident, fits, tmp_path):
     from tests.app.conftest import files, unpacked
 

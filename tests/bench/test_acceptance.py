@@ -117,6 +117,7 @@ def test_the_whole_model_is_fitted_at_once(servoident, folder, tmp_path):
     assert json.loads(compared.stdout)["error"]["fit"] == pytest.approx(fit["error"]["fit"], rel=1e-9)
 
 
+@pytest.mark.full
 def test_the_papers_fitter_is_a_method(servoident, folder):
     """Without a name the records of a bench take its model."""
     done = servoident("fit", folder, "--method", "gradient", "--json", "-")

@@ -123,6 +123,7 @@ def test_rest_and_both_movements_are_told_apart():
         assert np.mean(state[expected] == sign) > 0.85
 
 
+@pytest.mark.full
 def test_each_range_of_positions_has_its_own_values():
     truth = reference.scattered(2)
     records = [record for record in reference.full_set(truth, 2) if not 0 < record.frequency < 1]

@@ -183,6 +183,7 @@ def test_a_spoilt_file_is_named(servoident, lapped, data):
     refused(servoident("effects"), "lapped.json", "not a saved effect")
 
 
+@pytest.mark.full
 def test_a_service_keeps_what_this_machine_has(servoident, service, lapped, diagnosis):
     """A file, and what is kept here under its name, which still says where it comes from; here nothing changes."""
     assert servoident("effects", "keep", diagnosis, "--name", "leak").returncode == 0

@@ -169,6 +169,7 @@ rig: {stroke: 1 mm}
 """
 
 
+@pytest.mark.full
 def test_a_shaking_table_is_a_case_with_a_payload(servoident, tmp_path):
     """The spectrum within 1 dB, its figure, and a stroke that is too short."""
     fit, case, out = tmp_path / "fit.json", tmp_path / "table.yaml", tmp_path / "figures"

@@ -29,6 +29,7 @@ def few_frictions(monkeypatch):
     monkeypatch.setattr(candidate_models, "CATALOGUE", tuple(e for e in candidate_models.CATALOGUE if e.name in few))
 
 
+@pytest.mark.full
 @pytest.mark.usefixtures("few_frictions")
 def test_bounds_hold_for_every_effect_that_is_tried(fit):
     """The strength of each stays within what is given for it, the friction of 45 N or not."""

@@ -72,6 +72,7 @@ def test_friction_that_drives_the_free_run_away_is_not_added_and_that_is_said(mo
     assert "An effect that drives the free run away is not added." in said
 
 
+@pytest.mark.full
 def test_friction_and_a_constant_force_are_found_that_only_together_run_freely(monkeypatch):
     """By itself the constant explains too little over windows, and friction drives the free run away."""
     found = selected(monkeypatch, "coulomb_friction", "static_load", "gain_asymmetry")

@@ -122,6 +122,7 @@ def test_a_width_that_the_data_do_not_determine_is_not_freed():
     assert freed_refit(free, base, prediction) is None
 
 
+@pytest.mark.full
 def test_the_usual_width_is_found_as_any_other():
     """A damper whose friction builds up over a fifth of its motion's deviation."""
     damper = Damper()

@@ -34,6 +34,7 @@ def test_a_play_before_the_friction_is_named_with_its_width_and_its_contact(half
     assert found.ladder[-1].error["fit"] < 1.05 * damper.noise
 
 
+@pytest.mark.full
 def test_friction_without_a_play_is_named_as_that():
     matrix = Damper(seed=3).matrix()
     found = diagnose(matrix, identify(matrix, model="specimen"), propose=False)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import pytest
+
 from ident.diagnosis import candidate_models
 from ident.fit.settings import Settings
 from ident.workflows import diagnose, identify
@@ -11,6 +13,7 @@ FEW = ("arm_gravity", "cubic_stiffness", "coulomb_friction", "end_stop", "static
 LIGHT = {"population": 24.0, "generations": 8.0, "elite": 4.0}
 
 
+@pytest.mark.full
 def test_the_weight_of_an_arm_that_hangs_takes_the_place_of_a_part_of_the_spring(monkeypatch):
     """It swings by 100 degrees; its machine is integrated by SciPy."""
     few = tuple(effect for effect in candidate_models.CATALOGUE if effect.name in FEW)

@@ -195,6 +195,7 @@ def test_an_arm_between_stops_is_a_motor_with_a_dead_zone(full):
     assert "with dead zone" in first.why
 
 
+@pytest.mark.full
 def test_a_time_constant_at_its_bound_is_told():
     """A lag for what integrates asks for one without end; the machine itself for nothing."""
     found = {}

@@ -56,6 +56,7 @@ def test_a_clean_record_tells_a_lag_from_a_delay():
     assert late is None or "command_delay" not in late.in_place
 
 
+@pytest.mark.full
 @pytest.mark.usefixtures("few_effects")
 def test_a_diagnosis_says_it():
     found = diagnose(*fitted(3e-3), most=1, propose=False)

@@ -110,6 +110,7 @@ def test_what_the_runs_to_verify_speak_against_is_contradicted_and_said_first(ot
     assert "The model lacks" not in other.verdict.text
 
 
+@pytest.mark.full
 @pytest.mark.usefixtures("few_effects")
 def test_verify_changes_nothing_that_was_found(other):
     matrix = motor(8, half_width=1.5)
@@ -141,6 +142,7 @@ def test_what_validation_data_show_nothing_of_is_said_and_not_named():
     assert Diagnosis.from_json(found.to_json()).verdict == found.verdict
 
 
+@pytest.mark.full
 @pytest.mark.usefixtures("few_effects")
 def test_with_nothing_missing_nothing_stands():
     found = diagnose(motor(10), settings=Settings(model="motor"), most=1)

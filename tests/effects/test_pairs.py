@@ -20,7 +20,7 @@ from tests.reference import qian_reference as linear
 
 Pairs = list[tuple[str, str]]
 PAIRS: Pairs = [(first.name, second.name) for first, second in combinations(EFFECTS, 2)]
-SOME = 4  # every which pair in the short form: each effect is in several
+SOME = 8  # every which pair in the short form: each effect is in several
 SHARE = 0.4  # of the strength at which one effect is compared: two of full strength may leave little of the machine
 STEPS = 8  # a sample
 SAMPLES = 1024  # a quarter of a second, in which every effect acts

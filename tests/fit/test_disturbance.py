@@ -60,6 +60,7 @@ def test_a_measured_load_is_no_error_of_the_model_and_gives_forces_a_scale(seed,
     assert compare(matrix, fit).error["verify"] == pytest.approx(fit.error["verify"], rel=1e-6)
 
 
+@pytest.mark.full
 def test_a_disturbance_that_nobody_told_of_is_in_the_error():
     told, untold = (identify(axis(1, told), Settings(model="motor")) for told in (True, False))
     assert untold.error["verify"] > 20 * told.error["verify"]

@@ -58,6 +58,7 @@ def test_its_gain_is_not_biased_and_its_standard_error_holds(full):
     assert abs(off.mean()) < 3 * off.std() / np.sqrt(len(off))
 
 
+@pytest.mark.full
 def test_over_whole_runs_the_gain_is_where_the_disturbances_took_the_record(monkeypatch):
     monkeypatch.setattr(identification, "in_windows", lambda optimum, *_, **__: optimum)
     off = [acceleration(identify(pushed(seed), SETTINGS)).value / GAIN - 1 for seed in range(8)]

@@ -12,6 +12,7 @@ from ident.presets import preset
 from ident.readers import read_matrix
 from ident.workflows import identify
 from tests.hidden_dead_zone import write
+from tests.short_form import short_form
 
 QUICK = {"population": 30, "generations": 5, "elite": 4}
 
@@ -21,7 +22,9 @@ def matrix(tmp_path_factory):
     return read_matrix(write(tmp_path_factory.mktemp("far") / "matrix"))
 
 
-@pytest.mark.parametrize("known", [True, False], ids=["bounds of the machine", "a machine of unknown size"])
+@pytest.mark.parametrize(
+    "known", short_form([True, False], True), ids=["bounds of the machine", "a machine of unknown size"]
+)
 def test_seconds_for_milliseconds_are_the_first_cause(matrix, known):
     """Beside the ranges that hold for this machine, and beside those that its runs give."""
     if not known:

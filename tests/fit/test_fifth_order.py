@@ -64,6 +64,7 @@ def test_every_parameter_is_found_with_the_spool(full):
         assert np.all(scatter > 1 / 1.5), scatter
 
 
+@pytest.mark.full
 def test_without_the_spool_two_directions_are_open_and_what_stays_is_named(full):
     """A common scale, and a common shift: each of the four combinations is within 2 %."""
     for number in machines(full, FEW):

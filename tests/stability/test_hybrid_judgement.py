@@ -84,6 +84,7 @@ def test_frequency_growth_and_cause_of_an_unstable_hybrid_simulation():
     assert right >= 0.95 * trials
 
 
+@pytest.mark.full
 def test_a_simulation_names_the_cause_where_the_loop_before_is_known():
     """Qian's structure with little damping, whose servo loop was turned up."""
     case = replace(qian(), damping=np.array([[500.0]]), gain=10.0, ground=noise(0.2))

@@ -53,6 +53,7 @@ def test_the_tables_of_a_fit_are_served_as_a_workbook_and_as_csv(service, fit):
     assert 'name="oil_temperature"' in page
 
 
+@pytest.mark.full
 def test_the_command_line_writes_the_same(service, servoident, fit, tmp_path):
     from tests.app.conftest import files, unpacked
 

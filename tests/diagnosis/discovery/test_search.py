@@ -141,6 +141,7 @@ def test_verify_runs_neither_rank_nor_choose_and_what_they_speak_against_says_so
     assert found.proposals[0].contradicted is None
 
 
+@pytest.mark.full
 def test_what_stood_in_for_a_term_is_left_out_again():
     """An asymmetry helps where the flow gain has a hill: with the hill it is not needed."""
     matrix = machine(2, gain_bump=0.25)
