@@ -207,9 +207,10 @@ def test_an_effect_is_refused_by_a_model_that_lacks_its_place():
 def test_a_parser_of_strict_texts_never_raises_anything_else():
     """Random texts of the grammar's letters end in a tree or a refusal."""
     rng = np.random.default_rng(1)
-    warnings.simplefilter("error")
     letters = np.array(list("wh()+-*/.<>=,'\"[]{}:;@!^%~ 019etif\\\n"))
-    for _ in range(2000):
-        text = "".join(rng.choice(letters, rng.integers(1, 40)))
-        with contextlib.suppress(Unusable):
-            parsed(text, 0, strict=True)
+    with warnings.catch_warnings():  # of the parser alone: what others left is no warning of these texts
+        warnings.simplefilter("error")
+        for _ in range(2000):
+            text = "".join(rng.choice(letters, rng.integers(1, 40)))
+            with contextlib.suppress(Unusable):
+                parsed(text, 0, strict=True)
