@@ -16,7 +16,6 @@ from collections.abc import Iterable
 from weakref import WeakKeyDictionary
 
 import numpy as np
-import scipy  # signal, which takes half a second to load, is loaded where it is first used
 from numpy.typing import NDArray
 
 from ident.run import Run
@@ -89,6 +88,8 @@ def _poles(found: Array) -> NDArray[np.complex128]:
 
 def _answer(found: Array, u: Array) -> Array:
     """What the model answers to u by itself, (n,); poles outside of the unit circle are mirrored into it."""
+    from scipy.signal import lfilter  # noqa: PLC0415 - dear to load, and a record is read without it
+
     poles = _poles(found)
     poles = np.where(np.abs(poles) > 1.0, 1.0 / np.conj(poles), poles)
-    return np.asarray(scipy.signal.lfilter(found[ORDER:], np.real(np.poly(poles)), u))
+    return np.asarray(lfilter(found[ORDER:], np.real(np.poly(poles)), u))
