@@ -265,6 +265,20 @@ class FittedModel:
             return residuals, None
         return residuals, np.array([self._counted_mean(run, outputs[run.id]) for run in runs])
 
+    @cached_property
+    def zeros(self) -> dict[str, float]:
+        """Where the zero of the model lies in the reading of each fitted run, by its id: 0 over windows.
+
+        It is the offset of the transducer where the mean counts, and the mean of the residual where it does not.
+        """
+        if self.fitness.horizon is not None:
+            return dict.fromkeys((run.id for run in self.fitness.runs), 0.0)
+        outputs = self.fitness.outputs(self.point)
+        return {
+            run.id: offset_at(run, self._offsets) if run.mean_counts else float(np.mean(run.measured - outputs[run.id]))
+            for run in self.fitness.runs
+        }
+
     def _counted_mean(self, run: Run, output: Array) -> float:
         with np.errstate(over="ignore", invalid="ignore"):
             mean = float(np.mean(run.measured - output)) - offset_at(run, self._offsets)

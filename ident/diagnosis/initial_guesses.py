@@ -61,10 +61,24 @@ def strength_in_records(base: FittedModel, effect: Effect) -> float | None:
 
     A stop that was hit stands at the end of the way that was covered, to both sides of the middle of the stroke.
     """
+    return _at_end(base, effect, {})
+
+
+def strength_in_model(base: FittedModel, effect: Effect) -> float | None:
+    """The same where the fitted model has that end: its zero lies elsewhere in a reading that has an offset."""
+    return _at_end(base, effect, base.zeros) if effect.strength.start is Starts.STROKE_END else None
+
+
+def _at_end(base: FittedModel, effect: Effect, zeros: Mapping[str, float]) -> float | None:
+    """The inverse of the largest way, less the zero of each run's reading by the run's id."""
     if effect.strength.start is not Starts.STROKE_END:
         return None
     middle = next((p.value for p in effect.shape if p.start is Starts.STROKE_MIDDLE), 0.0)
-    moved = [run.channels["displacement"] for run in base.fitness.runs if "displacement" in run.channels]
+    moved = [
+        run.channels["displacement"] - (zeros.get(run.id, 0.0) if run.output == "displacement" else 0.0)
+        for run in base.fitness.runs
+        if "displacement" in run.channels
+    ]
     way = max((float(np.max(np.abs(x - middle))) for x in moved), default=0.0)
     return 1.0 / way if way > 0 else None
 

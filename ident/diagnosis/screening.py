@@ -22,7 +22,7 @@ from ident.diagnosis.cross_validation import scored, weight_of_offsets
 from ident.diagnosis.evidence.chance import bar
 from ident.diagnosis.evidence.comparison import Residuals, common_disturbance
 from ident.diagnosis.fitted_model import FittedModel
-from ident.diagnosis.initial_guesses import in_place_of_spring, initial_guesses, strength_in_records
+from ident.diagnosis.initial_guesses import in_place_of_spring, initial_guesses, strength_in_model, strength_in_records
 from ident.fit.bounded_step import bounded_steps
 from ident.fit.responses import Responses, Sensitivities
 from ident.fit.simulated_fitness import SimulatedFitness
@@ -336,12 +336,13 @@ def _refit_starts(models: CandidateModels, base: FittedModel, promise: _Promise)
 def _from_records(
     models: CandidateModels, base: FittedModel, space: Space, name: str, known: Mapping[str, float]
 ) -> Iterator[dict[str, float]]:
-    """The fitted model with an effect as strong as the records show by themselves, where they do."""
+    """The fitted model with an effect as strong as the records show by themselves, where they do, and as the model
+    has it."""
     effect = models.effects[name]
-    strength = strength_in_records(base, effect)
-    if strength is not None:
-        for shape in initial_guesses(base, effect, space, known):
-            yield {**base.values, **shape, models.strength(name): strength}
+    for strength in (strength_in_records(base, effect), strength_in_model(base, effect)):
+        if strength is not None:
+            for shape in initial_guesses(base, effect, space, known):
+                yield {**base.values, **shape, models.strength(name): strength}
 
 
 def _trials(

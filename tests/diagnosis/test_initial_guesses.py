@@ -9,12 +9,16 @@ from typing import Any
 import numpy as np
 import pytest
 
+from ident.diagnosis.candidate_models import CandidateModels
 from ident.diagnosis.criteria import CRITERIA
-from ident.diagnosis.initial_guesses import initial_guesses, spectral_lines
-from ident.diagnosis.screening import _trials
+from ident.diagnosis.free_shapes import trial_from_everywhere
+from ident.diagnosis.initial_guesses import initial_guesses, spectral_lines, strength_in_model
+from ident.diagnosis.screening import _trials, predict
 from ident.effects.elastic_load import ELASTIC_LOAD
 from ident.effects.end_stop import END_STOP
+from ident.fit.settings import Settings
 from ident.run import Run
+from tests.blind.various import Various
 
 SECONDS, BAND = 8.0, 2 * np.pi * 40.0  # rad/s
 
@@ -80,3 +84,14 @@ def test_a_part_behind_a_spring_begins_below_the_resonance_of_the_record():
     found = initial_guesses(SimpleNamespace(fitness=SimpleNamespace(runs=(run,))), ELASTIC_LOAD, space, {})
     shares = np.array(CRITERIA.initial_guesses.hanging_shares)
     assert [one[name] for one in found] == pytest.approx(np.minimum(omega * np.sqrt(1 - shares), 35.0), rel=0.02)
+
+
+def test_an_edge_is_looked_for_at_the_top_of_the_model_where_its_zero_is_not_that_of_the_gauge():
+    """The tanks were fitted 6 m and more below their gauge: from an edge at the highest reading no refit arrives."""
+    models = CandidateModels.of(Various.drawn(168294, True).measured(), Settings(model="two_tanks"))
+    base = models.refit((), {"gain": 0.5011, "tau1": 0.2346, "tau2": 0.0366})
+    assert min(base.zeros.values()) > 6.0
+    top = max(float(run.measured.max()) - base.zeros[run.id] for run in base.fitness.runs)
+    assert strength_in_model(base, models.effects["overflow"]) == pytest.approx(1.0 / top)
+    (prediction,) = predict(models, base, ["overflow"])
+    assert trial_from_everywhere(models, base, prediction).local.error < 0.02
