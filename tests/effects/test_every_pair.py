@@ -36,8 +36,8 @@ from tests.simulation.plain_kernel import plain_kernels
 MACHINES = tuple(drawn(np.random.default_rng([50, seed])) for seed in range(10))
 MODELS = (*PRESETS, *MACHINES)
 CHANNELS = ("command", "displacement", "velocity", "force", "load_pressure", "spool", "drive_force",
-            "vertical_load")  # fmt: skip
-KNOWN = {"command": "m", "spool": "V", "drive_force": "N", "vertical_load": "N", **UNITS}
+            "vertical_load", "current")  # fmt: skip
+KNOWN = {"command": "m", "spool": "V", "drive_force": "N", "vertical_load": "N", "current": "A", **UNITS}
 SHORT, LONG = 16, 2000  # samples: of one simulation, of a fit
 FITTED = 60  # pairs that are fitted to the end in the full form
 
