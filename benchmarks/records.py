@@ -1,7 +1,7 @@
 """Measured records from the folder to the verdict, and to what is proposed beyond the catalogue; a process each.
 
-BENCHMARK_RECORDS names the sets to take, all of them where it is not there; `python -m benchmarks.records FOLDER`
-measures one and prints what it took as JSON.
+BENCHMARK_RECORDS names the sets to take, all of them where it is not there: the rows of others stay on the page.
+`python -m benchmarks.records FOLDER` measures one and prints what it took as JSON.
 """
 
 from __future__ import annotations
@@ -9,10 +9,11 @@ from __future__ import annotations
 import json
 import os
 import resource
+import signal
 import subprocess
 import sys
 import time
-from collections.abc import Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
 
@@ -29,15 +30,20 @@ from tests.measured.judged import KNOWN
 
 ROOT = Path(__file__).resolve().parents[1]
 DATA = ROOT.parent / "shared" / "data"
-VERDICT, PROPOSED, MEMORY = 60.0, 120.0, 1e9
-"""Goals: s by the clock to the verdict, s with proposals, bytes."""
+PAGE = ROOT / "docs" / "benchmarks.md"
+TITLE = "Records"
+VERDICT, PROPOSED, MEMORY = 110.0, 220.0, 1e9
+"""Goals: s of processor to the verdict, s with proposals, bytes. Why: two cores have this done in 60 and 120 s by the
+clock, but for a twelfth that one alone works; other work on the machine counts in the clock, not in the processor."""
 LONG = 100_000
 """Samples of all runs above which a record may take twice as long."""
 HEAD = ("samples", "verdict", "with proposals", "times `lfilter`", "memory", "model", "named", "standing", "complete",
         "goal")  # fmt: skip
 ABSENT = "not there"
-LONGEST = 900.0
-"""s by the clock after which a record is given up."""
+TIMED = 0.1
+"""s of processor that are timed well: some systems count it in hundredths of a second."""
+LONGEST = 600
+"""s of processor after which a record is given up."""
 
 
 @dataclass(frozen=True)
@@ -58,7 +64,7 @@ class Measured:
     def in_time(self) -> bool:
         """Whether it is complete and keeps the goals of its length."""
         longer = 2.0 if self.samples > LONG else 1.0
-        soon = self.verdict[0] <= longer * VERDICT and self.whole[0] <= longer * PROPOSED
+        soon = self.verdict[1] <= longer * VERDICT and self.whole[1] <= longer * PROPOSED
         return self.complete and soon and self.memory <= MEMORY
 
     @property
@@ -101,16 +107,18 @@ def measured_here(folder: Path) -> Measured:
 
 
 def filtering(runs: Sequence[Run]) -> float:
-    """Processor time (s) of one `lfilter` of second order over what runs measured, the least of seven."""
+    """Processor time (s) of one `lfilter` of second order over what runs measured: the mean of as many as are timed
+    well."""
     b, a = scipy.signal.butter(2, 0.1)
-
-    def once() -> float:
+    count, taken = 1, 0.0
+    while taken < TIMED:
+        count *= 2
         begun = time.process_time()
-        for run in runs:
-            scipy.signal.lfilter(b, a, run.measured)
-        return time.process_time() - begun
-
-    return max(min(once() for _ in range(7)), 1e-6)
+        for _ in range(count):
+            for run in runs:
+                scipy.signal.lfilter(b, a, run.measured)
+        taken = time.process_time() - begun
+    return taken / count
 
 
 def _clocks() -> tuple[float, float]:
@@ -128,13 +136,25 @@ def measured(folder: Path) -> Measured | str:
     if not (folder / "matrix.yaml").exists():
         return ABSENT
     command = [sys.executable, "-m", "benchmarks.records", str(folder)]
-    try:
-        done = subprocess.run(command, capture_output=True, text=True, cwd=ROOT, timeout=LONGEST, check=False)
-    except subprocess.TimeoutExpired:
-        return f"over {LONGEST:g} s, given up"
+    done = subprocess.run(command, capture_output=True, text=True, cwd=ROOT, check=False, preexec_fn=_limited)
+    if done.returncode == -signal.SIGXCPU:
+        return f"over {LONGEST} s of processor, given up"
     if done.returncode:
         return (done.stderr.strip().splitlines() or ["ended without a word"])[-1]
     return Measured(**json.loads(done.stdout))
+
+
+def _limited() -> None:
+    """Let the processor end the process that begins once it has had its time."""
+    resource.setrlimit(resource.RLIMIT_CPU, (LONGEST, LONGEST + 10))
+
+
+def kept(page: str, names: Collection[str]) -> list[tuple[str, ...]]:
+    """The rows of the section on a page but those of some sets."""
+    _, _, section = page.partition(f"\n## {TITLE}\n")
+    lines = section.partition("\n## ")[0].splitlines()
+    rows = [tuple(cell.strip() for cell in line.strip("|").split("|")) for line in lines if line.startswith("| ")]
+    return [row for row in rows if row[0] in KNOWN and row[0] not in names and len(row) == 1 + len(HEAD)]
 
 
 def _without(reason: str) -> tuple[str, ...]:
@@ -145,11 +165,17 @@ def _without(reason: str) -> tuple[str, ...]:
 def measure() -> Table:
     """Every set of measured records, one after the other."""
     names = os.environ.get("BENCHMARK_RECORDS", "").split() or list(KNOWN)
-    found = {name: measured(DATA / name) for name in names}
+    return table({name: measured(DATA / name) for name in names}, PAGE.read_text(encoding="utf-8"))
+
+
+def table(found: Mapping[str, Measured | str], page: str) -> Table:
+    """What was measured of some sets, and the rows that a page has of others, in the order of the sets."""
     rows = [(name, *(one.row if isinstance(one, Measured) else _without(one))) for name, one in found.items()]
-    counted = [one for one in found.values() if one != ABSENT]
+    order = [*KNOWN, *found]
+    rows = sorted([*rows, *kept(page, found)], key=lambda row: order.index(row[0]))
+    counted = [row for row in rows if row[-1] != ABSENT]
     return Table(
-        "Records",
+        TITLE,
         "Measured records as a new user diagnoses them, from the folder to the verdict and with what is proposed "
         "beyond the catalogue: the machine is chosen, fitted and diagnosed, without a limit of time. Seconds by the "
         "clock / of processor; where other work shares the machine the clock also counts that. The ratio is of the "
@@ -157,9 +183,9 @@ def measure() -> Table:
         "its peak.",
         ("record", *HEAD),
         rows,
-        f"by the clock the verdict in {VERDICT:g} s, proposals in {PROPOSED:g} s, above {LONG:,} samples twice as "
-        f"long; {MEMORY / 1e9:g} GB; complete",
-        bool(counted) and all(isinstance(one, Measured) and one.in_time for one in counted),
+        f"the verdict in {VERDICT:g} s of processor, proposals in {PROPOSED:g} s, a minute and two by the clock of two "
+        f"cores; above {LONG:,} samples twice as long; {MEMORY / 1e9:g} GB; complete",
+        bool(counted) and all(row[-1] == "met" for row in counted),
     )  # fmt: skip
 
 
