@@ -38,6 +38,7 @@ def test_each_value_is_as_good_as_a_search_with_the_parameter_held(matrix, fit):
         assert error == pytest.approx(again.error["fit"], rel=1e-5)
 
 
+@pytest.mark.full
 def test_at_a_bound_the_data_limit_one_side_only(matrix):
     """The truth, 3200 N·s/m, is outside the bounds: the better, the nearer."""
     held = ident.identify(matrix, **QUICK, bounds={"c0": (3300.0, 5000.0)})

@@ -87,6 +87,7 @@ def test_the_plant_is_that_of_the_problem():
     assert np.allclose(found, loop / (1 + loop), rtol=1e-5)
 
 
+@pytest.mark.full
 def test_the_right_structure_finds_the_plant(identified):
     """The error is that of the noise; five quantities within 2 %, a3 within three of its standard errors."""
     of, floor = identified.values, identified.noise_floor["fit"]
@@ -134,6 +135,7 @@ def test_each_case_is_followed(number, identified, full):
     assert found.scores.tracking_peak <= 0.015
 
 
+@pytest.mark.full
 def test_other_plants_than_the_controller_was_made_for(full, identified):
     """Twenty drawn plants and frames (two cases of five in the short form): none unstable, mean J2 at most 3 %."""
     rng = np.random.default_rng([SEED, 2])

@@ -41,6 +41,7 @@ def radius(gain: float, feedback: float, recorder: float, delay: int) -> float:
     return float(np.abs(np.linalg.eigvals(np.array(after).T)).max())
 
 
+@pytest.mark.full
 @pytest.mark.parametrize(("gain", "feedback", "delay"), [(7.0, 2e-3, 1), (40.0, 8e-3, 4)])
 def test_the_poles_of_a_loop_with_lags_are_those_of_the_flat_loop(gain, feedback, delay):
     """A lag of the transducer and one of the recorder, stable and not: the same largest pole, and no note."""

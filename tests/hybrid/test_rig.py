@@ -129,6 +129,7 @@ def test_live_estimates_compensate_the_delay_before_an_isolator(gain, full):
     assert left[1] <= left[0] / 5
 
 
+@pytest.mark.full
 def test_a_lightly_damped_structure_behind_a_slow_actuator_needs_compensation():
     """1 % damping, 20 % of the stiffness physical, a lag of 20 ms: unstable without, stable with live estimates."""
     case = replace(sprung(0.01), ground=noise(15.0))
@@ -158,6 +159,7 @@ def test_no_delay_is_critical_where_the_damping_outweighs_the_specimen():
     assert critical_delay(qian().with_shares(0.6, 0.2)) == 0.0
 
 
+@pytest.mark.full
 def test_poles_and_record_agree_on_stability():
     """A map over shares, sixteen systems side by side, says of each what its own simulation does."""
     case = of_qian(4.0, gain=5.0, damping=np.array([[300.0]]))

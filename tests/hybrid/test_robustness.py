@@ -31,6 +31,7 @@ def fit(full):
     return identify(as_matrix(runs, "linear"), Settings(seed=1))
 
 
+@pytest.mark.full
 def test_draws_from_the_covariance_of_a_fit_are_followed(fit):
     """With a path forward ≥ 95 of 100 draws stay stable and within ± 1 dB, ± 10° to 25 Hz; the reference agrees."""
     made = design_controller(fit, SPECIMEN, structure="two-degree", **CASE)

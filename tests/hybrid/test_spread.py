@@ -105,6 +105,7 @@ def test_a_controller_over_a_spread_is_that_of_a_brute_force(full):
     assert not made.robustness.held
 
 
+@pytest.mark.full
 def test_a_servo_loop_over_a_spread_is_that_of_a_brute_force():
     """100 draws of ± 20 % against as many of servo_reference: share stable and gain margin, near the edge."""
     rng, of = np.random.default_rng(573), servo_reference.TABLE_4

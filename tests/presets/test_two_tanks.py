@@ -49,6 +49,7 @@ def matrix() -> Matrix:
     return Matrix(Actuator("TANKS"), (tanks(0, "fit"), tanks(1, "verify")))
 
 
+@pytest.mark.full
 def test_the_tanks_are_followed_and_what_torricelli_s_law_determines_is_found(matrix):
     found = identify(matrix, Settings(model="two_tanks", options=LIGHT, seed=1))
     lag = identify(matrix, Settings(model="first_order", options=LIGHT, seed=1))
