@@ -106,6 +106,7 @@ def summarise(
     weak += bounded
     label = _labels(objective)
     known = {name: error for name, error in deviation.items() if name not in weak}
+    against = () if window else tuple(contradicting(verify_runs, verify_errors))
     told = parted(optimum.ends, known, {name: label[name][0] for name in known})
     return FitResult(
         model=preset.name,
@@ -153,8 +154,7 @@ def summarise(
         version=version("servoident"),
         data_hash=matrix.data_hash,
         notes=(
-            *(() if window else contradicting(verify_runs, verify_errors)),
-            *_notes(settings, objective, floors, fit_errors),
+            *_notes(settings, objective, floors, fit_errors, against),
             *_known_zeros(settings, objective.runs, offsets),
             *_read_offsets({name: one for name, one in offsets.items() if name not in settings.known_zeros}, matrix),
             *_beyond(optimum, values, label),
@@ -305,10 +305,13 @@ def _felt(objective: Fitness, name: str, point: Array) -> bool:
     return bool(without > _FELT * here)
 
 
-def _notes(settings: Settings, objective: Fitness, floors: Floors, found: Sequence[RunError]) -> list[str]:
+def _notes(
+    settings: Settings, objective: Fitness, floors: Floors, found: Sequence[RunError], against: Sequence[str]
+) -> list[str]:  # fmt: skip
+    """What is said of a fit, first of all why it is not to be trusted; `against` is what validation data say."""
     error = float(over_runs([run.error for run in found], objective.matrix.of_use("fit")))
-    first = (*_unrecorded(objective.runs), *_hardly_explained(settings, objective, error))
-    notes = [*first, *objective.matrix.notices]
+    hardly = tuple(_hardly_explained(settings, objective, error))  # of the data that were fitted, and so of all others
+    notes = [*_unrecorded(objective.runs), *(hardly or against), *objective.matrix.notices]
     if objective.space.scale_free and objective.space.axes:
         notes.append(
             f"Bounds of the preset {objective.preset.name} were not used: they hold for another machine, or piston "
