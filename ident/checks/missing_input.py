@@ -86,8 +86,8 @@ def _by_itself(inputs: Sequence[Samples], begins: Sequence[int], longest: int, s
     """
     changes = np.flatnonzero(np.any([np.abs(np.diff(u, prepend=u[0])) > HELD * np.ptp(u) for u in inputs], axis=0))
     last = [max(changes[changes <= begin], default=-REST * samples) for begin in begins]
-    counted = np.sum(np.subtract(begins, last) > longest)
-    if counted < LEAST or np.ptp(np.quantile(np.subtract(begins, last), MOST)) <= longest:
+    since = np.subtract(begins, last)
+    if np.sum(since > longest) < LEAST or np.ptp(np.quantile(since, MOST)) <= longest:
         return False
     return bool(np.ptp(last) > 0 or np.ptp(np.diff(begins)) > samples)  # else it swings, slowly at each turn
 

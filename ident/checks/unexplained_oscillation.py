@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from ident.beginning import ROUNDING
 from ident.checks.oscillation_at_rest import DIES, is_of_mains
-from ident.noise.periodic import of_line
+from ident.noise.periodic import line_frequency
 from ident.run import Run, Samples
 
 Spectrum = NDArray[np.complex128]
@@ -81,18 +81,22 @@ def _beside_silence(u: Samples, y: Samples, rate: float) -> Unexplained | None:
         own = _detrended(y[part])
         if own.std() <= ROUNDING * np.abs(y).max():  # it stands, and the last digits oscillate
             continue
-        loud = _loud(u[part]) / (1.0 - 2.0 * BAND)
-        power = np.abs(np.fft.rfft(own * np.hanning(len(own)))) ** 2
-        share = max(LITTLE**2, SHARE * float(power[int(loud) :].sum() / power.sum()))
-        found = _settled(own, share * float(own.var()), rate, max(FEWER, int(loud)))
+        first, power = int(_first_silent_line(u[part]) / (1.0 - 2.0 * BAND)), _line_powers(own)
+        share = max(LITTLE**2, SHARE * float(power[first:].sum() / power.sum()))
+        found = _settled(own, share * float(own.var()), rate, max(FEWER, first))
         if found and not is_of_mains(found.frequency):
             return found
     return None
 
 
-def _loud(u: Samples) -> int:
-    """The lines of a command's spectrum from which on it has next to no power."""
-    power = np.abs(np.fft.rfft(u * np.hanning(len(u)))) ** 2
+def _line_powers(signal: Samples) -> Samples:
+    """The power of each line of a signal's spectrum under Hann's window, (n // 2 + 1,)."""
+    return np.asarray(np.abs(np.fft.rfft(signal * np.hanning(len(signal)))) ** 2)
+
+
+def _first_silent_line(u: Samples) -> int:
+    """The line of a command's spectrum from which on the command has next to no power."""
+    power = _line_powers(u)
     return int(np.searchsorted(-np.cumsum(power[::-1])[::-1], -SILENT * power.sum()))
 
 
@@ -159,10 +163,10 @@ def _strongest(signal: Samples, cycles: int = CYCLES) -> Spectrum | None:
     A window of Hann over time, moved along z = 2 y exp(−jω t), passes ω ± BAND ω. None of fewer `cycles`.
     """
     n = len(signal)
-    spectrum = np.abs(np.fft.rfft(signal * np.hanning(n)))
-    if len(spectrum) <= cycles:
+    power = _line_powers(signal)
+    if len(power) <= cycles:
         return None
-    at = cycles + int(np.argmax(spectrum[cycles:]))
+    at = cycles + int(np.argmax(power[cycles:]))
     window = np.hanning(int(2 * n / (BAND * at)) + 2)
     turned = 2 * signal * np.exp(-2j * np.pi * at / n * np.arange(n))
     if at >= (1 - BAND) * n / 2:
@@ -193,9 +197,9 @@ def _repeats(u: Samples, frequency: float) -> bool:
         return False
     period = _summit(alike, int(peaks[0]))
     period = _summit(alike, int(peaks[-1])) / max(1, round(peaks[-1] / period))  # of many, whose error is less
-    highest = 1 + int(np.argmax(np.abs(np.fft.rfft(u * np.hanning(n)))[1:]))
+    highest = 1 + int(np.argmax(_line_powers(u)[1:]))
     order = max(1, round(highest * period / n))  # of the strongest line of the command
-    cycles = of_line(u, order * n / period) / order
+    cycles = line_frequency(u, order * n / period) / order
     return bool(abs(frequency * n - round(frequency * n / cycles) * cycles) < DRIFT)
 
 

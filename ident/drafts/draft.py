@@ -336,7 +336,7 @@ def _columns(file: RawFile, column: str | int, where: str) -> list[Column]:
 
 
 def _unused(file: RawFile, used: Sequence[str | int]) -> Iterator[str]:
-    """The columns of numbers that no answer names: one may be a channel that nobody thought of."""
+    """The columns of numbers that no answer names: one may be a channel that the user did not name."""
     numbers = {number for column in used for number in file.table.numbers(column, file.name)}
     unused = [repr(shown(column.name)) for column in file.columns if column.number not in numbers]
     if unused:

@@ -29,7 +29,7 @@ FASTEST, SLOWEST = 1.2, 0.05
 DAMPING = 0.5
 """Damping ratio below which a step is overshot by a sixth, and one resonance is seen. Test: as above"""
 REFINED = 3
-"""Times that the instruments are made anew. Test: tests/effects/test_ringing.py"""
+"""Times that the instruments are computed again from the latest solution. Test: tests/effects/test_ringing.py"""
 _known: WeakKeyDictionary[Run, float | None] = WeakKeyDictionary()
 
 
@@ -77,7 +77,7 @@ def _pairs(u: Array, y: Array, integrates: bool) -> list[tuple[float, float]]:
 
 
 def _regressors(y: Array, u: Array) -> Array:
-    """The past of y and of u, with u itself, by which each sample of y is told, (n − 4, 9)."""
+    """The regressors of each sample of y: the past of y and of u, and u itself, (n − 4, 9)."""
     past = [y[ORDER - i : len(y) - i] for i in range(1, ORDER + 1)]
     return np.stack((*past, *(u[ORDER - i : len(y) - i] for i in range(ORDER + 1))), axis=1)
 
@@ -87,7 +87,7 @@ def _poles(found: Array) -> NDArray[np.complex128]:
 
 
 def _answer(found: Array, u: Array) -> Array:
-    """What the model answers to u by itself, (n,); poles outside of the unit circle are mirrored into it."""
+    """The output of the model alone for the command u, (n,); poles outside of the unit circle are mirrored into it."""
     from scipy.signal import lfilter  # noqa: PLC0415 - dear to load, and a record is read without it
 
     poles = _poles(found)

@@ -42,11 +42,11 @@ def fundamental(signal: Array, sample_rate: float) -> float | None:
     line = spectrum[max(highest - _MAIN_LOBE, 1) : highest + _MAIN_LOBE + 1].sum()
     if highest < PERIODS or highest >= n // 4 or line < _FUNDAMENTAL * spectrum[1:].sum():
         return None
-    cycles = of_line(signal, highest + _between_bins(spectrum, highest))
+    cycles = line_frequency(signal, highest + _between_bins(spectrum, highest))
     return cycles * sample_rate / n if not_repeated(signal, cycles / n) < _NOT_REPEATED * np.std(signal) else None
 
 
-def of_line(signal: Array, cycles: float) -> float:
+def line_frequency(signal: Array, cycles: float) -> float:
     """The frequency of a line of a spectrum, in cycles a record, from a value `cycles` that is near it.
 
     It is corrected by how the phase of the line goes on from the first half of the record to the second.

@@ -49,7 +49,7 @@ def test_a_lever_that_is_missing_and_a_loop_that_oscillates_are_said(seed):
 
 @pytest.mark.parametrize("seed", [180102, 180166])
 def test_a_few_delayed_answers_and_a_stray_start_miss_no_input(seed):
-    """Levers that are all recorded, 100 Hz: the drive is late, and what is left of noise sets out once or twice."""
+    """Levers that are all recorded, 100 Hz: the drive is late, and filtered noise crosses the limit once or twice."""
     assert not missing_inputs(Levers.drawn(seed, missing=False).run("fit"))
 
 
