@@ -12,13 +12,15 @@ from ident.diagnosis.criteria import CRITERIA
 from ident.diagnosis.ladder import Rungs
 from ident.diagnosis.model_comparison import verified_change
 from ident.diagnosis.result import Explanation, Suspect
+from ident.diagnosis.run_consistency import inconsistent_parameters
 from ident.diagnosis.selection import Selection
-from ident.diagnosis.sentences import delay_sentence
-from ident.diagnosis.stages import LAGS, NOISE, OTHERS, VERIFY, Stages
+from ident.diagnosis.sentences import delay_sentence, inconsistent_sentence
+from ident.diagnosis.stages import CONSISTENCY, LAGS, NOISE, OTHERS, VERIFY, Stages
 from ident.diagnosis.total_delay import lag_ambiguities, total_delay
 from ident.diagnosis.verdict import Findings
 from ident.diagnosis.verification import VerifyChange
 from ident.progress import Progress
+from ident.run import MOTIONS
 from ident.time_budget import in_time
 
 Names = tuple[str, ...]
@@ -80,6 +82,18 @@ def lag_pairs(selection: Selection, stages: Stages, budget: SearchBudget) -> Seq
         return lag_ambiguities(selection.models, selection.fitted, selection.added)
 
     return stages.attempt(LAGS, pairs, ())
+
+
+def run_sentences(selection: Selection, stages: Stages, budget: SearchBudget) -> Sequence[str]:
+    """The sentence on parameters that differ from run to run, where they do."""
+
+    def sentence() -> Sequence[str]:
+        budget.report_progress(Progress(CONSISTENCY, 0, 1))
+        models = selection.models
+        found = inconsistent_parameters(models, selection.fitted)
+        return tuple(inconsistent_sentence(found, models.preset.data.driven_by in MOTIONS))
+
+    return stages.attempt(CONSISTENCY, sentence, ())
 
 
 def _delay_sentences(selection: Selection, budget: SearchBudget) -> Sequence[str]:

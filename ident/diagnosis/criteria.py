@@ -434,7 +434,7 @@ class RunConsistency:
     most_runs: int = 12
     """[runs] Up to which the model is refitted to each alone. Why: each costs a refit; with more runs whole runs are
     held out in turn, so that evidence and standard errors hold between runs.
-    Test: test_run_consistency.py::test_runs_of_one_machine_agree"""
+    Test: test_run_consistency.py::test_of_many_runs_none_is_fitted_alone"""
     chance: float = 1e-3
     """[probability] That runs of one machine disagree in any parameter. Why: the sentence sends a user to the test rig.
     Test: test_run_consistency.py::test_runs_of_one_machine_agree"""

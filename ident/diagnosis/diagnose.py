@@ -11,7 +11,7 @@ from ident.checks.self_oscillation import self_oscillation
 from ident.diagnosis.alternative_structures import alternative_models
 from ident.diagnosis.budget import SearchBudget
 from ident.diagnosis.candidate_models import CandidateModels
-from ident.diagnosis.challenges import challenged, delay_sentences, lag_pairs, other_machines
+from ident.diagnosis.challenges import challenged, delay_sentences, lag_pairs, other_machines, run_sentences
 from ident.diagnosis.discovery.discover import INCOMPLETE, discovered, is_searched
 from ident.diagnosis.discovery.discovery_result import DiscoveryResult
 from ident.diagnosis.fitted_model import FittedModel
@@ -22,29 +22,11 @@ from ident.diagnosis.moves import Moves
 from ident.diagnosis.prediction_horizon import longer_horizon
 from ident.diagnosis.report import report
 from ident.diagnosis.result import Diagnosis, NextRun, Suspect
-from ident.diagnosis.run_consistency import inconsistent_parameters
 from ident.diagnosis.selection import Selection
 from ident.diagnosis.selection_loop import select
-from ident.diagnosis.sentences import (
-    alternative_sentences,
-    dispensable_sentence,
-    free_run_sentence,
-    horizon_sentence,
-    inconsistent_sentence,
-)
+from ident.diagnosis.sentences import alternative_sentences, dispensable_sentence, free_run_sentence, horizon_sentence
 from ident.diagnosis.shown_effects import fitted_with_shown
-from ident.diagnosis.stages import (
-    CONSISTENCY,
-    EFFECTS,
-    ERROR_BUDGET,
-    FURTHER,
-    LABELS,
-    LATER,
-    NEXT_RUN,
-    TERMS,
-    Stages,
-    not_looked_at,
-)
+from ident.diagnosis.stages import EFFECTS, ERROR_BUDGET, FURTHER, LABELS, LATER, NEXT_RUN, TERMS, Stages, not_looked_at
 from ident.diagnosis.undetermined import rested
 from ident.diagnosis.unfitted import unranked, unsearched, with_missing_inputs, with_oscillations
 from ident.diagnosis.verdict import Findings, conclude
@@ -55,7 +37,6 @@ from ident.fit.settings import Settings
 from ident.matrix import Matrix
 from ident.progress import Expected, Progress
 from ident.residuals.budget import Budget
-from ident.run import MOTIONS
 from ident.time_budget import in_time
 
 
@@ -109,8 +90,8 @@ class Diagnoser:
         findings = challenged(selection, steps, suspects, self.stages, pairs, elsewhere)
         catalogue = self._with_follow_up(report(self.fit, self.models, selection, steps, findings))
         windows = (*self._windows(catalogue), *_forgiven(selection))
-        disagreement = self._disagreement(selection, catalogue)
-        story = _Story(catalogue, findings, (*disagreement, *windows, *delays, *alternative_sentences(elsewhere)))
+        differing = run_sentences(selection, self.stages, self.budget) if catalogue.verdict.unexplained else ()
+        story = _Story(catalogue, findings, (*differing, *windows, *delays, *alternative_sentences(elsewhere)))
         terms = DiscoveryResult()
         if is_searched(selection, self.stages, self.budget):
             self.budget.publish_verdict(self._told(story, INCOMPLETE, still_searching=True))
@@ -181,16 +162,6 @@ class Diagnoser:
             return label_suspects(selection.models, selection.fitted, selection.models.floors.by_run)
 
         return self.stages.attempt(LABELS, suspects, [])
-
-    def _disagreement(self, selection: Selection, diagnosis: Diagnosis) -> Sequence[str]:
-        """The sentence on parameters that differ from run to run, where the residual is unexplained."""
-
-        def sentence() -> Sequence[str]:
-            self.budget.report_progress(Progress(CONSISTENCY, 0, 1))
-            found = inconsistent_parameters(selection.models, selection.fitted)
-            return tuple(inconsistent_sentence(found, self.models.preset.data.driven_by in MOTIONS))
-
-        return self.stages.attempt(CONSISTENCY, sentence, ()) if diagnosis.verdict.unexplained else ()
 
     # Conclusion ------------------------------------------------------------------------------------------------
 

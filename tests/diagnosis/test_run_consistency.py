@@ -2,15 +2,22 @@
 
 from __future__ import annotations
 
+from types import SimpleNamespace
+from typing import Any
+
 import numpy as np
 import pytest
 
+from ident.diagnosis.budget import SearchBudget
 from ident.diagnosis.candidate_models import CandidateModels
+from ident.diagnosis.challenges import run_sentences
 from ident.diagnosis.run_consistency import inconsistent_parameters
 from ident.diagnosis.sentences import inconsistent_sentence
+from ident.diagnosis.stages import Stages
 from ident.fit.settings import Settings
 from ident.matrix import Actuator, Matrix
 from ident.run import Run
+from tests.diagnosis.vary import vary
 
 RATE, INERTIA, FRICTION = 100.0, 2e-3, 1e-2
 
@@ -29,11 +36,16 @@ def turned(number: int, inertia: float, seed: int) -> Run:
     return Run(f"run {number}", "", RATE, channels, units, output="velocity", hold="zoh")
 
 
-def found(*inertias: float, seed: int = 1):
-    """The parameters in which runs of machines with these inertias disagree."""
+def fitted(*inertias: float, seed: int = 1):
+    """The models of runs of machines with these inertias, and the one that is fitted to all of them."""
     runs = tuple(turned(number, inertia, seed) for number, inertia in enumerate(inertias))
     models = CandidateModels.of(Matrix(Actuator("D"), runs), Settings(model="drive"), ())
-    return inconsistent_parameters(models, models.refit((), {"m0": INERTIA, "c0": FRICTION}))
+    return models, models.refit((), {"m0": INERTIA, "c0": FRICTION})
+
+
+def found(*inertias: float, seed: int = 1):
+    """The parameters in which runs of machines with these inertias disagree."""
+    return inconsistent_parameters(*fitted(*inertias, seed=seed))
 
 
 def test_runs_of_one_machine_agree():
@@ -60,3 +72,19 @@ def test_the_sentence_says_what_to_record():
     (of_specimen,) = inconsistent_sentence(found(INERTIA, 1.8 * INERTIA), moved=True)
     assert "Repeat one run" in of_specimen
     assert not list(inconsistent_sentence((), moved=False))
+
+
+def test_a_diagnosis_says_it_of_the_selected_model():
+    """By the stage of a diagnosis: the drive of this machine is doubted, since a torque is commanded."""
+    models, refit = fitted(INERTIA, 1.8 * INERTIA)
+    selection: Any = SimpleNamespace(models=models, fitted=refit)
+    budget = SearchBudget(most=1)
+    (text,) = run_sentences(selection, Stages(budget), budget)
+    assert "determine no value of m0." in text
+    assert "did not give what was commanded" in text
+
+
+def test_of_many_runs_none_is_fitted_alone(monkeypatch):
+    vary(monkeypatch, "consistency", most_runs=2)
+    assert found(INERTIA, 1.8 * INERTIA)
+    assert not found(INERTIA, 1.8 * INERTIA, INERTIA)
