@@ -105,7 +105,7 @@ def _model(request: Chosen, matrix: MatrixView | None) -> str:
         return Settings().model
     if matrix.machine:
         return matrix.machine
-    likeliest, *others = in_question(matrix.runs, oil=matrix.piston_area is not None)
+    likeliest, *others = in_question(matrix.runs, oil=matrix.states_oil)
     belongs = request.effects or request.custom or request.bounds or request.set or request.method not in GENERAL
     return likeliest.name if belongs or (not others and likeliest.name == Settings().model) else ""
 

@@ -215,6 +215,7 @@ def summary(matrix: Matrix) -> dict[str, Any]:
         "findings": [asdict(finding) for finding in check(matrix)],
         "notices": list(matrix.notices),
         "machine": matrix.machine,
+        "states_oil": matrix.actuator.states_oil,
     }
 
 
@@ -238,4 +239,5 @@ def view(row: MatrixRow) -> MatrixView:
         batch=row.batch, piston_area=row.piston_area,
         runs=[RunView(**run) for run in shown["runs"]], findings=[FindingView(**f) for f in shown["findings"]],
         notices=shown["notices"], machine=shown.get("machine", ""), removed_at=row.removed_at,
+        states_oil=shown.get("states_oil", row.piston_area is not None),
     )  # fmt: skip

@@ -72,7 +72,7 @@ def _counted(runs: int) -> str:
 def _in_question(matrix: MatrixView) -> tuple[Preset, ...]:
     """The models that the channels allow; where they allow none, all there are: a fit of any says what is missing."""
     try:
-        return in_question(matrix.runs, matrix.machine, matrix.piston_area is not None)
+        return in_question(matrix.runs, matrix.machine, matrix.states_oil)
     except Unusable:
         return tuple(PRESETS.values())
 
