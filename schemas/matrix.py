@@ -43,9 +43,9 @@ class RunView(BaseModel):
 class MatrixView(BaseModel):
     """A stored matrix; batch and area are what it states of its actuator.
 
-    `states_oil` is whether what it states of its actuator are parts of a machine with oil: area, volume, supply pressure or
-    servo-valve. `machine` is the model that its description puts together from stages, where it does. Raw runs that the
-    rule removed are gone since `removed_at`.
+    `states_oil` is whether what it states of its actuator are parts of a machine with oil: area, volume, supply
+    pressure or servo-valve. `machine` is the model that its description puts together from stages, where it does. Raw
+    runs that the rule removed are gone since `removed_at`.
     """
 
     id: str

@@ -17,7 +17,6 @@ from app.pages import next_view
 from ident.bench import acceptance, time_constant
 from ident.comparison import frequency_response, profile
 from ident.diagnosis.criteria import CRITERIA
-from ident.effects import EFFECTS
 from ident.figures import bode, residual_curve, sensitivity, time
 from ident.figures import tracking as tracking_figure
 from ident.fit import genetic, windows
@@ -66,7 +65,6 @@ def _paper_generations() -> int:
 def of_diagnosis() -> Iterator[Tie]:
     """What decides in a diagnosis."""
     D = "diagnosis.md"
-    yield D, "All {} effects take about a second", (len(EFFECTS),)
     yield D, "The first {} are told at once", (word(CRITERIA.ranking.told_at_once),)
     yield D, "at {} strengths over its range", (word(len(CRITERIA.screening.strengths)),)
     yield (
@@ -125,7 +123,6 @@ def of_diagnosis() -> Iterator[Tie]:
 def of_others() -> Iterator[Tie]:
     """What decides elsewhere."""
     yield "which-machine.md", "If the first model is then below {}", (plain(CRITERIA.structure.improbable),)
-    yield "which-machine.md", "[{} effects](models.md#effects)", ({41: "Forty-one"}[len(EFFECTS)],)
     yield "lab.md", "within {} of it there is nothing left to find", (plain(next_view.NEAR),)
 
     P = "physics.md"

@@ -132,3 +132,15 @@ def test_the_walks_name_files_that_exist():
     named = re.findall(r"`([a-z_]+/[\w/.]+)`", walks)
     assert len(named) > 40
     assert not [name for name in named if not (ROOT / name).is_file()]
+
+
+@pytest.mark.parametrize(("change", "most"), [
+    ("add an effect", 5), ("change the rule by which an effect is added", 4), ("add a figure with an option", 5),
+    ("change a field that an endpoint answers", 4), ("understand a verdict", 8),
+])  # fmt: skip
+def test_a_common_change_takes_few_files_to_read_and_they_exist(change, most):
+    text = (ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8")
+    read, touch = re.search(rf"^\| {change} \| (.+) \| (.*)\|$", text, re.M).groups()
+    of_row = re.findall(r"`([a-z_]+/[\w/.]+)`", read)
+    assert 0 < len(of_row) <= most
+    assert not [name for name in (*of_row, *re.findall(r"`([a-z_]+/[\w/.]+)`", touch)) if not (ROOT / name).exists()]

@@ -119,7 +119,7 @@ def test_candidates_are_sorted_by_the_error_on_held_out_data(dead_zone):
     errors = [c.error["held_out"] for c in dead_zone.candidates if c.error["held_out"] is not None]
     assert len(errors) >= 5
     assert all(before <= (1 + CRITERIA.equality.tie) * after for before, after in pairwise(errors))
-    assert len(dead_zone.candidates) == len(EFFECTS) == 41
+    assert len(dead_zone.candidates) == len(EFFECTS)
 
 
 @pytest.mark.usefixtures("few_effects")

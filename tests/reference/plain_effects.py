@@ -1,6 +1,7 @@
 """The effects from controller to pressure as changes of the plain machine, written from the physics.
 
-The parameters have the letters of the catalogue, in `self.p`.
+A class has the name of its effect, and the letters of the catalogue, in `self.p`. Its `case` has the values at which
+the harness judges the effect (test_nonlinear_reference.py).
 """
 
 # ruff: noqa: ARG002 - what one machine does not read of time and state, another one does
@@ -13,7 +14,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from tests.reference.plain_machine import Machine, Samples, State, Switch
+from tests.reference.plain_machine import CHATTERS, KINKS, Case, Machine, Samples, State, Switch
 from tests.reference.qian_reference import Cell, Plant
 
 
@@ -29,6 +30,8 @@ def clip(value: float, low: float, high: float) -> float:
 
 
 class CommandDelay(Machine):
+    case = Case({"T": (1.7e-3, 3e-3)}, KINKS)
+
     def late(self) -> float:
         return self.p.T
 
@@ -37,11 +40,14 @@ class CommandDelay(Machine):
 
 
 class CommandLimit(Machine):
+    case = Case({"a": (150, 150)}, KINKS)
+
     def drive(self, t: float, s: State) -> float:
         return clip(super().drive(t, s), -1 / self.p.a, 1 / self.p.a)
 
 
 class IntegralAction(Machine):
+    case = Case({"Ki": (30, 30)})
     own = (1e-5,)
 
     def drive(self, t: float, s: State) -> float:
@@ -52,6 +58,8 @@ class IntegralAction(Machine):
 
 
 class Lead(Machine):
+    case = Case({"Td": (2e-3, 2e-3)})
+
     def drive(self, t: float, s: State) -> float:
         return super().drive(t, s) + self.cell.gain * self.p.Td * (self.slope - s[2])
 
@@ -60,12 +68,16 @@ class Lead(Machine):
 
 
 class PressureFeedback(Machine):
+    case = Case({"kd": (5e-10, 5e-10)})
+
     def drive(self, t: float, s: State) -> float:
         return super().drive(t, s) - self.p.kd * s[1]
 
 
 class LoopDelay(Machine):
     """Method of steps: no piece is longer than the delay, so that what it needs is already known."""
+
+    case = Case({"T": (1.2e-3, 2.1e-3)})
 
     def __init__(self, plant: Plant, cell: Cell, values: dict[str, float]) -> None:
         super().__init__(plant, cell, values)
@@ -87,6 +99,7 @@ class LoopDelay(Machine):
 
 
 class ValveSecondOrder(Machine):
+    case = Case({"Tn": (1.5e-3, 1.5e-3), "zeta": (0.7, 0.4)})
     own = (1e-2, 10.0)
 
     def opening(self, s: State) -> float:
@@ -97,6 +110,8 @@ class ValveSecondOrder(Machine):
 
 
 class ValveRateLimit(Machine):
+    case = Case({"a": (0.5, 0.5)})
+
     def valve(self, t: float, s: State) -> float:
         wanted = super().valve(t, s)
         return wanted / sqrt(1 + (self.p.a * wanted) ** 2)
@@ -105,6 +120,7 @@ class ValveRateLimit(Machine):
 class SpoolStiction(Machine):
     """Modes: 0 stands, ±1 moves, ±2 is dragged along at the edge of the threshold where e moves slower than s/tau."""
 
+    case = Case({"s": (3e-4, 3e-4)}, CHATTERS, 1e-4)
     longest = 1e-4
 
     def gap(self, t: float, s: State) -> float:
@@ -143,6 +159,7 @@ class SpoolStiction(Machine):
 class Backlash(Machine):
     """Modes: ±1 one side pushes, 0 inside the play; its own state is the part behind the play."""
 
+    case = Case({"b": (5e-4, 5e-4)}, KINKS)
     own = (1e-2,)
     longest = 1e-4
 
@@ -164,26 +181,36 @@ class Backlash(Machine):
 
 
 class NullBias(Machine):
+    case = Case({"b": (1e-3, -1e-3)})
+
     def opening(self, s: State) -> float:
         return s[0] + self.p.b
 
 
 class DeadZone(Machine):
+    case = Case({"h": (5e-4, 5e-4), "a": (0.0, 0.4)}, KINKS)
+
     def opening(self, s: State) -> float:
         return s[0] - clip(s[0], -self.p.h * (1 - self.p.a), self.p.h * (1 + self.p.a))
 
 
 class Underlap(Machine):
+    case = Case({"h": (5e-4, 5e-4)}, KINKS)
+
     def opening(self, s: State) -> float:
         return s[0] + clip(s[0], -self.p.h, self.p.h)
 
 
 class GainAsymmetry(Machine):
+    case = Case({"a": (0.2, -0.2)}, KINKS)
+
     def opening(self, s: State) -> float:
         return s[0] * (1 + self.p.a * sgn(s[0]))
 
 
 class FlowSaturation(Machine):
+    case = Case({"a": (150, 150)})
+
     def opening(self, s: State) -> float:
         return s[0] / sqrt(1 + (self.p.a * s[0]) ** 2)
 
@@ -192,11 +219,14 @@ class FlowSaturation(Machine):
 
 
 class PressureFlow(Machine):
+    case = Case({"r": (3e-7, 3e-7)}, KINKS)
+
     def flow(self, w: float, s: State) -> float:
         return super().flow(w, s) * sqrt(max(0.0, 1 - sgn(w) * s[1] * self.p.r))
 
 
 class SupplyDroop(Machine):
+    case = Case({"d": (5e3, 5e3), "T": (0.1, 0.02)}, KINKS)
     own = (1e-5,)
 
     def flow(self, w: float, s: State) -> float:
@@ -207,16 +237,22 @@ class SupplyDroop(Machine):
 
 
 class OrificeLeakage(Machine):
+    case = Case({"C": (5e-9, 5e-9), "P0": (5e4, 3e5)})
+
     def leak(self, P: float) -> float:
         return super().leak(P) + self.p.C * P / sqrt(sqrt(P**2 + self.p.P0**2))
 
 
 class EntrainedAir(Machine):
+    case = Case({"alpha": (2, 2), "Pr": (2e6, 5e5)})
+
     def softness(self, s: State) -> float:
         return self.plant.Ka * (1 + self.p.alpha / (1 + (s[1] / self.p.Pr) ** 2))
 
 
 class StrokeDependentVolume(Machine):
+    case = Case({"kappa": (2e4, 2e4)})
+
     def softness(self, s: State) -> float:
         return self.plant.Ka * (1 - self.p.kappa * s[3] ** 2)
 
@@ -225,16 +261,21 @@ class StrokeDependentVolume(Machine):
 
 
 class FlowForce(Machine):
+    case = Case({"f": (3e-7, 3e-7)}, KINKS)
+
     def drive(self, t: float, s: State) -> float:
         return super().drive(t, s) - self.p.f * s[0] * abs(s[1])
 
 
 class PressureDependentGain(Machine):
+    case = Case({"g": (3e-7, -3e-7)}, KINKS)
+
     def flow(self, w: float, s: State) -> float:
         return super().flow(w, s) * (1 + self.p.g * abs(s[1]))
 
 
 class SupplyRipple(Machine):
+    case = Case({"r": (0.2, 0.2), "f": (25.0, 41.0), "phi": (0.0, 1.0)})
     now = 0.0
 
     def rates(self, t: float, s: State) -> list[float]:
@@ -246,5 +287,7 @@ class SupplyRipple(Machine):
 
 
 class OneWayLeakage(Machine):
+    case = Case({"c": (1e-11, -1e-11)}, KINKS)
+
     def leak(self, P: float) -> float:
         return super().leak(P) + self.p.c * abs(P)

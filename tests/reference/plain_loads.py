@@ -10,12 +10,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tests.reference.plain_effects import clip, sgn
-from tests.reference.plain_machine import Machine, State, Switch
+from tests.reference.plain_machine import KINKS, STICKS, Case, Machine, State, Switch
 
 
 class CoulombFriction(Machine):
     """Modes: 0 sticks, ±1 slides; it leaves a stop where the other forces are larger than friction at standstill."""
 
+    case = Case({"Fc": (80, 80)}, STICKS)
     longest = 1e-4
 
     def limit(self, s: State) -> float:
@@ -44,11 +45,14 @@ class CoulombFriction(Machine):
 
 
 class StribeckFriction(CoulombFriction):
+    case = Case({"dF": (80, 80), "vs": (5e-3, 2e-2)}, STICKS, 4e-4)
+
     def limit(self, s: State) -> float:
         return self.p.dF * exp(-((s[2] / self.p.vs) ** 2))
 
 
 class PreslidingFriction(Machine):
+    case = Case({"Fd": (100, 100), "xs": (1e-5, 1e-4)}, KINKS)
     own = (1.0,)
 
     def resistance(self, s: State) -> float:
@@ -59,16 +63,21 @@ class PreslidingFriction(Machine):
 
 
 class QuadraticDamping(Machine):
+    case = Case({"c2": (1e4, 1e4)}, KINKS)
+
     def resistance(self, s: State) -> float:
         return super().resistance(s) + self.p.c2 * s[2] * abs(s[2])
 
 
 class CubicStiffness(Machine):
+    case = Case({"k3": (5e10, -2e10)})
+
     def reaction(self, s: State) -> float:
         return super().reaction(s) + self.p.k3 * s[3] ** 3
 
 
 class SpecimenHysteresis(Machine):
+    case = Case({"fy": (200, 200), "xy": (5e-4, 2e-4), "n": (1, 2), "gamma": (0.5, -0.7)}, KINKS)
     own = (1.0,)
 
     def reaction(self, s: State) -> float:
@@ -80,6 +89,8 @@ class SpecimenHysteresis(Machine):
 
 
 class SpecimenFreePlay(Machine):
+    case = Case({"g": (5e-4, 5e-4)}, KINKS)
+
     def reaction(self, s: State) -> float:
         return self.cell.damping * s[2] + self.cell.stiffness * (s[3] - clip(s[3], -self.p.g, self.p.g))
 
@@ -87,6 +98,7 @@ class SpecimenFreePlay(Machine):
 class SpecimenJoint(Machine):
     """The specimen has its own position x2 and, where it has mass, speed v2; without mass it follows its damper."""
 
+    case = Case({"s": (1e-5, 5e-6)})
     own = (1e-3, 1e-1)
 
     def joint(self, s: State) -> float:
@@ -106,11 +118,15 @@ class SpecimenJoint(Machine):
 
 
 class FrameCompliance(Machine):
+    case = Case({"s": (5e-7, 5e-7)})
+
     def reading(self, t: float, s: State) -> float:
         return s[3] + self.p.s * self.force(s)
 
 
 class StaticLoad(Machine):
+    case = Case({"F0": (200, -200)})
+
     def resistance(self, s: State) -> float:
         return super().resistance(s) - self.p.F0
 
@@ -119,6 +135,7 @@ class StaticLoad(Machine):
 
 
 class SensorLag(Machine):
+    case = Case({"T": (1.5e-3, 1.5e-3)})
     own = (1e-3,)
 
     def reading(self, t: float, s: State) -> float:
@@ -129,6 +146,7 @@ class SensorLag(Machine):
 
 
 class AcquisitionLag(Machine):
+    case = Case({"T": (1.5e-3, 1.5e-3)})
     own = (1e-3,)
 
     def own_rates(self, t: float, s: State) -> list[float]:
@@ -139,6 +157,8 @@ class AcquisitionLag(Machine):
 
 
 class SensorGain(Machine):
+    case = Case({"g": (0.05, -0.05)})
+
     def recorded(self, t: float, s: State) -> float:
         return s[3] * (1 + self.p.g)
 
@@ -165,6 +185,8 @@ class Vanishing(CoulombFriction):
 class UnequalAreas(Vanishing):
     """The area A (1 + a sgn v) of flow and force: against the motion it holds the rod as dry friction does."""
 
+    case = Case({"a": (0.2, -0.2)}, STICKS)
+
     def limit(self, s: State) -> float:
         return max(-self.p.a * self.plant.A * s[1], 0.0)
 
@@ -181,16 +203,22 @@ class UnequalAreas(Vanishing):
 
 
 class PositionFriction(Vanishing):
+    case = Case({"Fx": (5e7, 5e7)}, STICKS)
+
     def limit(self, s: State) -> float:
         return self.p.Fx * s[3] ** 2
 
 
 class EndStop(Machine):
+    case = Case({"g": (1e3, 1e3), "ks": (1e7, 3e6), "xm": (0.0, 2e-4)}, KINKS)
+
     def resistance(self, s: State) -> float:
         way = s[3] - self.p.xm
         return super().resistance(s) + self.p.ks * max(abs(way) - 1 / self.p.g, 0.0) * sgn(way)
 
 
 class SensorNonlinearity(Machine):
+    case = Case({"s": (2e3, -2e3)})
+
     def reading(self, t: float, s: State) -> float:
         return s[3] + self.p.s * s[3] ** 3

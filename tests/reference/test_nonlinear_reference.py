@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import ast
+import re
 import sys
 from functools import cache
 from pathlib import Path
-from typing import NamedTuple
 
 import numpy as np
 import pytest
@@ -16,6 +16,7 @@ from tests.reference import measured_load_reference as loaded
 from tests.reference import nonlinear_reference as reference
 from tests.reference import plain_effects, plain_loads, plain_machine
 from tests.reference import qian_reference as linear
+from tests.reference.plain_machine import KINKS
 from tests.short_form import short_form
 
 PLANT = linear.Plant()
@@ -25,71 +26,12 @@ SAMPLES, LONG = 60, 512
 RUNS = ((linear.Cell(0.98, 67.6e3, 150.0, 7.0), "linear"), (linear.Cell(0.0, 36.3e3, 300.0, 10.0), "zoh"))
 
 
-class Kind(NamedTuple):
-    """How exact the reference is, of each output's standard deviation, and by how much a step of a quarter is better.
-
-    Kutta's third order gives 64 where the equations are smooth; kinks cost an order, jumps of a rate two. Below a
-    hundredth of the error the place of a kink inside its step decides.
-    """
-
-    error: float
-    gain: float
-
-
-SMOOTH, KINKS, STICKS, CHATTERS = Kind(1e-7, 40), Kind(5e-6, 6), Kind(5e-5, 5), Kind(1e-3, 2)
-
-
-class Case(NamedTuple):
-    """Values of an effect's parameters in the two runs, what kind it is, and the RMS of the command (m)."""
-
-    values: dict[str, tuple[float, float]]
-    kind: Kind = SMOOTH
-    rms: float = 1.27e-3
-
-
 CASES = {
-    "command_delay": Case({"T": (1.7e-3, 3e-3)}, KINKS),
-    "command_limit": Case({"a": (150, 150)}, KINKS),
-    "integral_action": Case({"Ki": (30, 30)}),
-    "lead": Case({"Td": (2e-3, 2e-3)}),
-    "pressure_feedback": Case({"kd": (5e-10, 5e-10)}),
-    "loop_delay": Case({"T": (1.2e-3, 2.1e-3)}),
-    "valve_second_order": Case({"Tn": (1.5e-3, 1.5e-3), "zeta": (0.7, 0.4)}),
-    "valve_rate_limit": Case({"a": (0.5, 0.5)}),
-    "spool_stiction": Case({"s": (3e-4, 3e-4)}, CHATTERS, 1e-4),
-    "backlash": Case({"b": (5e-4, 5e-4)}, KINKS),
-    "null_bias": Case({"b": (1e-3, -1e-3)}),
-    "dead_zone": Case({"h": (5e-4, 5e-4), "a": (0.0, 0.4)}, KINKS),
-    "underlap": Case({"h": (5e-4, 5e-4)}, KINKS),
-    "gain_asymmetry": Case({"a": (0.2, -0.2)}, KINKS),
-    "flow_saturation": Case({"a": (150, 150)}),
-    "pressure_flow": Case({"r": (3e-7, 3e-7)}, KINKS),
-    "supply_droop": Case({"d": (5e3, 5e3), "T": (0.1, 0.02)}, KINKS),
-    "orifice_leakage": Case({"C": (5e-9, 5e-9), "P0": (5e4, 3e5)}),
-    "entrained_air": Case({"alpha": (2, 2), "Pr": (2e6, 5e5)}),
-    "stroke_dependent_volume": Case({"kappa": (2e4, 2e4)}),
-    "coulomb_friction": Case({"Fc": (80, 80)}, STICKS),
-    "stribeck_friction": Case({"dF": (80, 80), "vs": (5e-3, 2e-2)}, STICKS, 4e-4),
-    "presliding_friction": Case({"Fd": (100, 100), "xs": (1e-5, 1e-4)}, KINKS),
-    "quadratic_damping": Case({"c2": (1e4, 1e4)}, KINKS),
-    "cubic_stiffness": Case({"k3": (5e10, -2e10)}),
-    "specimen_hysteresis": Case({"fy": (200, 200), "xy": (5e-4, 2e-4), "n": (1, 2), "gamma": (0.5, -0.7)}, KINKS),
-    "specimen_free_play": Case({"g": (5e-4, 5e-4)}, KINKS),
-    "specimen_joint": Case({"s": (1e-5, 5e-6)}),
-    "frame_compliance": Case({"s": (5e-7, 5e-7)}),
-    "static_load": Case({"F0": (200, -200)}),
-    "sensor_lag": Case({"T": (1.5e-3, 1.5e-3)}),
-    "acquisition_lag": Case({"T": (1.5e-3, 1.5e-3)}),
-    "sensor_gain": Case({"g": (0.05, -0.05)}),
-    "flow_force": Case({"f": (3e-7, 3e-7)}, KINKS),
-    "pressure_dependent_gain": Case({"g": (3e-7, -3e-7)}, KINKS),
-    "supply_ripple": Case({"r": (0.2, 0.2), "f": (25.0, 41.0), "phi": (0.0, 1.0)}),
-    "one_way_leakage": Case({"c": (1e-11, -1e-11)}, KINKS),
-    "unequal_areas": Case({"a": (0.2, -0.2)}, STICKS),
-    "position_friction": Case({"Fx": (5e7, 5e7)}, STICKS),
-    "end_stop": Case({"g": (1e3, 1e3), "ks": (1e7, 3e6), "xm": (0.0, 2e-4)}, KINKS),
-    "sensor_nonlinearity": Case({"s": (2e3, -2e3)}),
+    re.sub(r"(?<!^)(?=[A-Z])", "_", name).lower(): machine.case
+    for name, machine in (vars(plain_effects) | vars(plain_loads)).items()
+    if isinstance(machine, type) and "case" in vars(machine)
 }
+"""The case of each effect's machine, by the effect's name."""
 
 
 @pytest.mark.parametrize(

@@ -22,7 +22,8 @@ def stored(*without: str, **stated) -> MatrixView:
     """An angle that follows an angle, as the database keeps it; what an earlier version did not write is left out."""
     kept = summary(replace(servo(1), actuator=Actuator("A", **stated)))
     return view(SimpleNamespace(
-        id="m", serial="A", parent=None, created_at="", batch="", piston_area=stated.get("piston_area"), removed_at=None,
+        id="m", serial="A", parent=None, created_at="", batch="", removed_at=None,
+        piston_area=stated.get("piston_area"),
         summary={name: value for name, value in kept.items() if name not in without},
     ))  # fmt: skip
 

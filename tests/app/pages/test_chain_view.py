@@ -11,7 +11,7 @@ from ident.fit.result import FitResult
 from ident.fit.settings import Settings
 from ident.presets import PRESETS, preset
 
-TAKEN = {
+AT_LEAST = {
     "qian2014": 54,
     "first_order": 19,
     "two_tanks": 20,
@@ -66,7 +66,7 @@ def test_what_an_effect_feeds_back_is_drawn_with_it():
 def test_every_effect_that_is_offered_is_one_that_a_fit_takes(model):
     """And the other way round."""
     offered = {one.name for place in drawing(fit(model)).places for one in place.off}
-    assert len(offered) == TAKEN[model]
+    assert len(offered) >= AT_LEAST[model]
     for name in offered:
         check_settings(Settings(model=model, effects=(name,)))
     assert offered == {effect.name for effect in CATALOGUE if takes(model, effect.name)}
