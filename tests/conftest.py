@@ -10,7 +10,7 @@ import logging
 import os
 import sys
 import threading
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Collection, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -188,6 +188,16 @@ FEW = {
 }  # fmt: skip
 
 
+def rank_only(own: pytest.MonkeyPatch, names: Collection[str]) -> None:
+    """Put the effects with these names in the place of the catalogue of a diagnosis, until the test ends."""
+    from ident.diagnosis import candidate_models
+    from ident.effects import CATALOGUE
+
+    few = tuple(effect for effect in CATALOGUE if effect.name in names)
+    assert {effect.name for effect in few} == {*names}
+    own.setattr(candidate_models, "CATALOGUE", few)
+
+
 @contextlib.contextmanager
 def of_few_effects(full: bool, *beside: str) -> Iterator[None]:
     """In the short form a diagnosis ranks eight effects of the catalogue, of several places, and those named `beside`.
@@ -198,14 +208,10 @@ def of_few_effects(full: bool, *beside: str) -> Iterator[None]:
     with pytest.MonkeyPatch.context() as own:
         if not full:
             from ident.design import candidate_runs
-            from ident.diagnosis import candidate_models
 
             for most in ("_SPECIMENS", "_GAINS", "_AMPLITUDES"):
                 own.setattr(candidate_runs, most, 2)
-            named = FEW | {*beside}
-            few = tuple(effect for effect in candidate_models.CATALOGUE if effect.name in named)
-            assert len(few) == len(named)
-            own.setattr(candidate_models, "CATALOGUE", few)
+            rank_only(own, FEW | {*beside})
         yield
 
 

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import pytest
 
-from ident.diagnosis import candidate_models
 from ident.errors import Unusable
 from ident.fit.choices import settings_of
 from ident.fit.given import of_model, with_candidates, with_candidates_given
 from ident.fit.settings import Settings
 from ident.presets import preset
 from ident.workflows import diagnose, identify
+from tests.conftest import rank_only
 from tests.diagnosis.damper import Damper
 
 WAY = "presliding_friction.displacement"
@@ -26,7 +26,7 @@ def fit():
 def few_frictions(monkeypatch):
     """Rank four effects, whose kernels are compiled soon."""
     few = ("coulomb_friction", "presliding_friction", "quadratic_damping", "cubic_stiffness")
-    monkeypatch.setattr(candidate_models, "CATALOGUE", tuple(e for e in candidate_models.CATALOGUE if e.name in few))
+    rank_only(monkeypatch, few)
 
 
 @pytest.mark.full

@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 import scipy
 
-from ident.diagnosis import candidate_models
 from ident.fit.settings import Settings
 from ident.matrix import Actuator, Matrix
 from ident.run import Run
 from ident.workflows import diagnose, identify
+from tests.conftest import rank_only
 
 FEW = ("specimen_hysteresis", "degrading_hysteresis")
 SMALL = {"population": 24.0, "generations": 6.0, "elite": 3.0}
@@ -56,8 +56,7 @@ def column(seed: int, degrades: bool) -> Matrix:
 def _few_effects(monkeypatch, full):
     """In the short form what comes nearest to it is ranked."""
     if not full:
-        few = tuple(effect for effect in candidate_models.CATALOGUE if effect.name in FEW)
-        monkeypatch.setattr(candidate_models, "CATALOGUE", few)
+        rank_only(monkeypatch, FEW)
 
 
 def test_the_energy_with_which_a_record_begins_is_found_in_its_own_unit():

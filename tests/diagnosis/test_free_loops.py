@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 import scipy
 
-from ident.diagnosis import candidate_models
 from ident.matrix import Actuator, Matrix
 from ident.run import Run
 from ident.workflows import diagnose, identify
+from tests.conftest import rank_only
 
 RATE, COUNT = 200.0, 800
 MASS, DAMPING, SPRING = 2.0, 12.0, 4e3
@@ -42,8 +42,7 @@ def oscillator(gamma: float, seed: int, use: str) -> Run:
 def _few_effects(monkeypatch, full):
     """In the short form what comes nearest to it is ranked."""
     if not full:
-        few = tuple(effect for effect in candidate_models.CATALOGUE if effect.name in FEW)
-        monkeypatch.setattr(candidate_models, "CATALOGUE", few)
+        rank_only(monkeypatch, FEW)
 
 
 @pytest.mark.parametrize("share", [-1.4, 0.2])

@@ -5,7 +5,6 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from ident.diagnosis import candidate_models
 from ident.diagnosis.candidate_models import CandidateModels
 from ident.diagnosis.evidence.free_run import FreeRun, adds_up, drifts, drives_away
 from ident.diagnosis.moves import Moves
@@ -14,9 +13,9 @@ from ident.diagnosis.selection_loop import select
 from ident.diagnosis.sentences import free_run_sentence, why
 from ident.diagnosis.verdict import Findings, conclude, contradiction
 from ident.diagnosis.verification import VerifyChange, with_free_run
-from ident.effects import EFFECTS
 from ident.fit.settings import Settings
 from ident.matrix import Actuator, Matrix
+from tests.conftest import rank_only
 from tests.diagnosis.test_operating_point import DAMPING, GAIN, WINDOW, rail
 from tests.diagnosis.vary import vary
 
@@ -26,7 +25,7 @@ WINDOWS, SAMPLES = 60, 20
 
 def selected(monkeypatch: pytest.MonkeyPatch, *names: str) -> Selection:
     """What is added to a motor with dry friction and a small constant force, of effects with these names."""
-    monkeypatch.setattr(candidate_models, "CATALOGUE", tuple(one for one in EFFECTS if one.name in names))
+    rank_only(monkeypatch, names)
     models = CandidateModels.of(Matrix(Actuator("RAIL"), (rail(SMALL, 2),)), Settings(model="motor"), (), WINDOW, None)
     base = models.converged(models.refit((), {"m0": 1.0, "c0": DAMPING, "Kt": GAIN}))
     moves = Moves(models, base, 4, lambda _progress: None)

@@ -8,7 +8,6 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from ident.diagnosis import candidate_models
 from ident.diagnosis.candidate_models import CandidateModels
 from ident.diagnosis.criteria import CRITERIA
 from ident.diagnosis.free_shapes import (
@@ -30,6 +29,7 @@ from ident.fit.space import search_space
 from ident.presets import preset
 from ident.simulation.steps import MOST
 from ident.workflows import diagnose, identify
+from tests.conftest import rank_only
 from tests.diagnosis.damper import Damper
 
 WAY = "presliding_friction.displacement"
@@ -40,9 +40,7 @@ FEW = ("coulomb_friction", "presliding_friction", "quadratic_damping", "position
 def _few_frictions(monkeypatch, full):
     """In the short form five effects are ranked, two of which are what a wrong width was taken for."""
     if not full:
-        monkeypatch.setattr(
-            candidate_models, "CATALOGUE", tuple(e for e in candidate_models.CATALOGUE if e.name in FEW)
-        )
+        rank_only(monkeypatch, FEW)
 
 
 def refitted(damper: Damper):

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from ident.diagnosis import candidate_models
 from ident.workflows import diagnose, identify
+from tests.conftest import rank_only
 from tests.diagnosis.damper import Damper, PlayedDamper
 
 FEW = ("coulomb_friction", "presliding_friction", "specimen_hysteresis", "specimen_free_play", "friction_behind_play")
@@ -15,8 +15,7 @@ FEW = ("coulomb_friction", "presliding_friction", "specimen_hysteresis", "specim
 def _few_effects(monkeypatch, full):
     """In the short form what comes nearest to it is ranked."""
     if not full:
-        few = tuple(effect for effect in candidate_models.CATALOGUE if effect.name in FEW)
-        monkeypatch.setattr(candidate_models, "CATALOGUE", few)
+        rank_only(monkeypatch, FEW)
 
 
 @pytest.mark.full

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import pytest
 
-from ident.diagnosis import candidate_models
 from ident.fit.settings import Settings
 from ident.workflows import diagnose, identify
 from tests.blind.various import Various
+from tests.conftest import rank_only
 
 FEW = ("arm_gravity", "cubic_stiffness", "coulomb_friction", "end_stop", "static_load")
 LIGHT = {"population": 24.0, "generations": 8.0, "elite": 4.0}
@@ -16,8 +16,7 @@ LIGHT = {"population": 24.0, "generations": 8.0, "elite": 4.0}
 @pytest.mark.full
 def test_the_weight_of_an_arm_that_hangs_takes_the_place_of_a_part_of_the_spring(monkeypatch):
     """It swings by 100 degrees; its machine is integrated by SciPy."""
-    few = tuple(effect for effect in candidate_models.CATALOGUE if effect.name in FEW)
-    monkeypatch.setattr(candidate_models, "CATALOGUE", few)
+    rank_only(monkeypatch, FEW)
     arm = Various.drawn(168008, hidden=True)
     assert (arm.kind, arm.hidden) == ("arm", "arm_gravity")
     records = arm.measured()

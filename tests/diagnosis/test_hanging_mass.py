@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import pytest
 
-from ident.diagnosis import candidate_models
 from ident.fit.settings import Settings
 from ident.workflows import diagnose, identify
 from tests.blind.various import Various
+from tests.conftest import rank_only
 
 FEW = ("elastic_load", "elastic_coupling")
 LIGHT = {"population": 24.0, "generations": 8.0, "elite": 4.0}
@@ -15,8 +15,7 @@ LIGHT = {"population": 24.0, "generations": 8.0, "elite": 4.0}
 
 def test_a_spring_whose_resonance_lies_beyond_the_command_is_found(monkeypatch):
     """Straight commands excite up to 24.5 rad/s; the load swings at 27.5 rad/s. SciPy integrates the machine."""
-    few = tuple(effect for effect in candidate_models.CATALOGUE if effect.name in FEW)
-    monkeypatch.setattr(candidate_models, "CATALOGUE", few)
+    rank_only(monkeypatch, FEW)
     coupled = Various.drawn(168283, hidden=True)
     assert (coupled.kind, coupled.hidden) == ("coupled", "elastic_load")
     records = coupled.measured()

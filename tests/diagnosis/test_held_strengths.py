@@ -5,12 +5,12 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from ident.diagnosis import candidate_models
 from ident.fit.given import with_candidates_given
 from ident.fit.settings import Settings
 from ident.matrix import Actuator, Matrix
 from ident.run import Run
 from ident.workflows import diagnose, identify
+from tests.conftest import rank_only
 
 RATE, COUNT, LAG, NOISE, DRY = 100.0, 300, 0.1, 0.01, 0.4
 LIGHT = {"population": 16.0, "generations": 3.0, "elite": 2.0}
@@ -41,7 +41,7 @@ def matrix() -> Matrix:
 def two_effects(monkeypatch):
     """Look for two effects, whose kernels are compiled soon."""
     few = ("coulomb_friction", "rectified_sensor")
-    monkeypatch.setattr(candidate_models, "CATALOGUE", tuple(e for e in candidate_models.CATALOGUE if e.name in few))
+    rank_only(monkeypatch, few)
 
 
 def test_a_counter_that_sees_no_sign_sees_none_of_it(matrix):

@@ -6,12 +6,12 @@ import numpy as np
 import pytest
 from scipy.signal import lsim
 
-from ident.diagnosis import candidate_models
 from ident.diagnosis.structure_selection import choose_structure
 from ident.fit.settings import Settings
 from ident.matrix import Actuator, Matrix
 from ident.readers import from_arrays
 from ident.workflows import diagnose, identify
+from tests.conftest import rank_only
 
 FEW = ("rectified_sensor", "coulomb_friction", "dead_zone", "null_bias")
 LAG, NOISE = 6.0, 0.005  # samples, of the output
@@ -31,8 +31,7 @@ def counted(seed: int, use: str) -> Matrix:
 
 @pytest.mark.full
 def test_a_counter_without_a_sign_is_named_whatever_the_command(monkeypatch):
-    few = tuple(effect for effect in candidate_models.CATALOGUE if effect.name in FEW)
-    monkeypatch.setattr(candidate_models, "CATALOGUE", few)
+    rank_only(monkeypatch, FEW)
     runs = (*counted(1, "fit").runs, *counted(2, "fit").runs, *counted(3, "verify").runs)
     matrix = Matrix(Actuator("COUNTER"), runs)
     choice = choose_structure(matrix)

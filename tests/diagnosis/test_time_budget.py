@@ -12,7 +12,6 @@ from typing import Any
 import numpy as np
 import pytest
 
-from ident.diagnosis import candidate_models
 from ident.diagnosis.discovery.search import TermSearch
 from ident.diagnosis.discovery.term_library import TermLibrary
 from ident.diagnosis.result import Diagnosis
@@ -27,6 +26,7 @@ from ident.simulation import recursion, simulate
 from ident.time_budget import TimeBudget
 from ident.workflows import diagnose, identify
 from tests.blind.machines import Machine
+from tests.conftest import rank_only
 from tests.diagnosis.vary import vary
 from tests.reference import qian_reference as linear
 
@@ -102,9 +102,7 @@ def counted(monkeypatch: pytest.MonkeyPatch) -> Counted:
     """Diagnoses of few effects, and few terms."""
     work = Counted()
     monkeypatch.setattr("ident.parallel._idle", lambda: threading.Semaphore(0))
-    monkeypatch.setattr(
-        candidate_models, "CATALOGUE", tuple(one for one in candidate_models.CATALOGUE if one.name in FEW)
-    )
+    rank_only(monkeypatch, FEW)
 
     # Of the search for terms a few steps: it is the same loop for many.
     every = TermLibrary.terms

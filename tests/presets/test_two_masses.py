@@ -8,11 +8,11 @@ from functools import cache
 import numpy as np
 import pytest
 
-from ident.diagnosis import candidate_models
 from ident.fit.settings import Settings
 from ident.matrix import Actuator, Matrix
 from ident.run import Run
 from ident.workflows import diagnose, identify
+from tests.conftest import rank_only
 from tests.reference.coupled_masses import Coupled
 
 RATE, COUNT, NOISE = 100.0, 400, 0.005
@@ -64,7 +64,7 @@ def test_a_spring_between_drive_and_load_is_named_by_what_was_recorded(seen, wan
     if not full and (dry or seen):
         pytest.skip("the long form: friction as well, and the load's motion, of which other effects have to be told")
     few = (*SEEN, "coulomb_friction", "command_delay", "dead_zone")
-    monkeypatch.setattr(candidate_models, "CATALOGUE", tuple(e for e in candidate_models.CATALOGUE if e.name in few))
+    rank_only(monkeypatch, few)
     parts, records = drawn(2, dry), matrix(2, seen, dry)
     found = diagnose(records, identify(records, Settings(model="motor", options=LIGHT)), propose=False)
     assert set(found.verdict.effects) == {wanted, *(("coulomb_friction",) if dry else ())}
