@@ -8,6 +8,7 @@ import numpy as np
 
 from ident.effects.effect import Effect
 from ident.effects.needs import one_sided
+from ident.linear_filter import linear_filter
 from ident.matrix import Matrix
 from ident.parameter import Parameter
 from ident.run import Run, Samples
@@ -50,10 +51,8 @@ def followed(run: Run) -> Samples:
 
 def _behind(u: Samples, lag: float) -> Samples:
     """A command behind a lag of the first order of so many samples."""
-    from scipy.signal import lfilter  # noqa: PLC0415 - dear to load, and asked for of a speed on one side alone
-
     kept = np.exp(-1.0 / lag)
-    return np.asarray(lfilter([1.0 - kept], [1.0, -kept], u), np.float64)
+    return linear_filter([1.0 - kept], [1.0, -kept], u)
 
 
 RECTIFIED_SENSOR = Effect(

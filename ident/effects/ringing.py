@@ -18,6 +18,7 @@ from weakref import WeakKeyDictionary
 import numpy as np
 from numpy.typing import NDArray
 
+from ident.linear_filter import linear_filter
 from ident.run import Run
 
 Array = NDArray[np.float64]
@@ -88,8 +89,6 @@ def _poles(found: Array) -> NDArray[np.complex128]:
 
 def _answer(found: Array, u: Array) -> Array:
     """The output of the model alone for the command u, (n,); poles outside of the unit circle are mirrored into it."""
-    from scipy.signal import lfilter  # noqa: PLC0415 - dear to load, and a record is read without it
-
     poles = _poles(found)
     poles = np.where(np.abs(poles) > 1.0, 1.0 / np.conj(poles), poles)
-    return np.asarray(lfilter(found[ORDER:], np.real(np.poly(poles)), u))
+    return linear_filter(found[ORDER:], np.real(np.poly(poles)), u)

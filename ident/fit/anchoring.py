@@ -20,6 +20,8 @@ import numpy as np
 import scipy  # signal, which takes most of a second to load, is loaded where it is first used
 from numpy.typing import NDArray
 
+from ident.linear_filter import linear_filter
+
 Array = NDArray[np.float64]
 
 
@@ -109,4 +111,4 @@ def filter_of_speed(memory: float) -> tuple[Array, Array]:
 def innovations(signal: Array, memory: float) -> Array:
     """What the filter did not foresee of a signal (n,), from its first sample on."""
     _, denominator = filter_of_speed(memory)
-    return np.asarray(scipy.signal.lfilter([1.0, -2.0, 1.0], denominator, signal - signal[0]))
+    return linear_filter([1.0, -2.0, 1.0], denominator, signal - signal[0])

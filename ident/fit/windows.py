@@ -13,7 +13,6 @@ from collections.abc import Iterable, Sequence
 from dataclasses import replace
 
 import numpy as np
-import scipy  # signal, which takes most of a second to load, is loaded where it is first used
 from numpy.typing import NDArray
 
 from ident.chain.chain import linear_model
@@ -24,6 +23,7 @@ from ident.fit.ends import End
 from ident.fit.levenberg_marquardt import STEPS
 from ident.fit.multistart import Optimum
 from ident.fit.simulated_fitness import SimulatedFitness
+from ident.linear_filter import linear_filter
 from ident.progress import Progress, Report
 from ident.run import Run
 
@@ -110,7 +110,7 @@ def unforeseen(residual: Array) -> float:
     that stays.
     """
     level = residual - residual[0]
-    wander = (float(np.mean(scipy.signal.lfilter([1.0, -1.0], [1.0, gain - 1.0], level) ** 2)) for gain in _GAINS)
+    wander = (float(np.mean(linear_filter([1.0, -1.0], [1.0, gain - 1.0], level) ** 2)) for gain in _GAINS)
     return min(float(np.var(residual)), *wander)
 
 
