@@ -38,11 +38,11 @@ def next_command(found: Diagnosis, file: str = "D.json", matrix: str = "MATRIX")
     It is also "" where validation data contradict its effects, where a label is to be corrected first, or where an
     earlier version did not write the ends of its refits.
     """
-    proposals = found.proposals or ()
-    contradicted = found.verdict.standing == "contradicted" and not proposals
-    if contradicted or found.verdict.suspects or (not proposals and not end_of_ladder(found)):
+    if found.verdict.suspects or not (found.proposals or end_of_ladder(found)):
         return ""
     end = recommended(found)
+    if not end.added or (found.verdict.standing == "contradicted" and not end.custom):
+        return ""
     values: dict[str, Any] = {"matrix": matrix, "file": file, "effects": end.added, "error": end.error.get("fit")}
     groups = [group for group in found.verdict.indistinguishable if not has_two(group, found.verdict.effects)]
     taken = next((name for name in end.added if any(name in group for group in groups)), None)
@@ -50,7 +50,7 @@ def next_command(found: Diagnosis, file: str = "D.json", matrix: str = "MATRIX")
         command = message("recommended", **values)
     else:
         command = message("recommended.one_of", taken=taken, **values)
-    return said([command, *([message("recommended.terms")] if proposals else [])])
+    return said([command, *([message("recommended.terms")] if end.custom else [])])
 
 
 def next_run_command(found: Diagnosis, file: str = "D.json", matrix: str = "MATRIX") -> str:

@@ -54,9 +54,10 @@ def settings_after(
 
 
 def recommended(found: Diagnosis, terms: int | None = None) -> End:
-    """The refit that a diagnosis recommends, with all proposed terms or the first `terms` of them (0: none).
+    """The refit that a diagnosis recommends, with its proposed terms or the first `terms` of them (0: none).
 
-    Without terms it has no effect of which validation data show nothing.
+    Where no number is given no term is taken that validation data contradict, unless terms behind it correct that, and
+    none behind such a term. Without terms it has no effect of which validation data show nothing.
 
     Raises Unusable where it proposes fewer, or has no refit.
     """
@@ -64,7 +65,7 @@ def recommended(found: Diagnosis, terms: int | None = None) -> End:
     if terms is not None and not 0 <= terms <= len(proposals):
         raise Unusable("bad-option", f"{count(terms, 'term')} of {len(proposals)}", "terms",
                        f"give 0 to {len(proposals)}")  # fmt: skip
-    taken = proposals[:terms]
+    taken = _supported(proposals) if terms is None else proposals[:terms]
     if taken:
         return _with_terms(taken)
     ladder = [end for end in _rungs(found) if not {*end.added} & {*found.verdict.unconfirmed}]
@@ -72,6 +73,16 @@ def recommended(found: Diagnosis, terms: int | None = None) -> End:
         raise Unusable("bad-diagnosis", "the diagnosis holds no refit", "start",
                        "give what `servoident diagnose --json FILE` wrote")  # fmt: skip
     return ladder[-1]
+
+
+def _supported(proposals: Sequence[Proposal]) -> Sequence[Proposal]:
+    """The first proposed terms, as many as validation data do not contradict; none where they prefer the effects that
+    the terms stand in place of."""
+    last = proposals[-1] if proposals else None
+    if last is None or (last.contradicted and last.contradicted.instead_of):
+        return ()
+    against = (at for at, one in enumerate(proposals) if one.contradicted and not one.corrected_by(last))
+    return proposals[: next(against, None)]
 
 
 def end_of_ladder(found: Diagnosis) -> tuple[str, ...]:

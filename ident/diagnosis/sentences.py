@@ -321,7 +321,7 @@ def proposed_text(terms: Sequence[Proposal]) -> str:
 def _proposed(terms: Sequence[Proposal]) -> Iterator[Message]:
     last, listed = terms[-1], [_term(one) for one in terms]
     for one in terms:
-        if one.contradicted and not _later_terms_correct(one, last):
+        if one.contradicted and not one.corrected_by(last):
             yield one.contradicted.message(one.equation)
     if last.instead_of:
         yield message("proposed.instead", instead=last.instead_of, terms=listed)
@@ -339,7 +339,7 @@ def _proposed(terms: Sequence[Proposal]) -> Iterator[Message]:
     else:
         yield message("proposed.error", terms=terms, error=error)
     for one in terms:
-        if one.contradicted and _later_terms_correct(one, last):
+        if one.contradicted and one.corrected_by(last):
             yield _alone(one.equation, one.contradicted)
 
 
@@ -347,12 +347,6 @@ def _term(one: Proposal) -> Message:
     if one.meaning:
         return message("term.meaning", equation=one.equation, meaning=one.meaning)
     return message("term", equation=one.equation)
-
-
-def _later_terms_correct(one: Proposal, last: Proposal) -> bool:
-    """Whether later terms bring down the validation error that one term raised."""
-    left = last.error.get("verify")
-    return one.contradicted is not None and left is not None and left < one.contradicted.before
 
 
 def _alone(equation: str, against: Contradiction) -> Message:

@@ -12,8 +12,10 @@ import numpy as np
 import pytest
 
 from ident.custom.definition import read_effect
+from ident.diagnosis.discovery.proposal import Proposal
 from ident.diagnosis.recommended import End, recommended, settings_after
 from ident.diagnosis.result import Diagnosis
+from ident.diagnosis.verification import Contradiction
 from ident.errors import Unusable
 from ident.fit.result import FitResult
 from ident.fit.settings import Settings
@@ -84,6 +86,25 @@ def test_ten_are_kept_two_of_each_kind_with_terms_windows_and_doubted_labels():
     assert sum(bool(one.left_out) for one in found) == 2
     assert sum(bool(one.proposals) for one in found) == 2
     assert sum(bool(recommended(one).added) for one in found) == 9
+
+
+def test_a_term_that_validation_data_contradict_is_not_recommended():
+    """Nor one behind it; nor any where validation data prefer the effects that they stand in place of."""
+    found = next(stored(file)[1] for file in STORED if stored(file)[1].proposals)
+    (first, *_), bad = found.proposals, Contradiction("t", 0.1, 0.2, 3.0)
+    first = replace(first, error={"fit": 0.05, "verify": 0.1})
+    second = replace(first, effect={**first.effect, "name": "second"}, contradicted=bad, error={"verify": 0.2})
+    third = replace(first, effect={**first.effect, "name": "third"}, error={"verify": 0.15})
+
+    def terms(*proposals: Proposal) -> list[str]:
+        return [str(one["name"]) for one in recommended(replace(found, proposals=proposals)).custom]
+
+    assert terms(first, second, third) == [first.effect["name"]]
+    mended = replace(third, error={"verify": 0.09})
+    assert terms(first, second, mended) == [first.effect["name"], "second", "third"]
+    worse = replace(first, contradicted=replace(bad, instead_of=("dead_zone",)))
+    assert terms(worse) == []
+    assert [str(one["name"]) for one in recommended(replace(found, proposals=(first, second)), 2).custom][1] == "second"
 
 
 def ends() -> Iterator[tuple[Diagnosis, Matrix, dict]]:

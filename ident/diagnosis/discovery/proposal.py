@@ -59,6 +59,11 @@ class Proposal:
         """The error on the runs of a use as a reader reads it."""
         return ErrorOf(self.error.get(use), unstable=self.unstable.get(use, ()))
 
+    def corrected_by(self, last: Proposal) -> bool:
+        """Whether later terms, the `last` of them among them, bring down the validation error that the term raised."""
+        left = last.error.get("verify")
+        return self.contradicted is not None and left is not None and left < self.contradicted.before
+
     def to_json(self) -> dict[str, Any]:
         """The proposal as plain JSON data, in the contract's words."""
         return {"class" if name == "alike" else name: entry for name, entry in written(self).items()}
