@@ -53,6 +53,11 @@ class Specimen:
     stiffness: float = 0.0
     damping: float = 0.0
 
+    @property
+    def scales_forces(self) -> bool:
+        """Whether a known mass, spring or damper gives forces a scale."""
+        return bool(self.mass or self.stiffness or self.damping)
+
 
 @dataclass(frozen=True, eq=False)
 class Run(Shown):

@@ -196,7 +196,7 @@ def _stated(preset: Preset, runs: tuple[Run, ...]) -> bool:
 
 def _loaded(runs: tuple[Run, ...]) -> bool:
     """True where a specimen's known mass, spring or damper gives forces a scale."""
-    return any(run.specimen and (run.specimen.mass or run.specimen.stiffness or run.specimen.damping) for run in runs)
+    return any(run.specimen is not None and run.specimen.scales_forces for run in runs)
 
 
 def _acting(runs: tuple[Run, ...], channel: str) -> float:

@@ -17,6 +17,7 @@ _FILES = (
     "first_order",
     "drive",
     "open_valve",
+    "pressure_drive",
     "motor",
     "position_servo",
     "two_tanks",

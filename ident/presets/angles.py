@@ -8,7 +8,12 @@ from ident.errors import Unusable
 from ident.presets.record_units import SAMPLE, RecordUnits
 from ident.units.quantity import parameter_value
 
-_SHOWN = (RecordUnits(turning=True), RecordUnits(clock=SAMPLE), RecordUnits(turning=True, clock=SAMPLE))
+_SHOWN = tuple(
+    RecordUnits(turning=turning, clock=clock, pressed=pressed)
+    for pressed in (False, True)
+    for clock in ("s", SAMPLE)
+    for turning in (False, True)
+)
 
 
 def in_si(text: str | float, unit: str, where: str) -> float:

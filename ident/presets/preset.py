@@ -103,6 +103,8 @@ class Preset(Model):
             unit = matrix.runs[0].units.get("command", "m")
             preset = replace(preset, display=replace(preset.display, drive_unit=unit))
         preset = replace(preset, display=replace(preset.display, recorded=RecordUnits.of(matrix.runs)))
+        if preset.data.area:
+            preset = preset._of_area(matrix)
         if preset.search.force_scale and {run.output for run in matrix.runs} == {"load_pressure"}:
             # Its forces are measured.
             preset = replace(preset, search=replace(preset.search, force_scale="A*X"))
@@ -123,6 +125,22 @@ class Preset(Model):
             raise Unusable("bad-command", "runs with a command in m and others in V", "command",
                            "fit the open and the closed loop one after the other")  # fmt: skip
         return self.opened.with_effects(self.effects)
+
+    def _of_area(self, matrix: Matrix) -> Preset:
+        """The machine with its stated piston area, which is that of a motion along a way.
+
+        Without one a specimen of known mass, spring or damper tells the area. Without either no force is known, and
+        each is shown as the pressure that balances it.
+        """
+        preset, area = self, matrix.actuator.piston_area
+        along = {run.units.get(run.output) for run in matrix.runs} <= {"m", "m/s"}
+        if area is None or not along:
+            if any(run.specimen is not None and run.specimen.scales_forces for run in matrix.of_use("fit")):
+                return replace(self, without_area=None)
+            area = 1.0
+            recorded = replace(self.display.recorded, pressed=True)
+            preset = replace(self, display=replace(self.display, recorded=recorded))
+        return replace(preset, data=replace(preset.data, gains={**preset.data.gains, self.data.area: area}))
 
     def disturbed_as(self, matrix: Matrix, load: str) -> Preset:
         """The model with what was measured at a place beside the command, as it is where nothing was.

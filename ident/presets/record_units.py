@@ -23,12 +23,14 @@ class RecordUnits:
 
     `turning`: a motion was recorded as an angle. `unknown` has what takes the place of a unit that the records do not
     have, as powers: of records in counts a metre is nothing, {}, or of a speed in counts a second. `clock` is "sample"
-    where the sample period is unknown. `output` and `command` are the units of these channels.
+    where the sample period is unknown. `pressed`: forces are known as pressures alone, and N is shown as Pa. `output`
+    and `command` are the units of these channels.
     """
 
     turning: bool = False
     unknown: Mapping[str, Powers] = field(default_factory=dict)
     clock: str = "s"
+    pressed: bool = False
     output: str = "m"
     command: str = "m"
 
@@ -49,16 +51,20 @@ class RecordUnits:
         outputs = {run.units.get(run.output, "m") for run in listed}
         return cls(
             any(run.units.get(run.output) in _TURNING for run in listed), unknown, clock,
-            outputs.pop() if len(outputs) == 1 else "m", units.get("command", "m"),
+            output=outputs.pop() if len(outputs) == 1 else "m", command=units.get("command", "m"),
         )  # fmt: skip
 
     def shown(self, unit: str, drive: str | None = None) -> str:
         """A unit of the chain as it is shown; with a `drive` a metre is one of the drive signal, in that unit."""
-        names = dict(_ANGLES) if self.turning and not _OF_OIL.search(unit) else {}
+        if self.pressed:
+            unit = written(_without(powers_of(unit) or {}, {"N": {"Pa": 1.0}}))
+        names = dict(_ANGLES) if self.turning and (self.pressed or not _OF_OIL.search(unit)) else {}
         if drive is not None:
             names["m"] = drive
         unit = re.sub(r"\b(kg|N|m)\b", lambda found: names.get(found[0], found[0]), unit)
         unknown = self.unknown if drive is None else {name: of for name, of in self.unknown.items() if name != "m"}
+        if self.pressed:
+            unit = written(_without(powers_of(unit) or {}, {}))  # Pa/Pa is 1
         if unknown and (powers := powers_of(unit)) is not None and {*powers} & {*unknown, "kg"}:
             unit = written(_without(powers, unknown))
         elif drive == "1":

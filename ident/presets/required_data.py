@@ -14,10 +14,14 @@ class RequiredData:
 
     driven_by: str = "command"
     """Channel that drives the model; the command where a run has none of that name."""
+    command_unit: str = ""
+    """SI unit of the command that drives such a machine; "" for any."""
+    area: str = ""
+    """Parameter that is the stated piston area, where the motion is one along a way."""
     compares: str = ""
     """Channel that its controller compares with the command; "" where there is no controller."""
     gains: Mapping[str, float] = field(default_factory=dict)
-    """Gains of the controller that are known; Kp is that of runs that state none."""
+    """Gains of the controller that are known, and a stated area; Kp is that of runs that state none."""
     alone: bool = False
     """Whether a run that states no specimen moves none."""
     turns: bool = False

@@ -139,6 +139,8 @@ def _allows(model: Preset, run: Described) -> bool:
         return False
     if model.data.one_sided and not _one_sided(run):
         return False
+    if model.data.command_unit not in ("", run.units.get("command")):
+        return False
     drives = {model.data.driven_by} | ({"displacement"} if model.data.driven_by == "velocity" else set())
     drives |= {"command"} if _by_force(model, run) or _by_motion(model, run) else set()
     return bool(drives & set(run.channels)) and run.output in model.chain.outputs and run.output not in drives

@@ -7,7 +7,7 @@ from ident.stages.level import LOWER_LEVEL, UPPER_LEVEL
 from ident.stages.load import BLOCKED, DRIVEN_MASS, FOLLOWING, MASS_SPRING_DAMPER, MEASURED_LOAD, PRESSED_SPECIMEN
 from ident.stages.long_stroke import DRIVEN_VALVE, OVERLAP, TABLE_ON_GUIDES, TIGHT_CYLINDER, TWO_SIDED_FLOW
 from ident.stages.motor import TORQUE
-from ident.stages.pressure import COMPRESSIBLE
+from ident.stages.pressure import ACTING_PRESSURE, COMPRESSIBLE
 from ident.stages.scale import Scale
 from ident.stages.sensor import IDEAL_SENSOR, transducer
 from ident.stages.specimen import MOVED_SPECIMEN
@@ -17,6 +17,7 @@ from ident.stages.two_masses import TWO_MASSES, TWO_MASSES_AT_LOAD
 from ident.stages.valve import FIRST_ORDER_VALVE, INSTANT_VALVE, SECOND_ORDER_VALVE
 
 __all__ = [
+    "ACTING_PRESSURE",
     "BLOCKED",
     "CASCADE",
     "COMPRESSIBLE",

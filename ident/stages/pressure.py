@@ -1,4 +1,4 @@
-"""Pressure: from flow and piston speed to the load pressure."""
+"""Pressure: from flow and piston speed to the load pressure, or from a known pressure to the force."""
 
 from ident.parameter import Parameter
 from ident.stages.scale import ORDER_OF_MAGNITUDE, Scale
@@ -22,3 +22,17 @@ COMPRESSIBLE = stage(
     ),
     scales=(Scale("Ka", "A**2 / (m0 * W**2)", 1e-4, 1e2), Scale("Cl", "Ka * W", 1e-5, 1e1)),
 )
+
+ACTING_PRESSURE = stage(
+    "pressure",
+    (Quantity("D", "N", "force, or torque, that drives the load"),),
+    ("D = Ap * w", "the known pressure acts on an area (Merritt 1967, section 6-2)"),
+    parameters=(
+        Parameter(
+            "Ap", "Aₚ", "N/m", 1e-12, 1e12, 1.0, "area on which the pressure acts, or torque for each unit of it",
+            ORDER_OF_MAGNITUDE,
+        ),
+    ),
+    scales=(Scale("Ap", "mL * L * W**2 / U", 1e-3, 1e5),),
+)  # fmt: skip
+"""A pressure that nothing of the motion changes: of a regulator, or as measured."""

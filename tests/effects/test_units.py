@@ -24,7 +24,7 @@ OTHER_UNIT = {
     "first_order": {"second_lag"}, "two_tanks": {"second_lag"}, "force_loop": {"second_lag"},
     "qian2014": {"second_lag"},
     "open_valve": {"second_lag"},
-    "motor": {"second_lag"}, "position_servo": {"second_lag"},
+    "motor": {"second_lag"}, "pressure_drive": {"second_lag"}, "position_servo": {"second_lag"},
     "kononykhin": {"command_limit", "integral_action", "lead", "pressure_feedback", "valve_second_order",
                    "valve_rate_limit", "spool_stiction", "backlash", "null_bias", "dead_zone", "underlap",
                    "gain_asymmetry", "flow_saturation", "flow_force"},

@@ -17,6 +17,7 @@ AT_LEAST = {
     "two_tanks": 20,
     "drive": 29,
     "open_valve": 51,
+    "pressure_drive": 38,
     "motor": 38,
     "position_servo": 40,
     "specimen": 18,
@@ -26,6 +27,7 @@ AT_LEAST = {
 }
 LOOPS = {
     "qian2014": {"v", "y"}, "first_order": set(), "drive": set(), "open_valve": {"v"}, "motor": set(),
+    "pressure_drive": set(),
     "position_servo": {"y"}, "two_tanks": set(), "specimen": set(), "force_loop": {"v", "y"}, "kononykhin": set(),
     "strano": {"P", "v", "y"},
 }  # fmt: skip
