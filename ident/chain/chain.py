@@ -26,7 +26,7 @@ from ident.chain.channels import BESIDE_MEAN, read_whole
 from ident.chain.conditions import conditions, zeros
 from ident.chain.dry_friction import dry_friction
 from ident.chain.linearity import LINEAR, OTHER, ZERO, degree
-from ident.chain.refusals import of_other_unit, unfit
+from ident.chain.refusals import of_other_unit, of_state, unfit
 from ident.effects.effect import Effect
 from ident.equations.equation import Equation
 from ident.equations.grammar import ARITHMETIC, TIME
@@ -137,7 +137,7 @@ class Chain:
                 equation = read_whole(written, self._core | names.keys())
             if target in self._core:
                 if so_far[target] and (equation.is_rate or equation.is_memory or target in self._core_states):
-                    raise unfit(effect) if effect else AssertionError(target)
+                    raise of_state(effect, target) if effect else AssertionError(target)
                 own = version(target, so_far[target])
                 so_far[target] += 1
             else:

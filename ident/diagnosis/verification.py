@@ -24,7 +24,8 @@ from ident.words.message import Message, message
 Array = NDArray[np.float64]
 Standing = Literal["found", "stand_in", "contradicted", "nothing"]
 """found: the error is at the floor; stand_in: it fell, but is above the floor, or may be, because a strength ended at
-the bound of its search; contradicted: it rises on validation data; nothing: no effect is named."""
+the bound of its search, or because validation data contradict an effect that proposed terms made dispensable;
+contradicted: it rises on validation data; nothing: no effect is named."""
 
 
 @dataclass(frozen=True)

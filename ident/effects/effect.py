@@ -30,6 +30,7 @@ class Effect:
     texts: tuple[str, ...]
     """Equations: they redefine signals of the chain and give the rates and memories of its own states.
 
+    A state of the chain, such as the pressure P, is not redefined: what its rate reads is, as the leakage L.
     An equation reads a signal that the effect redefines as it was left by what stands before, every other name in its
     final value, and a memory of the effect in the equation of a memory as it was at the start of the step.
     `servoident effects --signals MODEL` lists the signals (:mod:`ident.presets.signal_table`).

@@ -15,6 +15,7 @@ from ident.figures.drawing import Several
 from ident.fit.result import FitResult
 from ident.matrix import Matrix
 from ident.run import Run
+from ident.words.run_name import run_name
 
 CONDITIONS = ("kp", "amplitude", "specimen", "use")
 RUNS = ("run", *CONDITIONS)
@@ -106,6 +107,11 @@ def typical(matrix: Matrix, fit: FitResult) -> Run:
     errors = {entry.id: entry.error for entry in fit.runs}
     ordered = sorted(runs, key=lambda run: errors.get(run.id, 0.0))
     return ordered[len(ordered) // 2]
+
+
+def unstable_on(run: Run) -> Unusable:
+    """The refusal of a figure of the residual where the model runs away."""
+    return Unusable("unstable-model", f"the model is unstable on {run_name(run.id)}", "fit", "choose another run")
 
 
 def by_gain(runs: Sequence[Run]) -> dict[float | None, list[Run]]:

@@ -57,7 +57,12 @@ class Option:
 
 @dataclass(frozen=True)
 class Drawing(Generic[S]):
-    """A figure of a subject. A new one is a file with such a value, and a line in the list of the catalogue."""
+    """A figure of a subject. A new one is a file with such a value, and a line in the list of the catalogue.
+
+    Tests ask of each figure of a fit: the serial in its title, model and errors in the first line below
+    (`words.verdict`), axes whose names end with a unit in brackets (`words.axis`, "(–)" of a plain number), less than
+    300 kB.
+    """
 
     name: str
     """What a reader asks for; no two figures of a subject share one."""

@@ -80,3 +80,13 @@ def number(options: Mapping[str, Any], name: str) -> float | None:
         return None if value in (None, "") else float(value)
     except (TypeError, ValueError):
         raise Unusable("not-a-number", f"{name} is {value!r}", "figure option", "give a number") from None
+
+
+def whole_number(options: Mapping[str, Any], name: str) -> int | None:
+    """An option that is a whole number. Raises Unusable."""
+    value = number(options, name)
+    if value is None:
+        return None
+    if not value.is_integer():
+        raise Unusable("not-a-number", f"{name} is {value:g}", "figure option", "give a whole number")
+    return int(value)

@@ -8,10 +8,10 @@ import altair as alt
 
 from ident.comparison.compare import RunComparison
 from ident.figures import words
-from ident.figures.choose import one, typical
+from ident.figures.choose import one, typical, unstable_on
 from ident.figures.drawing import Drawing, Option, Options
 from ident.figures.look import Look
-from ident.figures.options import RUN, number
+from ident.figures.options import RUN, whole_number
 from ident.figures.render import Chart, Panel, datasets
 from ident.figures.study import Study
 from ident.fit.result import FitResult
@@ -79,10 +79,10 @@ def _panel(name: str, title: str, band: float, run: Run, look: Look) -> Panel:
 def _draw(study: Study, look: Look, options: Options) -> Chart:
     run = one(study.matrix, options) or typical(study.matrix, study.fit)
     (compared,) = study.compared((run,)).runs
-    lags = number(options, "lags")
-    return residual_correlation(
-        compared, study.matrix.actuator, study.fit, look, lags=None if lags is None else int(lags)
-    )
+    if compared.unstable:
+        raise unstable_on(run)
+    lags = whole_number(options, "lags")
+    return residual_correlation(compared, study.matrix.actuator, study.fit, look, lags=lags)
 
 
 RESIDUAL_CORRELATION = Drawing(

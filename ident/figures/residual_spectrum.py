@@ -8,9 +8,8 @@ from typing import Any
 import altair as alt
 
 from ident.comparison.compare import RunComparison
-from ident.errors import Unusable
 from ident.figures import words
-from ident.figures.choose import one, typical
+from ident.figures.choose import one, typical, unstable_on
 from ident.figures.drawing import Drawing, Options
 from ident.figures.look import Look
 from ident.figures.options import OTHER, RUN
@@ -19,7 +18,6 @@ from ident.figures.render import Chart, datasets
 from ident.figures.study import Study
 from ident.figures.thin import decade_ticks
 from ident.residuals.breakdown import band_edges, in_bands, noise_in_bands
-from ident.words.run_name import run_name
 
 _NOISE = "noise, spread evenly over frequency"
 
@@ -74,7 +72,7 @@ def _drawn(study: Study, look: Look, options: Options) -> Chart:
     run, others = one(study.matrix, options) or typical(study.matrix, study.fit), others_of(options)
     compared = [each.compared((run,)).runs[0] for each in (study, *map(study.beside, others))]
     if all(each.unstable for each in compared):
-        raise Unusable("unstable-model", f"the model is unstable on {run_name(run.id)}", "fit", "choose another run")
+        raise unstable_on(run)
     names = titles_of((study.fit, *others), compared) if others else ("model",)
     stable = {name: each for name, each in zip(names, compared, strict=True) if not each.unstable}
     if others:

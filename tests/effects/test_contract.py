@@ -11,6 +11,7 @@ import pytest
 from ident.chain.conditions import conditions
 from ident.effects import EFFECTS
 from ident.effects.effect import Effect
+from ident.errors import Unusable
 from ident.matrix import Actuator
 from ident.parameter import Parameter
 from ident.presets import PRESETS, Preset, preset
@@ -197,6 +198,14 @@ def test_an_effect_that_finds_nothing_to_act_on_is_refused():
     """A model without a load has no friction; the refusal says so."""
     with pytest.raises(Exception, match="nothing that it could act on"):
         preset("first_order", ("coulomb_friction",))
+
+
+def test_an_effect_that_redefines_a_state_is_refused_and_told_what_it_may_redefine():
+    """The pressure has its rate from the model: what limits it acts on a signal that the rate reads."""
+    share = Parameter("share", "s", "1", 0.0, 1.0, 0.0, "share")
+    limit = Effect("limit", "pressure", "a limit", share, ("P = P * (1 - s)",))
+    with pytest.raises(Unusable, match=r"P is a state.*a signal that the rate of P reads"):
+        _ = PRESETS["qian2014"].with_effects((limit,)).chain.signals
 
 
 def test_a_new_effect_is_one_definition():

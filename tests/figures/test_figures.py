@@ -298,6 +298,22 @@ def test_a_machine_that_is_moved_has_no_sensitivity_to_a_command_and_says_so(mat
     assert told.value.code == "unstable-model"
 
 
+@pytest.mark.parametrize("name", ["residual-spectrum", "residual-correlation"])
+def test_a_residual_of_a_model_that_runs_away_is_not_drawn(name, matrix, fit):
+    """Its samples are no numbers: the reader is told which run, and to choose another one."""
+    away = study(matrix, fit)
+    away.compared(matrix.runs)
+    away._runs |= {name: replace(compared, unstable=True) for name, compared in away._runs.items()}
+    with pytest.raises(Unusable, match="unstable on") as told:
+        figure(name, away)
+    assert told.value.code == "unstable-model"
+
+
+def test_lags_are_a_whole_number(matrix, fit):
+    with pytest.raises(Unusable, match=r"lags is 2\.7"):
+        figure("residual-correlation", study(matrix, fit), lags="2.7")
+
+
 def test_the_map_is_in_multiples_of_the_noise_on_one_scale_of_colours(matrix, fit):
     """From noise alone, 1, to ten times at least; where the noise of a run is not known, in per cent."""
     spec = drawn("residual-map", matrix, fit)

@@ -1,4 +1,7 @@
-"""The service asks for oil as the library does: by all that is stated of the actuator, kept with the matrix."""
+"""Fields of a stored matrix, of this version and of earlier ones.
+
+The service asks for oil as the library does: by all that is stated of the actuator, kept with the matrix.
+"""
 
 from __future__ import annotations
 
