@@ -65,7 +65,7 @@ def _paper_generations() -> int:
 def of_diagnosis() -> Iterator[Tie]:
     """What decides in a diagnosis."""
     D = "diagnosis.md"
-    yield D, "The first {} are told at once", (word(CRITERIA.ranking.told_at_once),)
+    yield D, "The first {} are told at once", (word(CRITERIA.ranking.finalists),)
     yield D, "at {} strengths over its range", (word(len(CRITERIA.screening.strengths)),)
     yield (
         D,
@@ -81,11 +81,10 @@ def of_diagnosis() -> Iterator[Tie]:
     yield (
         D,
         "started from strong effects. Then {} others of the first ranking are tried two at a time",
-        (word(CRITERIA.selection.pair_finalists),),
+        (word(CRITERIA.ranking.finalists),),
     )
-    yield D, "if the error is more than {} % above the noise floor", (per_cent(CRITERIA.noise.floor_excess),)
+    yield D, "if the error is more than {} % above the noise floor", (beyond(CRITERIA.evidence.floor_margin),)
     yield D, "rises with it by more than {} of its standard errors", (word(CRITERIA.verification.deviations),)
-    yield D, "a bootstrap over chunks of {} correlation times", (word(CRITERIA.verification.chunk_length),)
     yield D, "Errors that differ by less than {} % are a tie", (per_cent(CRITERIA.equality.tie),)
     yield (
         D,
@@ -93,20 +92,20 @@ def of_diagnosis() -> Iterator[Tie]:
         (beyond(CRITERIA.equality.practically_equal),),
     )
     yield D, "Terms that explain the same (cosine above {})", (plain(CRITERIA.discovery.same_class),)
-    yield D, "the best {} classes and {} pairs", (word(CRITERIA.discovery.classes), word(CRITERIA.discovery.pairs))
+    yield D, "the best {} classes and {} pairs", (word(CRITERIA.discovery.classes), word(CRITERIA.discovery.of_a_kind))
     yield (
         D,
         "the leading {}, with {} that have no shapes",
-        (word(CRITERIA.discovery.most_close), word(CRITERIA.discovery.plain)),
+        (word(CRITERIA.estimation.leading), word(CRITERIA.discovery.of_a_kind)),
     )
     yield D, "place, form and shape that were looked at) + {} nats", (plain(CRITERIA.discovery.log_likelihood_gain),)
     yield D, "Of fewer than {} runs all do all three", (word(CRITERIA.discovery.fewest_runs),)
     yield D, "The next term is sought in addition to it, {} at most", (word(CRITERIA.discovery.most),)
     yield D, "hats at {} quantiles of the signal", (word(len(CRITERIA.discovery.knots)),)
-    yield D, "the {} groups that explain most are refitted", (word(CRITERIA.discovery.curves),)
+    yield D, "the {} groups that explain most are refitted", (word(CRITERIA.discovery.of_a_kind),)
     yield D, "of {}, {} or {} times its slowest other time constant", tuple(plain(t) for t in windows._TIMES)
     of = CRITERIA.evidence
-    yield D, "Of {} runs or more whole runs take turns", (word(CRITERIA.cross_validation.whole_runs),)
+    yield D, "Of {} runs or more whole runs take turns", (word(CRITERIA.evidence.whole_runs),)
     yield D, "in {} folds. Of a single run {} stretches do", (
         word(CRITERIA.cross_validation.folds), word(CRITERIA.cross_validation.stretches),
     )  # fmt: skip

@@ -46,7 +46,7 @@ class AlternativeModel:
         refits = [one.refit for one in ranking if one.refit is not None and one.worth_adding]
         equal = [refit for refit in refits if indistinguishable(refit, found)]
         preferred = [refit for refit in refits if better(found, refit)]
-        for refit in (preferred or equal)[: CRITERIA.ambiguity.alternatives]:
+        for refit in (preferred or equal)[: CRITERIA.conclusion.competing]:
             yield Explanation(models.given.model, refit.effects, refit.errors, bool(preferred))
 
 

@@ -42,6 +42,8 @@ from ident.simulation.steps import MOST
 from ident.words.titles import title
 
 Array = NDArray[np.float64]
+_EFFECTS_A_CHAIN = 8
+"""Effects of one simulated chain, one for each lane: the kernel has registers for so many. No result depends on it."""
 
 
 def _is_beyond(value: float, lower: float, upper: float) -> bool:
@@ -152,8 +154,8 @@ class CandidateModels:
         apart = [name for name in names if self.effects[name].has_searched_shapes]
         rest = [name for name in names if name not in apart]
         found = [[name] for name in apart]
-        for first in range(0, len(rest), CRITERIA.estimation.effects_a_chain):
-            group = rest[first : first + CRITERIA.estimation.effects_a_chain]
+        for first in range(0, len(rest), _EFFECTS_A_CHAIN):
+            group = rest[first : first + _EFFECTS_A_CHAIN]
             found += [group] if self.fit_together((*base, *group)) else [[name] for name in group]
         return found
 
@@ -339,20 +341,20 @@ class CandidateModels:
         All set out on a part of these, and the one that is ahead goes on, as long as it may come below `aim`.
         """
         effort = CRITERIA.estimation
-        shorter = aim * self.trial_error(refit, effort.global_samples) / self.trial_error(refit)
+        shorter = aim * self.trial_error(refit, effort.rough_samples) / self.trial_error(refit)
         setting_out = replace(effort.trial, aim=shorter)
-        tried = each(lambda start: self.refit(refit.effects, start, effort.global_samples, setting_out), starts)
+        tried = each(lambda start: self.refit(refit.effects, start, effort.rough_samples, setting_out), starts)
         ahead = stable_minimum(tried, lambda one: one.local.error)
         if not ahead.finite:
             return ahead
-        return self.refit(refit.effects, ahead.values, effort.trial_samples, replace(effort.far_trial, aim=aim))
+        return self.refit(refit.effects, ahead.values, effort.trial_samples, replace(effort.coarse, aim=aim))
 
     def global_starts(self, effects: tuple[str, ...]) -> list[FittedModel]:
         """First steps of a model from where in its whole search space the error is least, on the records' beginnings.
 
         Where the fitted model went far astray for want of the effect, no start near it leads back.
         """
-        fitness = self.fitness(effects, CRITERIA.estimation.global_samples)
+        fitness = self.fitness(effects, CRITERIA.estimation.rough_samples)
         points = scipy.stats.qmc.Sobol(len(fitness.space.axes), rng=0).random(CRITERIA.estimation.global_points)
         points = self.resting.held(fitness.space, points)
         best = points[np.argsort(fitness.errors(points), kind="stable")[: CRITERIA.estimation.global_starts]]

@@ -8,7 +8,6 @@ from itertools import pairwise
 
 from ident.diagnosis.alternative_structures import AlternativeModel, alternative_explanations
 from ident.diagnosis.budget import SearchBudget
-from ident.diagnosis.criteria import CRITERIA
 from ident.diagnosis.ladder import Rungs
 from ident.diagnosis.model_comparison import verified_change
 from ident.diagnosis.result import Explanation, Suspect
@@ -97,15 +96,14 @@ def run_sentences(selection: Selection, stages: Stages, budget: SearchBudget) ->
 
 
 def _delay_sentences(selection: Selection, budget: SearchBudget) -> Sequence[str]:
-    """The sentence on the total delay of the last model; else, where its residual is above the noise, of an earlier
-    one.
+    """The sentence on the total delay of the last model; else, where its residual is above the noise, of the one
+    before.
 
     An effect that changes the valve's lag, as its stiction, may fix this lag.
     """
     budget.report_progress(Progress(LAGS, 0, 1))
     models, steps = selection.models, [refit for _, refit in selection.ladder() if refit.stable][::-1]
-    asked = CRITERIA.ambiguity.delay_models if models.residual_above_noise(selection.fitted) else 1
-    for refit in steps[:asked]:
+    for refit in steps[: 2 if models.residual_above_noise(selection.fitted) else 1]:
         if late := total_delay(models, selection.base, refit):
             without = tuple(name for name in selection.added if name not in refit.effects)
             return (delay_sentence(late, models.described, without),)

@@ -1,7 +1,7 @@
 """Every number that decides in a diagnosis, by the stage that it decides in.
 
 Below each number stand [its unit], its meaning (read: value, unit, meaning), the reason for it, and the test in
-tests/diagnosis that holds it; a number without a test name has no test of its own yet.
+tests/diagnosis that fails where the number moves by 30 %.
 """
 
 from __future__ import annotations
@@ -12,10 +12,11 @@ from ident.diagnosis.discovery.criteria import Discovery, TermShapes
 from ident.diagnosis.evidence.criteria import EVIDENCE_CRITERIA, EvidenceCriteria
 from ident.fit.levenberg_marquardt import Way
 
-TINY: float = 1e-300
-"""[1] A logarithm's or a quotient's argument is kept above it. Why: the smallest normal number is 2e-308."""
+TINY = 1e-300
+"""A logarithm's or a quotient's argument is kept above it, near the smallest normal number: it decides nothing."""
 EPSILON: float = 1e-12
-"""[of a size] Least relative error that is used. Why: rounding of a sum of ten thousand terms."""
+"""[of a size] Least relative error that is used. Why: rounding of a sum of ten thousand terms.
+Test: test_criteria_of_estimation.py::test_a_value_is_beyond_its_bounds_but_for_rounding"""
 
 
 @dataclass(frozen=True)
@@ -23,47 +24,47 @@ class Estimation:
     """How far the parameters of one model are refined, and which refits are valid."""
 
     full: Way = Way(1e-7, 20, rough=1e-5)
-    """[Way] Effort of a refit to every sample. Why: 20 steps end within a hundredth of a tie."""
-    behind: Way = Way(1e-4, 20, rough=1e-4)
-    """[Way] Effort of a full refit of a finalist that was behind the best on trial. Why: it lacks far more than a tie.
-    Test: test_ranking.py::test_a_finalist_that_is_far_behind_is_not_refined_as_the_best_is"""
+    """[Way] Effort of a refit to every sample. Why: 20 steps end within a hundredth of a tie.
+    Test: test_criteria_of_estimation.py::test_a_refit_that_still_gains_ends_after_its_steps"""
+    coarse: Way = Way(1e-4, 20, rough=1e-4)
+    """[Way] Effort of a refit that begins far away, and of a finalist that was behind the best on trial. Why: both lack
+    far more than a tie, and from far away ten steps do not arrive.
+    Test: test_criteria_of_estimation.py::test_a_refit_that_still_gains_ends_after_its_steps"""
     trial: Way = Way(1e-4, 10, rough=1e-4)
     """[Way] Effort of a refit on trial. Why: a trial only has to rank to within a tie, and is refined if it is among
-    the first."""
-    far_trial: Way = Way(1e-4, 20, rough=1e-4)
-    """[Way] Effort of the leader of several starts far away. Why: from far away ten steps do not arrive."""
+    the first.
+    Test: test_criteria_of_estimation.py::test_a_refit_that_still_gains_ends_after_its_steps"""
     screen: Way = Way(1e-5, 3)
     """[Way] Effort of first steps from many starts. Why: after three steps the best start is known.
-    Test: test_fitted_model.py::test_of_first_steps_the_eight_that_leave_least_go_on"""
+    Test: test_criteria_of_estimation.py::test_a_refit_that_still_gains_ends_after_its_steps"""
     trial_samples: int = 131_072
-    """[samples] Of all runs in a trial. Why: enough for a ranking; the finalists take every sample."""
-    global_samples: int = 32_768
-    """[samples] Of all runs by which points of the whole space are judged, and on which refits from far away begin.
-    Why: 128 points are to cost about as much as one trial, and only one of many starts is continued."""
+    """[samples] Of all runs in a trial. Why: enough for a ranking; the finalists take every sample.
+    Test: test_criteria_of_estimation.py::test_a_refit_takes_so_much_of_the_records"""
+    rough_samples: int = 49_152
+    """[samples] Of all runs on which effects are predicted, points of the whole space are judged, refits from far away
+    begin and terms are sought. Why: all effects take about a second, and 128 points about as much as one trial.
+    Test: test_criteria_of_estimation.py::test_a_refit_takes_so_much_of_the_records"""
     global_points: int = 128
-    """[points] Of a Sobol sample of the whole search space. Why: a model has up to about ten parameters."""
+    """[points] Of a Sobol sample of the whole search space. Why: a model has up to about ten parameters.
+    Test: test_criteria_of_estimation.py::test_a_model_of_unknown_place_is_begun_from_the_four_best_of_128_points"""
     global_starts: int = 4
     """[points] Of these from which a refit begins. Why: the least error of a coarse sample is not always the best
-    start."""
+    start.
+    Test: test_criteria_of_estimation.py::test_a_model_of_unknown_place_is_begun_from_the_four_best_of_128_points"""
     leading: int = 8
-    """[refits] Of first steps that are continued. Why: the rest is far behind.
+    """[refits] Of first steps, and of rough refits with terms, that are continued. Why: the rest is far behind.
     Test: test_fitted_model.py::test_of_first_steps_the_eight_that_leave_least_go_on"""
-    effects_a_chain: int = 8
-    """[effects] Of one simulated chain, one for each lane. Why: registers of the kernel.
-    Test: test_effects_side_by_side.py::test_what_an_effect_promises_hangs_on_none_beside_it"""
     new_optimum: float = 0.99
-    """[ratio of errors] Below which a refit is a new optimum. Why: refits of one optimum end far closer
-    together."""
-    no_change: float = 1e-4
-    """[of an error] Change that counts as none, when a parameter is moved that the data do not determine. Why: a
-    hundredth of the difference between two optima.
-    Test: test_undetermined.py::test_a_mass_that_no_record_shows_rests_where_steps_are_few"""
+    """[ratio of errors] Below which a refit is at another optimum than the one before. Why: refits of one optimum
+    differ by less than 1e-4, optima of an effect that acts in jumps by some per cent.
+    Test: test_criteria_of_estimation.py::test_a_refit_one_per_cent_better_is_at_another_optimum"""
     places_of_rest: int = 65
     """[places] Along its range, at which such a parameter is tried. Why: eight a decade of an eight-decade range.
     Test: test_undetermined.py::test_a_mass_that_no_record_shows_rests_where_steps_are_few"""
     convergence_rounds: int = 5
-    """[refits] To continue with while each is a new optimum. Why: in a long narrow valley one refit stops on its
-    way."""
+    """[refits] To continue with while each is at a better optimum. Why: in a long narrow valley one refit stops on its
+    way, and of an effect that acts in jumps the next optimum lies behind the last.
+    Test: test_criteria_of_estimation.py::test_a_refit_is_continued_five_times_at_most"""
     pair_shares: tuple[float, ...] = (1.0, 0.3, 0.03)
     """[of the strength] Of the second of two effects when fitted alone, to start the pair from. Why: the first may
     take over most of what the second explained alone.
@@ -81,37 +82,35 @@ class Estimation:
 class Noise:
     """When an error is noise alone."""
 
-    floor_excess: float = 0.02
-    """[of the floor] By which an error may exceed the noise floor, in addition to chance. Why: the floor itself is
-    an estimate. Test: test_diagnose.py::test_what_the_catalogue_does_not_hold_is_called_unexplained"""
     floor_contradicted: float = 1.2
     """[ratio] Of a noise floor to the error of the fitted model, above which the floor is not believed. Why: samples of
     one phase differ where a motion jumps between two of them.
     Test: test_free_shapes.py::test_a_floor_that_a_fitted_model_comes_below_is_none"""
     floor_deviations: float = 3.0
-    """[standard deviations] Of the noise floor, by which the error may exceed it. Why: one in 700 by chance."""
+    """[standard deviations] Of the noise floor, by which the error may exceed it. Why: one in 700 by chance.
+    Test: test_criteria_of_estimation.py::test_an_error_is_noise_within_each_margin"""
     bench_excess: float = 0.25
     """[of the floor] By which an error on the records of a bench may exceed it. Why: the error of a reading that stands
-    still lasts long."""
+    still lasts long.
+    Test: test_criteria_of_estimation.py::test_an_error_is_noise_within_each_margin"""
     noise_correlation: float = 0.5
-    """[correlation] Of neighbouring residuals that noise may have where no floor is known. Why: above it the
-    residual has a memory. Test: test_diagnose.py::test_repeats_tell_that_what_is_left_is_noise_in_the_band"""
+    """[correlation] Of neighbouring residuals that noise may have where no floor is known. Why: above it the residual
+    has a memory.
+    Test: test_criteria_of_estimation.py::test_an_error_is_noise_within_each_margin"""
 
 
 @dataclass(frozen=True)
 class StructureSelection:
     """Which machine fits where none is named, and over which windows it is judged."""
 
-    worse: float = 1.02
-    """[ratio of errors] On held-out data beyond which a simpler machine is worse. Why: less is no reason for
-    another parameter. Test: test_structure_selection.py::test_of_equals_the_one_with_fewer_parameters_is_taken"""
     improbable: float = 0.01
     """[probability] Of the first machine with its best effect, below which the most probable one comes before it. Why:
     a machine with more parameters may have made up for a part of a missing effect; the usual order changes only where
     it is that sure. Test: test_structure_selection.py::test_more_parameters_do_not_make_up_for_an_effect"""
     longer_gain: float = 10.0
     """[log-likelihood] Gain of longer windows over the fitted ones, beyond the logarithm of the number of models. Why:
-    one in 20,000 by chance."""
+    one in 20,000 by chance.
+    Test: test_criteria_of_ranking.py::test_longer_windows_have_to_make_the_records_more_likely_beyond_chance"""
     carried_models: int = 4
     """[models] Taken to the next longer windows. Why: the most probable of each set of effects.
     Test: test_prediction_horizon.py::test_another_gain_each_way_is_judged_over_whole_runs"""
@@ -121,19 +120,21 @@ class StructureSelection:
 class Screening:
     """The predicted error of each effect, to first order."""
 
-    samples: int = 49_152
-    """[samples] Of all runs that an effect is simulated on. Why: all effects in about a second."""
     strengths: tuple[float, ...] = (0.01, 0.03, 0.1, 0.3, 1.0)
     """[of the way to each bound] At which an effect is simulated. Why: a response scales over a factor of three.
-    Test: test_effects_side_by_side.py::test_what_an_effect_promises_hangs_on_none_beside_it"""
+    Test: test_criteria_of_ranking.py::test_strengths_over_four_decades_lie_near_one_that_is_simulated"""
     weak_strengths: tuple[float, ...] = (1e-4, 3e-4, 1e-3, 3e-3)
-    """[of the way to each bound] In addition, for a machine of unknown size. Why: its bounds are wide."""
+    """[of the way to each bound] In addition, for a machine of unknown size. Why: its bounds are wide.
+    Test: test_criteria_of_ranking.py::test_strengths_over_four_decades_lie_near_one_that_is_simulated"""
     many_shapes: int = 10
     """[initial guesses] Of shapes, above which each is simulated at fewer strengths. Why: the simulations are as many
-    as shapes times strengths."""
+    as shapes times strengths.
+    Test: test_criteria_of_ranking.py::test_of_many_shapes_each_is_simulated_once"""
     strengths_of_many: tuple[float, ...] = (0.3,)
     """[of the way to each bound] At which each of many shapes is simulated. Why: the middle of the range by its
-    logarithm."""
+    logarithm.
+    Test: test_criteria_of_ranking.py::
+    test_the_one_strength_of_many_shapes_can_be_scaled_from_a_sixth_to_over_half_of_the_range"""
     strengths_of_stop: tuple[float, ...] = (1.02, 1.08, 1.2, 1.4, 1.7)
     """[of the inverse of the way that was covered] At which a stop is simulated. Why: a stop that gives way was passed.
     Test: test_initial_guesses.py::test_a_stop_that_gives_way_lies_before_the_end_of_the_way"""
@@ -141,30 +142,20 @@ class Screening:
     """[places] Of its shapes from which a refit begins again, in addition to the one with the best prediction. Why:
     there are four places along a range. Test: test_free_shapes.py::test_an_end_above_its_prediction_is_begun_again"""
     max_scaling: float = 2.0
-    """[ratio of strengths] By which a response may be scaled. Why: beyond it the response would be another
-    strength's."""
-    max_step: float = 0.1
-    """[of an axis] That a parameter is moved at most by the prediction. Why: a linearisation may move a parameter that
-    hardly matters anywhere."""
-    step_shares: tuple[float, ...] = (1.0, 0.5, 0.2, 0.05, 0.01)
-    """[of the predicted step] From where a refit may begin. Why: a prediction may be too bold."""
+    """[ratio of strengths] By which a response may be scaled. Why: beyond it the response would be another strength's.
+    Test: test_criteria_of_ranking.py::test_a_response_is_scaled_by_two_at_most"""
     strength_powers: tuple[float, ...] = (0.67, 0.33, 0.0)
     """[exponent of the scaling] Of further starts, between the scaled and the simulated strength. Why: an effect with a
-    threshold needs the simulated strength."""
+    threshold needs the simulated strength.
+    Test: test_criteria_of_ranking.py::
+    test_from_the_simulated_strength_to_the_scaled_one_refits_begin_within_a_factor_of_five"""
     threshold_growth: float = 300.0
     """[ratio of powers] Of two neighbouring responses between which a threshold lies. Why: a proportional response
     grows by at most ten.
     Test: test_far_starts.py::test_the_hidden_effect_is_found_where_no_start_near_the_fit_leads_to_it"""
-    threshold_step: float = 4.0
-    """[ratio of strengths] Between which a threshold is looked for. Why: the ladder's steps are of three."""
-    between: tuple[float, ...] = (0.2, 0.4, 0.6, 0.8)
-    """[exponent of the step] Of strengths tried where a threshold lies. Why: equal steps of the logarithm."""
-    score_tolerance: float = 1e-9
-    """[of a score] Difference that makes no score better. Why: rounding."""
     reweighting_rounds: int = 3
-    """[rounds] Of weighting each run by its residual. Why: the weights settle within three."""
-    batch: int = 64
-    """[responses] Whose products lie side by side in memory. Why: cache."""
+    """[rounds] Of weighting each run by its residual. Why: the weights settle within three.
+    Test: test_criteria_of_ranking.py::test_the_weights_of_runs_are_settled_when_a_fit_is_predicted"""
 
 
 @dataclass(frozen=True)
@@ -175,13 +166,12 @@ class InitialGuesses:
     """[lines] Of the spectrum taken as frequencies. Why: the clearest are usually among the first three.
     Test: test_initial_guesses.py::test_pulsations_are_found_clearest_first_whatever_the_sample_rate"""
     angles: int = 6
-    """[angles] Around a turn, where a phase begins. Why: an optimum of a phase reaches a third of a turn."""
-    product_points: int = 5
-    """[points] For each line of a signal that is multiplied by another of its kind. Why: the product reaches to four
-    times the band of the two."""
+    """[angles] Around a turn, where a phase begins. Why: an optimum of a phase reaches a third of a turn.
+    Test: test_criteria_of_ranking.py::test_a_phase_begins_at_each_sixth_of_a_turn"""
     along_range: tuple[float, ...] = (0.2, 0.4, 0.6, 0.8)
-    """[of an axis] Where a searched shape begins. Why: a width is felt over about a fifth of four decades.
-    Test: test_free_shapes.py::test_two_searches_from_other_places_end_alike"""
+    """[of an axis] Where a searched shape begins, and where strengths are tried between two of which one does next
+    to nothing and the other much. Why: a width is felt over about a fifth of four decades. Test:
+    test_free_shapes.py::test_two_searches_from_other_places_end_alike"""
     finely: int = 24
     """[places] Where a searched shape begins with which the output jumps. Why: over two decades each is a fifth longer
     than the one before, about the resolution of a play in a sample.
@@ -207,13 +197,10 @@ class InitialGuesses:
 class FreeWidths:
     """When the widths of an effect are identified with its strength."""
 
-    agrees: float = 0.01
-    """[of an error] Within which two ends are one optimum: a search from two starts has converged. Why: ends of one
-    optimum differ by less than 1e-4, optima of an effect that acts in jumps by some per cent.
-    Test: test_free_shapes.py::test_two_searches_from_other_places_end_alike"""
     missed: float = 1.1
-    """[ratio of errors] Of a refit over its prediction, above which it is begun again elsewhere. Why: a prediction is
-    a step towards an optimum. Test: test_free_shapes.py::test_an_end_above_its_prediction_is_begun_again"""
+    """[ratio of errors] Of a refit over its prediction, above which it is begun again elsewhere; of rough refits
+    with terms to the least, within which they are refined. Why: a prediction is a step towards an optimum, and a
+    rough refit is that far off. Test: test_free_shapes.py::test_an_end_above_its_prediction_is_begun_again"""
     short_steps: int = 50_000
     """[simulation steps] Of all runs below which widths are free from the start and refits begin again. Why: a single
     test has a tenth of the samples of a test matrix, and determines the initial guesses less.
@@ -223,7 +210,8 @@ class FreeWidths:
     and no model that explains the records does.
     Test: test_free_shapes.py::test_a_mass_next_to_nothing_makes_no_record_long"""
     tried: int = 3
-    """[effects] Refitted with free widths, the best predictions first. Why: each is refitted from several places."""
+    """[effects] Refitted with free widths, the best predictions first. Why: each is refitted from several places.
+    Test: test_criteria_of_ranking.py::test_three_effects_are_refitted_with_free_widths"""
 
 
 @dataclass(frozen=True)
@@ -231,10 +219,9 @@ class Ranking:
     """How many candidates are refitted, on trial and to every sample."""
 
     contenders: int = 12
-    """[candidates] Refitted on trial. Why: the best is among the first twelve predictions."""
-    further_contenders: int = 10
-    """[candidates] For a further effect, less two for each that is there. Why: each costs more the larger the
-    model."""
+    """[candidates] Refitted on trial; of a large matrix two fewer for each effect of the model with a further one. Why:
+    the best is among the first twelve predictions, and each refit costs more the larger the model.
+    Test: test_criteria_of_ranking.py::test_of_a_large_matrix_fewer_are_tried_the_larger_the_model"""
     quick_steps: int = 200_000
     """[simulation steps] Of all runs below which a matrix is quick. Why: every prediction and every finalist can
     then be tried. Test: test_ranking.py::test_what_leaves_as_much_as_the_last_finalist_is_one_in_a_small_matrix"""
@@ -242,43 +229,38 @@ class Ranking:
     """[ratio of predicted errors] To the best, of a contender for a further effect. Why: a prediction is that far off.
     Test: test_ranking.py::test_where_the_boldest_promise_is_not_kept_more_is_tried"""
     finalists: int = 5
-    """[candidates] Refitted to every sample. Why: the table shows the first five in full.
-    Test: test_ranking.py::test_what_leaves_as_much_as_the_last_finalist_is_one_in_a_small_matrix"""
+    """[candidates] Refitted to every sample, told as soon as they are predicted, and tried two at a time. Why: the
+    table shows the first five in full.
+    Test: test_criteria_of_ranking.py::test_of_a_large_matrix_fewer_are_tried_the_larger_the_model"""
     close_trial: float = 1.05
-    """[ratio of trial errors] To the best, up to which a candidate is a finalist, too. Why: a trial takes only the
-    beginnings of the records."""
-    found_again: float = 0.98
-    """[ratio of errors] Below which a known model that is refitted is at another optimum. Why: an effect that acts in
-    jumps has many optima.
-    Test: test_local_optima.py::test_a_model_that_is_known_is_found_anew_where_that_leads_to_a_better_optimum"""
+    """[ratio of trial errors] To the best, up to which a candidate is a finalist, too; to the model with another lag or
+    pair of lags in the place of which a trial is continued. Why: a trial takes only the beginnings of the records.
+    Test: test_criteria_of_ranking.py::test_a_trial_in_the_place_of_an_effect_counts_within_five_per_cent"""
     multistart_finalists: int = 2
-    """[finalists] Refitted from other strengths, too. Why: they decide what is added."""
+    """[finalists] Refitted from other strengths, too. Why: they decide what is added.
+    Test: test_criteria_of_ranking.py::test_the_best_two_finalists_are_begun_again"""
     strong_starts: tuple[float, ...] = (1.0, 0.6, 0.3)
     """[of the largest strength] From which a refit begins, too. Why: a fit that lacks the effect may have gone far
     astray. Test: test_far_starts.py::test_strong_starts_lie_within_the_bounds_of_the_model_that_they_begin_from"""
     perturbed_starts: tuple[float, ...] = (0.5, 0.7, 1.4, 2.0)
-    """[of the fitted strength] From which a refit begins, too. Why: play and stiction have optima nearby, one for
-    each reversal."""
-    multistart_rounds: int = 4
-    """[rounds] Of continuing from a better optimum. Why: each begins around the last."""
+    """[of the fitted strength] From which a refit begins, too. Why: play and stiction have optima nearby, one for each
+    reversal.
+    Test: test_criteria_of_ranking.py::test_optima_at_half_the_strength_and_at_twice_are_begun_from_nearby"""
     promising: float = 3e-3
     """[relative reduction] Of the score that is worth a refit. Why: three tenths of the share that is needed in the end
-    (evidence.share)."""
+    (evidence.share).
+    Test: test_criteria_of_ranking.py::
+    test_a_prediction_is_worth_a_trial_where_it_reduces_the_error_by_three_in_a_thousand"""
     offset_gain: float = 3.0
     """[log-likelihood] Predicted gain of the runs' offsets that is worth a refit. Why: about the gain that the prior of
-    an effect needs in the end. Test: test_diagnose.py::test_a_null_bias_is_found_by_the_offsets"""
-    told_at_once: int = 5
-    """[effects] Reported as soon as they are predicted. Why: a page shows five."""
+    an effect needs in the end.
+    Test: test_criteria_of_ranking.py::test_a_prediction_is_worth_a_trial_where_the_offsets_gain_three_nats"""
 
 
 @dataclass(frozen=True)
 class CrossValidationFolds:
     """Stretches of records, or whole runs, that take turns in being left out of a fit."""
 
-    whole_runs: int = 4
-    """[runs] Least number for which whole runs are held out. Why: an effect that only distinguishes runs then shows; a
-    fit of fewer runs without one of them is too poor.
-    Test: test_cross_validation.py::test_of_four_runs_whole_ones_are_left_out_of_fewer_stretches"""
     folds: int = 4
     """[folds] A quarter of the runs is held out at a time. Why: the fit without a fold is close to the fit of all.
     Test: test_cross_validation.py::test_residuals_out_of_fold_are_those_of_fits_without_each_fold"""
@@ -286,25 +268,22 @@ class CrossValidationFolds:
     """[stretches] Of a single run, each held out in turn; half as many of each of two or three runs. Why: twice as many
     fits as for many runs, and each stretch is longer than the machine's memory.
     Test: test_cross_validation.py::test_of_four_runs_whole_ones_are_left_out_of_fewer_stretches"""
-    seed: int = 0
-    """[seed] By which runs are dealt to folds. Why: a matrix lists its runs in an order of its own."""
     max_step: float = 0.01
     """[of an axis] Step over which one linearisation is trusted. Why: an effect that acts in jumps is far from linear
     beyond.
     Test: test_cross_validation.py::test_a_step_stays_in_the_cube_and_the_rest_makes_up_for_it"""
     longest_step: float = 0.1
-    """[of an axis] Longest step of any parameter in a fold. Why: a parameter that the other folds do not determine
-    would go to a bound.
-    Test: test_cross_validation.py::test_a_step_that_is_too_long_is_shortened"""
+    """[of an axis] Longest step of any parameter by one linearisation: in a fold, and from a fitted model to a
+    prediction. Why: a parameter that the data do not determine would go to a bound. Test:
+    test_cross_validation.py::test_a_step_that_is_too_long_is_shortened"""
     step_shares: tuple[float, ...] = (1.0, 0.5, 0.2, 0.05)
-    """[of the step] Shares of a longer step that are tried until the other folds are explained better. Why: each is a
-    simulation, and less than a twentieth moves nothing.
-    Test: test_cross_validation.py::test_a_step_that_is_too_long_is_shortened"""
-    least_offset: float = 1e-9
-    """[of the standard deviation] Least offset in a score. Why: a logarithm needs one."""
+    """[of the step] Shares of a step of a linearisation that are tried, in a fold until the other folds are
+    explained better. Why: a linearisation may be too bold, each share is a simulation, and less than a twentieth
+    moves nothing. Test: test_cross_validation.py::test_a_step_that_is_too_long_is_shortened"""
     conditions_of_an_octave: float = 2.0
     """[steps] Of the size and the period of a command, by which tests are of one condition. Why: repetitions of a test
-    differ by less, levels of a test matrix by more."""
+    differ by less, levels of a test matrix by more.
+    Test: test_criteria_of_ranking.py::test_tests_whose_commands_differ_in_size_by_a_fifth_are_of_two_conditions"""
 
 
 @dataclass(frozen=True)
@@ -315,8 +294,10 @@ class Equality:
     """[relative difference] Of two errors that rounding may decide. Why: refits end within about a hundredth of it.
     Test: test_tie_breaking.py::test_rounding_changes_no_order"""
     practically_equal: float = 1.02
-    """[ratio of errors] Of two models that the data cannot tell apart, within which they tie. Why: in a flat valley
-    rounding decides where a refit ends. Test: test_tie_breaking.py::test_rounding_changes_no_order"""
+    """[ratio of errors] Of two models that the data cannot tell apart, within which they tie; of a simpler model or
+    term to the best, within which it is taken. Why: in a flat valley rounding decides where a refit ends, and less
+    is no reason for another parameter. Test:
+    test_structure_selection.py::test_of_equals_the_one_with_fewer_parameters_is_taken"""
 
 
 @dataclass(frozen=True)
@@ -327,9 +308,12 @@ class Selection:
     """[effects] Added at most. Why: a test matrix does not distinguish more.
     Test: test_diagnose.py::test_more_effects_than_there_are_places_for_are_refused"""
     usual: int = 4
-    """[effects] Added where the user says nothing. Why: machines of the trials lack up to three."""
+    """[effects] Added where the user says nothing. Why: machines of the trials lack up to three.
+    Test: test_criteria_of_ranking.py::test_terms_are_searched_for_unless_a_small_limit_ended_the_selection"""
     exchanged: int = 3
-    """[effects] Up to which each is compared with all others in its place every time. Why: more take long."""
+    """[effects] Up to which each is compared with all others in its place every time. Why: more take long.
+    Test: test_criteria_of_ranking.py::
+    test_more_than_three_effects_are_compared_with_all_others_in_a_pass_of_their_own"""
     rounds: int = 3
     """[rounds] Of exchange, and of the wider search. Why: effects that are added and taken out in a circle come to an
     end.
@@ -346,30 +330,6 @@ class Selection:
     """[sets] Of as many effects as were selected, from which the search continues where it ends above the noise floor.
     Why: each costs a ranking, and where one lag imitates two, either of the two leads to both.
     Test: test_selection.py::test_two_of_which_neither_helps_beside_what_stands_for_both_are_found"""
-    pair_finalists: int = 5
-    """[finalists] Tried two at a time. Why: two lags look like a delay, one at a time.
-    Test: test_selection.py::test_two_that_only_together_explain_the_data_are_found_where_a_third_came_first"""
-
-
-@dataclass(frozen=True)
-class Ambiguity:
-    """Effects that the data cannot tell apart."""
-
-    alternatives: int = 3
-    """[effects] Of one other model that are named. Why: a sentence has room for no more."""
-    worth_saying: float = 0.05
-    """[probability] Below which an effect is not mentioned as an alternative to a named one. Why: one in 20 is the
-    custom of the field. Test: test_sentences.py:: test_effects_that_are_nearly_as_probable_as_the_named_one_are_said"""
-    delay_near: float = 1.05
-    """[ratio of errors] Above which the refit with another lag in its place ends. Why: a lag with a larger error is not
-    equal."""
-    pair_near: float = 1.01
-    """[ratio of trial errors] Above which the trial of another pair of lags ends. Why: a pair with a larger error is
-    distinguishable. Test: test_total_delay.py::test_two_lags_that_two_others_stand_for_as_well_are_told_as_pairs"""
-    delay_effort: Way = Way(1e-4, 12, rough=1e-3)
-    """[Way] Effort of a refit with another lag. Why: it only has to show whether the lag is equal."""
-    delay_models: int = 2
-    """[models] Of the path, the last first, whose total delay is compared. Why: the last effect may fix the lag."""
 
 
 @dataclass(frozen=True)
@@ -380,13 +340,6 @@ class Verification:
     """[standard errors] Rise of the validation error that contradicts an effect; and the shortfall of its fall at which
     validation data show nothing of an effect. Why: one in 40 by chance, and it only takes away the word found, or the
     last name. Test: test_verification.py::test_chance_contradicts_seldom"""
-    chunk_length: float = 10.0
-    """[correlation times] In a chunk of the bootstrap. Why: chunks are then independent (Künsch 1989).
-    Test: test_verification.py::test_chance_contradicts_seldom"""
-    least_chunks: int = 4
-    """[chunks] Fewest of a run. Why: the scatter of fewer is not known."""
-    resamples: int = 400
-    """[resamples] Of the bootstrap. Why: the standard error is then known to 4 %."""
     rise: float = 1.1
     """[ratio of validation errors] Of the last model to the best on the path, from which on it is reported. Why: less
     is a matter of chance.
@@ -399,32 +352,27 @@ class LabelChecks:
 
     outlier: float = 5.0
     """[robust standard deviations] Of the runs' errors beyond which a run is checked. Why: one in two million by
-    chance. Test: test_diagnose.py::test_a_wrong_label_is_named_with_what_should_stand_there"""
+    chance.
+    Test: test_criteria_of_labels.py::test_a_run_is_checked_where_its_error_is_five_deviations_above_the_usual"""
     least_excess: float = 1.15
     """[ratio of errors] Least ratio to the usual error, whatever the deviations are. Why: runs differ by some per cent
-    anyway."""
+    anyway.
+    Test: test_criteria_of_labels.py::test_a_run_is_checked_where_its_error_is_a_seventh_above_the_usual"""
     explained: float = 0.5
     """[of the excess power] Share that a changed label has to remove. Why: otherwise the label is not the cause.
-    Test: test_diagnose.py::test_a_wrong_label_is_named_with_what_should_stand_there"""
+    Test: test_criteria_of_labels.py::test_a_label_is_doubted_where_another_removes_half_of_the_excess"""
     factors: tuple[float, ...] = (0.1, 0.2, 0.33, 0.5, 0.67, 0.8, 0.9, 1.1, 1.25, 1.5, 2.0, 3.0, 5.0, 10.0)
-    """[of the stated value] Tried on a label. Why: from a tenth to ten times."""
-    rounds: int = 3
-    """[rounds] Of refining a label's value. Why: each narrows the range by four."""
+    """[of the stated value] Tried on a label. Why: from a tenth to ten times.
+    Test: test_criteria_of_labels.py::test_a_value_from_a_tenth_to_ten_times_is_found"""
     most: float = 0.2
-    """[of the runs] Most that may be outliers. Why: where more are, their labels are not the cause."""
+    """[of the runs] Most that may be outliers. Why: where more are, their labels are not the cause.
+    Test: test_criteria_of_labels.py::test_where_more_than_a_fifth_of_the_runs_stand_out_no_label_is_doubted"""
     fewest_runs: int = 5
-    """[runs] Least number for which labels are checked. Why: the scatter of fewer is not known."""
-    reach: float = 0.15
-    """[of the value or of the change] Range around the best value that is searched first. Why: the factors are that far
-    apart."""
-    points: int = 9
-    """[values] In a round. Why: with the narrowing by four no value is missed."""
-    narrowing: float = 4.0
-    """[ratio] By which the range narrows from round to round. Why: nine points over the range overlap."""
-    least_spread: float = 1e-3
-    """[of the logarithm] Added to the deviation of the runs' errors. Why: equal errors have none."""
+    """[runs] Least number for which labels are checked. Why: the scatter of fewer is not known.
+    Test: test_criteria_of_labels.py::test_the_labels_of_four_runs_are_not_checked"""
     shift_rounds: int = 5
-    """[rounds] Of Gauss-Newton on the shift of a channel. Why: it converges within three."""
+    """[rounds] Of Gauss-Newton on the shift of a channel. Why: it converges within three.
+    Test: test_criteria_of_labels.py::test_a_record_that_is_late_by_a_third_of_its_memory_is_found_to_be_so"""
 
 
 @dataclass(frozen=True)
@@ -448,7 +396,9 @@ class Conclusion:
     """What a report says, and which models it says are in question."""
 
     competing: int = 3
-    """[models] That the next run is to distinguish. Why: more make no better experiment."""
+    """[models] That the next run is to distinguish, and explanations by another machine that are named. Why: more make
+    no better experiment, and a sentence has room for no more.
+    Test: test_criteria_of_ranking.py::test_the_next_run_is_to_distinguish_three_models"""
     simpler_terms: float = 1.05
     """[ratio of errors] Up to which terms alone come before terms in addition to the added effects. Why: they need one
     effect less. Test: test_stages.py::test_terms_of_the_first_search_stay_where_there_is_no_time_for_the_second"""
@@ -469,7 +419,6 @@ class Criteria:
     evidence: EvidenceCriteria = EVIDENCE_CRITERIA
     equality: Equality = Equality()
     selection: Selection = Selection()
-    ambiguity: Ambiguity = Ambiguity()
     verification: Verification = Verification()
     labels: LabelChecks = LabelChecks()
     consistency: RunConsistency = RunConsistency()

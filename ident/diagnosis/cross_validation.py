@@ -81,8 +81,8 @@ def weight_of_offsets(runs: int, samples: int) -> float:
 
 
 def scored(error: float, offset: float, weight: float) -> float:
-    """Error and offsets in one number, least for the most likely model."""
-    return error * (1.0 + weight * float(np.log(max(offset, CRITERIA.cross_validation.least_offset))))
+    """Error and offsets in one number, least for the most likely model; offsets below what matters count as that."""
+    return error * (1.0 + weight * float(np.log(max(offset, CRITERIA.evidence.level))))
 
 
 def out_of_fold(
@@ -166,8 +166,8 @@ def fold_of_blocks(number: int, blocks: int, runs: int) -> Indices:
     Whole runs are dealt out at random.
     """
     folds, stretches = CRITERIA.cross_validation.folds, CRITERIA.cross_validation.stretches
-    if runs >= CRITERIA.cross_validation.whole_runs:
-        dealt = np.random.default_rng(CRITERIA.cross_validation.seed).permutation(runs) % folds
+    if runs >= CRITERIA.evidence.whole_runs:
+        dealt = np.random.default_rng(0).permutation(runs) % folds
         return np.full(blocks, dealt[number])
     count = stretches if runs == 1 else stretches // 2
     return np.asarray(np.arange(blocks) * min(count, blocks) // blocks, dtype=np.intp)

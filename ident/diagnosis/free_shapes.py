@@ -184,7 +184,7 @@ def converged(ends: Sequence[FittedModel], prediction: Prediction) -> bool:
     errors = sorted(end.local.error for end in ends)
     if len(errors) < 2 or not np.isfinite(errors[1]):
         return False
-    return errors[1] <= (1.0 + CRITERIA.free_widths.agrees) * errors[0] and keeps(ends, prediction)
+    return CRITERIA.estimation.new_optimum * errors[1] <= errors[0] and keeps(ends, prediction)
 
 
 def keeps(ends: Sequence[FittedModel], prediction: Prediction) -> bool:

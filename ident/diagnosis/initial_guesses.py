@@ -143,7 +143,7 @@ def _rate(run: Run, signal: Array, band: float) -> tuple[Array, float]:
     omega = 2 * np.pi * np.fft.rfftfreq(n, 1.0 / run.sample_rate)
     within = int(np.searchsorted(omega, 2.0 * band, side="right"))
     spectrum, omega = spectrum[:within], omega[:within]
-    few = min(n, next_fast_len(CRITERIA.initial_guesses.product_points * within, real=True))
+    few = min(n, next_fast_len(2 * 2 * within, real=True))  # twice the highest frequency of the product (Nyquist)
     rate = np.fft.irfft(spectrum * 1j * omega if run.output == "displacement" else spectrum, few)
     return rate * (few / n), n / run.sample_rate / few
 

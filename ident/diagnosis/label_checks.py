@@ -10,6 +10,7 @@ from collections.abc import Mapping
 from dataclasses import replace
 
 import numpy as np
+import scipy  # optimize, which takes a tenth of a second to load, is loaded where it is first used
 from numpy.typing import NDArray
 
 from ident.chain.conditions import conditions
@@ -42,7 +43,7 @@ def label_suspects(models: CandidateModels, fitted: FittedModel, floors: Mapping
     scale = {run.id: (floors[run.id] or 1.0) if known else 1.0 for run in runs}
     ratios = np.log([max(errors[run.id], EPSILON) / scale[run.id] for run in runs])
     usual = float(np.median(ratios))
-    spread = 1.4826 * float(np.median(np.abs(ratios - usual))) + CRITERIA.labels.least_spread
+    spread = 1.4826 * float(np.median(np.abs(ratios - usual)))
     outside = [
         run for run, ratio in zip(runs, ratios, strict=True)
         if ratio - usual > max(np.log(CRITERIA.labels.least_excess), CRITERIA.labels.outlier * spread)
@@ -86,7 +87,10 @@ def _evidence(what: str, stated: float, found: float, unit: str, error: float, u
 
 
 def _label(models: CandidateModels, fitted: FittedModel, run: Run, what: str) -> tuple[str, float, float, float]:
-    """The best value of one label: its name, the stated value, the best value, and the error with it."""
+    """The best value of one label: its name, the stated value, the best value, and the error with it.
+
+    A ladder of values is tried, then the error is minimised between the neighbours of the best (Brent 1973).
+    """
     name = _LABELS[what]
     stated = conditions(run, models.matrix.actuator)[name]
     others = {conditions(other, models.matrix.actuator)[name] for other in models.matrix.runs}
@@ -95,15 +99,16 @@ def _label(models: CandidateModels, fitted: FittedModel, run: Run, what: str) ->
         return what, stated, stated, np.inf
     errors = _errors(models, fitted, run, {name: tried})
     best = int(np.argmin(errors))
-    found, least = float(tried[best]), float(errors[best])
-    reach = CRITERIA.labels.reach * max(abs(found), abs(found - stated))
-    for _ in range(CRITERIA.labels.rounds):
-        around = found + reach * np.linspace(-1.0, 1.0, CRITERIA.labels.points)
-        around = around[around > 0] if stated >= 0 else around
-        errors = _errors(models, fitted, run, {name: around})
-        best = int(np.argmin(errors))
-        found, least = (float(around[best]), float(errors[best])) if errors[best] < least else (found, least)
-        reach /= CRITERIA.labels.narrowing
+    ladder = sorted({stated, *tried.tolist()})
+    place = ladder.index(tried[best])
+    lower, upper = ladder[max(place - 1, 0)], ladder[min(place + 1, len(ladder) - 1)]
+
+    def error(value: float) -> float:
+        return float(_errors(models, fitted, run, {name: np.array([value])})[0])
+
+    near = {"xatol": CRITERIA.equality.tie * (upper - lower)}
+    between = scipy.optimize.minimize_scalar(error, bounds=(lower, upper), method="bounded", options=near)
+    least, found = min((float(errors[best]), float(tried[best])), (float(between.fun), float(between.x)))
     return what, stated, found, least
 
 
@@ -117,14 +122,25 @@ def _of_channel(models: CandidateModels, fitted: FittedModel, run: Run) -> list[
     factor = float(measured @ model / (measured @ measured))
     left = float(np.sqrt(np.sum((factor * measured - model) ** 2) / power)) / abs(factor) if factor else np.inf
     scaled = ("sign" if factor < -0.5 else "unit", 1.0, factor, left)
+    lag = _shift(measured, model)
+    late = float(np.std(measured - _later(model, lag)) * np.sqrt(len(model) / power))
+    return [scaled, ("delay", 0.0, lag / run.sample_rate, late)]
+
+
+def _shift(measured: Array, model: Array) -> float:
+    """The samples by which a model's output has to be later, by the method of Gauss and Newton."""
     lag = 0.0
     for _ in range(CRITERIA.labels.shift_rounds):
-        moved = np.interp(np.arange(len(model)) - lag * run.sample_rate, np.arange(len(model)), model)
-        slope = np.gradient(moved) * run.sample_rate
+        moved = _later(model, lag)
+        slope = np.gradient(moved)
         lag += float(-(measured - moved) @ slope / (slope @ slope))
-    moved = np.interp(np.arange(len(model)) - lag * run.sample_rate, np.arange(len(model)), model)
-    late = ("delay", 0.0, lag, float(np.std(measured - moved) * np.sqrt(len(moved) / power)))
-    return [scaled, late]
+    return lag
+
+
+def _later(samples: Array, lag: float) -> Array:
+    """Samples that come so many samples later."""
+    places = np.arange(len(samples))
+    return np.interp(places - lag, places, samples)
 
 
 def _errors(models: CandidateModels, fitted: FittedModel, run: Run, changed: Mapping[str, Array]) -> Array:

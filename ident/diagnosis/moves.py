@@ -372,7 +372,7 @@ class Moves:
         """
         first = selection.path[1].effects[-1] if len(selection.path) > 1 else ""  # the others were tried with it
         finalists = [c.refit for c in selection.ranking if c.refit is not None and c.effect != first]
-        finalists = finalists[: CRITERIA.selection.pair_finalists]
+        finalists = finalists[: CRITERIA.ranking.finalists]
         if self.most < 2 or len(finalists) < 2:
             return None
         pairs, target = list(combinations(finalists, 2)), self.models.trial_error(selection.fitted)

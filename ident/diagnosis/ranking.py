@@ -63,7 +63,9 @@ def rank_each(
     on_trial = [_contenders(models, of) for of in predicted] if thorough else list(near)
     finalists_at_least = CRITERIA.ranking.finalists if thorough else 2
     targets = {base.effects: _target(models, base, incumbent) for base in models_of}
-    below_incumbent = CRITERIA.ranking.found_again * models.trial_error(incumbent) if incumbent is not None else np.inf
+    below_incumbent = (
+        CRITERIA.estimation.new_optimum * models.trial_error(incumbent) if incumbent is not None else np.inf
+    )
 
     def trial(base: FittedModel, prediction: Prediction) -> Candidate:
         aim = below_incumbent if _is_incumbent(base, prediction, incumbent) else targets[base.effects]
@@ -182,7 +184,7 @@ def _confirmed(models: CandidateModels, base: FittedModel, candidate: Candidate,
     """A candidate refitted to every sample, as closely as its score on trial asks for; `best` is the least of all."""
     assert candidate.trial is not None
     is_behind = candidate.score > CRITERIA.ranking.close_trial * best
-    way = CRITERIA.estimation.behind if is_behind else CRITERIA.estimation.full
+    way = CRITERIA.estimation.coarse if is_behind else CRITERIA.estimation.full
     refit = models.refit((*base.effects, candidate.effect), candidate.trial.values, way=way)
     return candidate.refitted(models, base, refit) if refit.finite else replace(candidate, trial=None)
 
@@ -200,7 +202,7 @@ def _predictions(models: CandidateModels, base: FittedModel, names: Sequence[str
     """What every effect promises, the best first."""
     report(Progress("predicting", 0, 1))
     found = stable_ranking(predict(models, base, sorted(names, key=models.simplicity)), lambda one: one.after.score)
-    first = tuple(Expected(one.effect, base.error * one.remaining) for one in found[: CRITERIA.ranking.told_at_once])
+    first = tuple(Expected(one.effect, base.error * one.remaining) for one in found[: CRITERIA.ranking.finalists])
     report(Progress("predicting", 1, 1, base.error, first))
     return found
 
@@ -252,7 +254,7 @@ def _is_better(again: Candidate | None, known: Candidate) -> bool:
     return (
         again is not None
         and again.refit is not None
-        and again.refit.error < CRITERIA.ranking.found_again * known.refit.error
+        and again.refit.error < CRITERIA.estimation.new_optimum * known.refit.error
     )
 
 
@@ -294,11 +296,11 @@ def _overlooked(
 
 
 def _few(models: CandidateModels, base: FittedModel) -> int:
-    """How many contenders for a further effect there may be."""
+    """How many contenders for a further effect there may be: two fewer for each effect of the model with it."""
     return (
         CRITERIA.ranking.contenders
         if models.is_quick(base)
-        else max(CRITERIA.ranking.further_contenders - 2 * len(base.effects), CRITERIA.ranking.finalists)
+        else max(CRITERIA.ranking.contenders - 2 * (len(base.effects) + 1), CRITERIA.ranking.finalists)
     )
 
 
@@ -313,7 +315,7 @@ def _multistart(
     if refit is None or models.at_floor(refit):
         return candidate
     starts = [*_strong_starts(models, base, refit), *_perturbed_starts(models, refit)]
-    for _ in range(CRITERIA.ranking.multistart_rounds):
+    for _ in range(CRITERIA.estimation.convergence_rounds):
         other = models.better_optimum(refit, starts, aim)
         if other is None:
             break

@@ -99,7 +99,7 @@ def gain_by_chance(models: CandidateModels, base: FittedModel, names: Sequence[s
         for run in runs
     ]
     residuals, free, candidates = zip(*of_runs, strict=True)
-    bands = models.compared_records(CRITERIA.screening.samples).bands
+    bands = models.compared_records(CRITERIA.estimation.rough_samples).bands
     return bar(residuals, free, candidates, common_disturbance([Residuals(tuple(residuals), bands)]))
 
 
@@ -117,7 +117,7 @@ def _without_first_state(Z: Array, responses: Array, p: int) -> tuple[Array, Arr
 
 def _response_of_each(given: _Sensitivities, base: FittedModel, names: Sequence[str]) -> dict[str, Array]:
     """The response (n, effects) of each run, by its id, to each of some effects that one chain holds."""
-    models, fitness = given.models, given.models.fitness((*base.effects, *names), CRITERIA.screening.samples)
+    models, fitness = given.models, given.models.fitness((*base.effects, *names), CRITERIA.estimation.rough_samples)
     values = _values_without(models, base, fitness)
     trials = [list(_trials(models, base, fitness.space, name, values)) for name in names]
     middle = [each_of[len(each_of) // 2] for each_of in trials]
@@ -138,7 +138,7 @@ def _predicted(given: _Sensitivities, base: FittedModel, names: Sequence[str]) -
 
     Strengths are added where a threshold was jumped over, and beyond a range whose end is not enough.
     """
-    models, fitness = given.models, given.models.fitness((*base.effects, *names), CRITERIA.screening.samples)
+    models, fitness = given.models, given.models.fitness((*base.effects, *names), CRITERIA.estimation.rough_samples)
     values = _values_without(models, base, fitness)
     trials = [trial for name in names for trial in _trials(models, base, fitness.space, name, values)]
     found = given.with_effects(fitness, values, trials)
@@ -156,7 +156,7 @@ def _predicted(given: _Sensitivities, base: FittedModel, names: Sequence[str]) -
         trial, after, _ = promise
         of_shape, shape = best[trial.effect], tuple(trial.shape.values())
         least = of_shape.get(shape, nothing[trial.effect])[1].score
-        if after.score < (1.0 - CRITERIA.screening.score_tolerance) * least:
+        if after.score < (1.0 - CRITERIA.equality.tie) * least:
             of_shape[shape] = promise
     few = slice(CRITERIA.screening.elsewhere)
 
@@ -240,7 +240,7 @@ class _Sensitivities:
     @classmethod
     def of(cls, models: CandidateModels, base: FittedModel) -> _Sensitivities:
         """Simulate the model with each parameter moved."""
-        fitness = models.fitness(base.effects, CRITERIA.screening.samples)
+        fitness = models.fitness(base.effects, CRITERIA.estimation.rough_samples)
         found = Sensitivities.of(fitness, base.point)
         totals = np.array([np.sum((r.measured - r.measured.mean()) ** 2) for r in fitness.runs])
         records = _Records(totals, np.array([r.length for r in fitness.runs]))
@@ -280,10 +280,7 @@ class _EffectResponses:
         """The trials that were simulated, the fit predicted with a share of the response of each, and the step to
         there."""
         shown = [i for i in range(len(self.trials)) if self._power(i) > 0]
-        for few in (
-            shown[first : first + CRITERIA.screening.batch] for first in range(0, len(shown), CRITERIA.screening.batch)
-        ):
-            yield from ((self.trials[i], *found) for i, found in zip(few, self._after(few), strict=True))
+        yield from ((self.trials[i], *found) for i, found in zip(shown, self._after(shown), strict=True))
 
     def thresholds(self) -> list[_Trial]:
         """Strengths between two neighbours of which one does next to nothing and the other much."""
@@ -292,10 +289,9 @@ class _EffectResponses:
             if one != replace(other, strength=one.strength):
                 continue
             ratio = other.strength / one.strength
-            if 1 < ratio < CRITERIA.screening.threshold_step and self._power(
-                i + 1
-            ) > CRITERIA.screening.threshold_growth * self._power(i):
-                found += [replace(one, strength=one.strength * ratio**share) for share in CRITERIA.screening.between]
+            if ratio > 1 and self._power(i + 1) > CRITERIA.screening.threshold_growth * self._power(i):
+                places = CRITERIA.initial_guesses.along_range
+                found += [replace(one, strength=one.strength * ratio**place) for place in places]
         return found
 
     def _power(self, trial: int) -> float:
@@ -317,7 +313,8 @@ def _refit_starts(models: CandidateModels, base: FittedModel, promise: _Promise)
     """The values from which to refit with the effect: parts of the way to the prediction, and of the way back."""
     trial, _, step = promise
     p, symbol = len(base.point), models.strength(trial.effect)
-    moved = np.clip(step[:p], -CRITERIA.screening.max_step, CRITERIA.screening.max_step)
+    longest = CRITERIA.cross_validation.longest_step
+    moved = np.clip(step[:p], -longest, longest)
 
     def at(share: float, here: float) -> dict[str, float]:
         point = np.clip(base.point + share * moved, 0.0, 1.0)
@@ -325,7 +322,7 @@ def _refit_starts(models: CandidateModels, base: FittedModel, promise: _Promise)
         return {**base.values, **values, **trial.shape, symbol: here}
 
     scaled = float(step[p])
-    parts = [at(share, share * scaled * trial.strength) for share in CRITERIA.screening.step_shares]
+    parts = [at(share, share * scaled * trial.strength) for share in CRITERIA.cross_validation.step_shares]
     return (
         (*parts, *(at(1.0, scaled**share * trial.strength) for share in CRITERIA.screening.strength_powers))
         if scaled
@@ -390,7 +387,7 @@ def _after(
     share = weight_of_offsets(runs, int(records.lengths.sum()))
     offsets = (means - means.mean(axis=1, keepdims=True)) / np.sqrt(records.totals / records.lengths)[:, None]
     of_offsets = offsets.transpose(0, 2, 1) @ offsets
-    least_offset = CRITERIA.cross_validation.least_offset
+    least_offset = CRITERIA.evidence.level
     flat, left = gram.reshape(count, runs, -1), gram[..., p, p]
     step, direction = np.zeros((count, p)), np.append(np.zeros((count, p)), np.ones((count, 1)), axis=1)
     for _ in range(CRITERIA.screening.reweighting_rounds):

@@ -214,7 +214,7 @@ def _others(added: Sequence[str], groups: Sequence[Sequence[str]], probabilities
     An effect that is hardly probable has no alternatives, and is none.
     """
     said = {*added, *(name for group in groups for name in group), "nothing", "unlisted"}
-    worth = CRITERIA.ambiguity.worth_saying
+    worth = CRITERIA.evidence.chance
     named = [probabilities[name] for name in added if probabilities.get(name, 0.0) >= worth]
     least = max(min(named, default=2.0) / 2, worth)
     others = [name for name, probability in probabilities.items() if name not in said and probability >= least]

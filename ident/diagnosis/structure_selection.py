@@ -93,7 +93,7 @@ def _compared(
     fitted = _all_fitted(models, matrix, report, preprocessing)
     over, tried = _judged(list(fitted.values()))
     least = min(one.error for one in tried)
-    good = [one for one in tried if one.error <= CRITERIA.structure.worse * least]
+    good = [one for one in tried if one.error <= CRITERIA.equality.practically_equal * least]
     strange = {model.name for model in models if unusual(model, matrix.runs)}
     first = min(good, key=lambda one: (one.machine in strange, one.parameters))
     with_effects = _with_an_effect_each(first, tried, report)
@@ -156,7 +156,7 @@ def _preferred(
         one
         for one in others
         if one.parameters < first.parameters
-        and one.error <= CRITERIA.structure.worse * first.error
+        and one.error <= CRITERIA.equality.practically_equal * first.error
         and (one.machine in strange) <= (first.machine in strange)
         and not better(one.best, first.best)
     ]
@@ -168,7 +168,10 @@ def _preferred(
 def _simplest(models: Collection[_JudgedStructure]) -> _JudgedStructure:
     """The model with the fewest parameters among the models with about the smallest error."""
     least = min(one.error for one in models)
-    return min((one for one in models if one.error <= CRITERIA.structure.worse * least), key=lambda one: one.parameters)
+    return min(
+        (one for one in models if one.error <= CRITERIA.equality.practically_equal * least),
+        key=lambda one: one.parameters,
+    )
 
 
 def _judged(fitted: Sequence[_FittedStructure]) -> tuple[float | None, list[_JudgedStructure]]:
@@ -187,7 +190,7 @@ def _judged(fitted: Sequence[_FittedStructure]) -> tuple[float | None, list[_Jud
         whole = [one.judged(None) for one in fitted]
         least = min(one.error for one in tried)
         integrating = min(judged.error for model, judged in zip(fitted, tried, strict=True) if model.fit.window)
-        if integrating > CRITERIA.structure.worse * least or min(one.error for one in whole) < least:
+        if integrating > CRITERIA.equality.practically_equal * least or min(one.error for one in whole) < least:
             return None, whole
     return longest.horizon, tried
 

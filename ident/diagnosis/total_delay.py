@@ -58,9 +58,8 @@ def total_delay(models: CandidateModels, base: FittedModel, refit: FittedModel) 
         at = {models.strength(effect): refit.values[constant.in_equations]}
         return short.refit((*refit.effects, effect), start | at, way=way)
 
-    way = replace(
-        CRITERIA.ambiguity.delay_effort, aim=CRITERIA.ambiguity.delay_near * refit.local.error, enough=refit.local.error
-    )
+    error = refit.local.error
+    way = replace(CRITERIA.estimation.trial, aim=CRITERIA.ranking.close_trial * error, enough=error)
     names = [name for name, effect in models.effects.items() if is_late(effect) and name not in refit.effects]
     names = [name for name in names if models.fit_together((*refit.effects, name))]
     tried = [one for one in each(other, names) if one.finite]
@@ -91,7 +90,7 @@ def lag_ambiguities(models: CandidateModels, refit: FittedModel, added: Sequence
     ]
     free, found = [name for name in times if name not in refit.effects], []
     pairs = list(combinations([name for name in added if name in times], 2))
-    asked = CRITERIA.ambiguity.pair_near * models.trial_error(refit) if pairs else 0.0
+    asked = CRITERIA.ranking.close_trial * models.trial_error(refit) if pairs else 0.0
     for pair in pairs:
         rest = tuple(name for name in refit.effects if name not in pair)
         others = [two for two in combinations(free, 2) if models.fit_together((*rest, *two))]

@@ -39,7 +39,7 @@ def rested(models: CandidateModels, refit: FittedModel) -> tuple[CandidateModels
 
 def _slowed(models: CandidateModels, refit: FittedModel, number: int) -> FittedModel:
     """The refit with one parameter moved, by half of the steps at a time, until the error changes."""
-    most = (1.0 + CRITERIA.estimation.no_change) * refit.local.error
+    most = (1.0 + CRITERIA.equality.tie) * refit.local.error
     while (place := _with_fewer_steps(models, refit, number)) is not None:
         point = refit.point.copy()
         point[number] = place

@@ -83,8 +83,8 @@ def is_noise(residual: Residual, criteria: Criteria = CRITERIA) -> bool:
     """
     if residual.floor is None:
         return not residual.correlation > criteria.noise.noise_correlation
-    excess = criteria.noise.floor_excess if residual.excess is None else residual.excess
-    return residual.error < (1.0 + excess + criteria.noise.floor_deviations * residual.spread) * residual.floor
+    margin = criteria.evidence.floor_margin if residual.excess is None else 1.0 + residual.excess
+    return residual.error < (margin + criteria.noise.floor_deviations * residual.spread) * residual.floor
 
 
 def contradicts(change: VerifyChange, criteria: Criteria = CRITERIA) -> bool:

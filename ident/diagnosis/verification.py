@@ -14,8 +14,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ident.diagnosis.criteria import CRITERIA, TINY
+from ident.diagnosis.evidence.blocks import block_mean
+from ident.diagnosis.evidence.criteria import EVIDENCE_CRITERIA
 from ident.diagnosis.evidence.free_run import FreeRun, drives_away
-from ident.noise.effective_sample_size import independent_samples
 from ident.plain import WHERE_KNOWN
 from ident.run import Run, over_runs
 from ident.unstable import UNSTABLE
@@ -127,8 +128,7 @@ def verify_change(
 
     `before` and `after` are the residuals of each run without the effect and with it, (n,), less their mean or over
     windows; `means` are the means that the fit counts, (runs,) each: the errors with them then decide. The standard
-    error of the difference comes from a bootstrap over chunks of ten correlation times (Künsch 1989), at least four a
-    run.
+    error of the difference comes from the blocks of each run (:mod:`ident.diagnosis.evidence.blocks`).
     """
     if _unstable(runs, before):
         return None
@@ -154,22 +154,17 @@ def _raised(residuals: Sequence[Array], means: Array) -> list[Array]:
 def _error(runs: Sequence[Run], residuals: Sequence[Array]) -> float:
     """The root mean square of residuals over the deviations of the outputs, averaged over runs."""
     sizes = [float(np.std(run.measured)) for run in runs]
-    return float(over_runs([np.sqrt(np.mean(r**2)) / size for r, size in zip(residuals, sizes, strict=True)], runs))
+    return float(over_runs([_rms(r) / size for r, size in zip(residuals, sizes, strict=True)], runs))
 
 
 def _error_of_difference(runs: Sequence[Run], before: Sequence[Array], after: Sequence[Array]) -> float:
-    """The standard error of the difference of two errors, by a bootstrap over chunks of each run."""
-    random, resamples = np.random.default_rng(0), CRITERIA.verification.resamples
-    drawn = np.empty((2, len(runs), resamples))
-    for i, (run, *residuals) in enumerate(zip(runs, before, after, strict=True)):
-        chunks = _chunks(residuals[0])
-        picked = random.integers(len(chunks), size=(resamples, len(chunks)))
-        for model, residual in enumerate(residuals):
-            sums = np.array([np.sum(residual[chunk] ** 2) for chunk in chunks])
-            counts = np.array([chunk.stop - chunk.start for chunk in chunks])
-            power = sums[picked].sum(axis=1) / counts[picked].sum(axis=1)
-            drawn[model, i] = np.sqrt(power) / float(np.std(run.measured))
-    return float(np.std(over_runs(drawn[1], runs) - over_runs(drawn[0], runs)))
+    """The standard error of the difference of two errors: to first order √(mean r²) is linear in the mean of r²."""
+    errors = []
+    for run, *residuals in zip(runs, before, after, strict=True):
+        first, last = (r**2 / max(2.0 * _rms(r) * float(np.std(run.measured)), TINY) for r in residuals)
+        errors.append(block_mean([last - first], EVIDENCE_CRITERIA).error)
+    shares = np.array([run.share for run in runs])
+    return float(np.linalg.norm(shares / shares.sum() * errors))
 
 
 def with_free_run(over_windows: VerifyChange, before: FreeRun, after: FreeRun) -> VerifyChange:
@@ -191,14 +186,5 @@ def _unstable(runs: Sequence[Run], left: Sequence[Array]) -> tuple[str, ...]:
     return tuple(run.id for run, error in zip(runs, errors, strict=True) if not error < UNSTABLE)
 
 
-def _chunks(residual: Array) -> list[slice]:
-    """Chunks of neighbouring samples, each with about as much information as ten independent samples."""
-    n = len(residual)
-    length = int(
-        np.clip(
-            CRITERIA.verification.chunk_length * n / independent_samples(residual),
-            1,
-            max(n // CRITERIA.verification.least_chunks, 1),
-        )
-    )
-    return [slice(first, min(first + length, n)) for first in range(0, n, length)]
+def _rms(residual: Array) -> float:
+    return float(np.sqrt(np.mean(residual**2)))

@@ -8,7 +8,6 @@ from ident.diagnosis.candidate_models import CandidateModels
 from ident.diagnosis.screening import predict
 from ident.fit.settings import Settings
 from tests.diagnosis.test_diagnose import measured
-from tests.diagnosis.vary import vary
 from tests.fit.test_windows import cylinder
 
 
@@ -17,7 +16,7 @@ def test_what_an_effect_promises_hangs_on_none_beside_it(monkeypatch):
     base = models.refit((), {p.in_equations: p.value for p in models.preset.parameters})
     names = list(models.effects)[::3]
     together = predict(models, base, names)
-    vary(monkeypatch, "estimation", effects_a_chain=1)
+    monkeypatch.setattr("ident.diagnosis.candidate_models._EFFECTS_A_CHAIN", 1)
     for one, alone in zip(together, predict(models, base, names), strict=True):
         assert one.effect == alone.effect
         assert one.after.score == pytest.approx(alone.after.score, rel=1e-3)

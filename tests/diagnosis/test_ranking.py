@@ -135,7 +135,7 @@ def test_what_leaves_as_much_as_the_last_finalist_is_one_in_a_small_matrix(quick
     assert len(_finalists(nothing_more, base, trials, finalists_at_least=5)) == 5
 
 
-@pytest.mark.parametrize(("error", "way"), [(0.314, CRITERIA.estimation.full), (0.316, CRITERIA.estimation.behind)])
+@pytest.mark.parametrize(("error", "way"), [(0.314, CRITERIA.estimation.full), (0.316, CRITERIA.estimation.coarse)])
 def test_a_finalist_that_is_far_behind_is_not_refined_as_the_best_is(error, way):
     """The best left 0.3 on trial, and what leaves a twentieth more is behind."""
     asked: list[Any] = []

@@ -107,7 +107,7 @@ def counted(monkeypatch: pytest.MonkeyPatch) -> Counted:
     # Of the search for terms a few steps: it is the same loop for many.
     every = TermLibrary.terms
     monkeypatch.setattr(TermLibrary, "terms", lambda of: islice(every(of), 60))
-    vary(monkeypatch, "discovery", classes=1, pairs=0)
+    vary(monkeypatch, "discovery", classes=1, of_a_kind=0)
     monkeypatch.setattr(TermSearch, "_drawn", lambda *_: None)
 
     kernels = recursion.advance

@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import pytest
 
-from ident.diagnosis.criteria import Criteria, Noise
+from ident.diagnosis.criteria import Criteria
 from ident.diagnosis.evidence.criteria import EVIDENCE_CRITERIA
 from ident.diagnosis.evidence.probability import NOTHING, SetGains
 from ident.diagnosis.report import group_of
@@ -101,7 +101,10 @@ def test_an_error_is_noise_up_to_its_floor_and_chance(residual, noise):
 
 
 def test_other_criteria_lead_to_another_verdict():
-    assert conclude(replace(LEAD, residual=FAR), Criteria(noise=Noise(floor_excess=1.5))).standing == "found"
+    assert (
+        conclude(replace(LEAD, residual=FAR), Criteria(evidence=replace(EVIDENCE_CRITERIA, floor_margin=2.5))).standing
+        == "found"
+    )
 
 
 def test_a_group_is_told_once_and_never_with_what_is_dispensable():

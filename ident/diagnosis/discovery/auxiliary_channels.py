@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from ident.chain.channels import READABLE, unmeasured
 from ident.diagnosis.candidate_models import CandidateModels
-from ident.diagnosis.criteria import CRITERIA
+from ident.diagnosis.criteria import EPSILON
 from ident.run import MOTIONS, Run
 
 _SURROUNDS = ("supply_pressure", "vertical_load", "temperature")
@@ -39,4 +39,4 @@ def units_of(run: Run) -> Mapping[str, str]:
 
 def _varies(name: str, runs: tuple[Run, ...]) -> bool:
     every = np.concatenate([run.channels[name] for run in runs])
-    return bool(np.std(every) > CRITERIA.discovery.rests * np.abs(every).max(initial=0.0))
+    return bool(np.std(every) > EPSILON * np.abs(every).max(initial=0.0))

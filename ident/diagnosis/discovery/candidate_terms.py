@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from ident.chain.conditions import CONDITIONS
 from ident.diagnosis.candidate_models import CandidateModels
-from ident.diagnosis.criteria import CRITERIA
+from ident.diagnosis.criteria import EPSILON
 from ident.diagnosis.discovery import free_curves
 from ident.diagnosis.discovery.auxiliary_channels import auxiliary_channels, units_of
 from ident.diagnosis.discovery.compressibility_terms import OIL
@@ -157,7 +157,7 @@ def _distinct(names: Sequence[str], typical: Mapping[str, Array]) -> list[str]:
     for name in names:
         x = typical[name]
         moves = bool(np.all(np.isfinite(x))) and np.ptp(x) > 0
-        if moves and not any(_cosine(x, typical[other]) > CRITERIA.discovery.proportional for other in kept):
+        if moves and not any(_cosine(x, typical[other]) > 1.0 - EPSILON for other in kept):
             kept.append(name)
     return kept
 

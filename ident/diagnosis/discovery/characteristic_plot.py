@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from ident.diagnosis.criteria import CRITERIA
+from ident.diagnosis.criteria import CRITERIA, EPSILON
 from ident.diagnosis.discovery.term import Signals, Term
 from ident.presets import Preset
 from ident.residuals.views import view_called
@@ -41,8 +41,4 @@ def _explained_share(values: Array, by: Array, straight: bool) -> float:
     of = np.searchsorted(edges, by)
     counts, sums = np.bincount(of, minlength=CRITERIA.discovery.bins), np.bincount(of, left, CRITERIA.discovery.bins)
     power = float(left @ left)
-    return (
-        float(np.sum(sums**2 / np.maximum(counts, 1))) / power
-        if power > CRITERIA.discovery.straight * float(values @ values)
-        else 0.0
-    )
+    return float(np.sum(sums**2 / np.maximum(counts, 1))) / power if power > EPSILON * float(values @ values) else 0.0

@@ -29,7 +29,7 @@ def compressibility_terms(site: Site) -> Iterator[Term]:
         if a in site.typical:
             powers = site.unit((OIL, 1), (a, 1))
             yield _softer(text.format(a=a), f"softer with {kind}", (a,), powers, ())
-    for share in CRITERIA.terms.soft:
+    for share in CRITERIA.terms.thresholds:
         h = Shape("h", float(np.quantile(np.abs(site.typical["P"]), share)), site.units["P"])
         if h.value > 0:
             yield _softer("1 / (1 + (P / h)**2)", "softer near rest", ("P",), site.unit((OIL, 1)), (h,))

@@ -77,7 +77,7 @@ def _late(site: Site, place: str, at: str, a: str) -> Iterator[Term]:
 
 def _slipping_late(site: Site, place: str, at: str, T: Shape) -> Iterator[Term]:
     """Friction that slips near rest, behind a lag."""
-    vs = site.slow(CRITERIA.terms.slipping)
+    vs = site.slow(min(CRITERIA.terms.slow))
     if vs.value > 0:
 
         def slipping(signals: Signals, rate: float) -> Array:
@@ -89,7 +89,7 @@ def _slipping_late(site: Site, place: str, at: str, T: Shape) -> Iterator[Term]:
 
 def _after(site: Site, place: str, at: str) -> Iterator[Term]:
     """A gain that depends on the past size of the signal, as the gain of a supply which gives way under a flow."""
-    for share in CRITERIA.terms.recovering:
+    for share in CRITERIA.terms.time_constants:
         T = Shape("T", share * site.seconds, "s")
 
         def used(signals: Signals, rate: float, T: float = T.value) -> Array:
@@ -117,7 +117,7 @@ def _play(site: Site, place: str, at: str, a: str) -> Iterator[Term]:
 
 def _yielding(site: Site, place: str, at: str) -> Iterator[Term]:
     """A force that builds up along the way and yields smoothly, z' = v − |v| z / b (Dahl 1968)."""
-    for share in CRITERIA.terms.yielding:
+    for share in CRITERIA.terms.plays:
         reach = share * float(np.std(site.typical["x"]))
 
         def built(signals: Signals, _rate: float, reach: float = reach) -> Array:

@@ -73,11 +73,7 @@ def _multiplied(place: str, at: str, of: str, signals: Sequence[str]) -> Iterato
 
 
 def _knots(x: Array) -> tuple[float, ...]:
-    kept: list[float] = []
-    for knot in np.quantile(x, CRITERIA.discovery.knots).tolist():
-        if not kept or knot - kept[-1] > CRITERIA.discovery.knots_apart * np.ptp(x):
-            kept.append(knot)
-    return tuple(kept)
+    return tuple(np.unique(np.quantile(x, CRITERIA.discovery.knots)).tolist())
 
 
 def offered(found: Regression, curves: Sequence[FreeCurve]) -> tuple[TermCandidate, ...]:
@@ -88,9 +84,9 @@ def offered(found: Regression, curves: Sequence[FreeCurve]) -> tuple[TermCandida
     taken: list[int] = []
     for k in map(int, np.argsort(-gains, kind="stable")):
         if (
-            len(taken) < CRITERIA.discovery.curves
+            len(taken) < CRITERIA.discovery.of_a_kind
             and gains[k] > 0
-            and not any(_cosine(found, values[k], values[i]) > CRITERIA.discovery.same_curve for i in taken)
+            and not any(_cosine(found, values[k], values[i]) > CRITERIA.discovery.same_class for i in taken)
         ):
             taken.append(k)
     return tuple(_candidate(found, curves[k], *values[k], float(gains[k])) for k in taken)
@@ -99,7 +95,7 @@ def offered(found: Regression, curves: Sequence[FreeCurve]) -> tuple[TermCandida
 def _values(found: Regression, at: NDArray[np.intp]) -> tuple[NDArray[np.intp], Array]:
     """The indices of a curve's hats, and the values at its knots that explain most."""
     products = found.products[np.ix_(at, at)]
-    return at, np.linalg.pinv(products, rcond=CRITERIA.discovery.curve_rank, hermitian=True) @ found.with_residual[at]
+    return at, np.linalg.pinv(products, rcond=CRITERIA.evidence.dependent, hermitian=True) @ found.with_residual[at]
 
 
 def _cosine(found: Regression, one: tuple[NDArray[np.intp], Array], other: tuple[NDArray[np.intp], Array]) -> float:

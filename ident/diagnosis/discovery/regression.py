@@ -32,6 +32,8 @@ from ident.parallel import each
 from ident.residuals.decimation import Response
 
 Array = NDArray[np.float64]
+_RUNS_AT_ONCE = 4
+"""Runs whose columns lie side by side in memory: no result depends on their number."""
 
 
 @dataclass(frozen=True)
@@ -82,10 +84,8 @@ def regression(
     known = np.sum([columns.known.T @ columns.known for columns in beside], axis=0)
     some, lost = _leading(terms, beside, paths, known)
     m, total, sound = len(some), np.zeros(()), np.zeros(len(some), dtype=bool)
-    for first in range(0, len(beside), CRITERIA.discovery.runs_at_once):
-        rows = _rows(
-            some, beside, paths, range(first, min(first + CRITERIA.discovery.runs_at_once, len(beside))), sound
-        )
+    for first in range(0, len(beside), _RUNS_AT_ONCE):
+        rows = _rows(some, beside, paths, range(first, min(first + _RUNS_AT_ONCE, len(beside))), sound)
         total = total + np.hstack(each(partial(np.matmul, rows.T), np.array_split(rows, 2, axis=1)))
     along = _along(known, np.delete(total[m:-1], np.s_[m:-1], axis=1))
     of = np.delete(np.delete(total, np.s_[m:-1], axis=0), np.s_[m:-1], axis=1) - along.T @ along
@@ -149,7 +149,7 @@ def _along(known: Array, cross: Array) -> Array:
     of = known[:-1, :-1]
     scale = np.sqrt(np.maximum(np.diag(of), TINY))
     strengths, directions = scipy.linalg.eigh(of / scale[:, None] / scale) if len(of) else (np.ones(0), of)
-    seen = strengths > CRITERIA.discovery.rank * strengths.max(initial=0.0)
+    seen = strengths > CRITERIA.evidence.dependent * strengths.max(initial=0.0)
     return np.asarray((directions[:, seen].T @ (cross / scale[:, None])) / np.sqrt(strengths[seen])[:, None])
 
 

@@ -9,12 +9,16 @@ import numpy as np
 import scipy.linalg
 from numpy.typing import NDArray
 
-from ident.diagnosis.criteria import CRITERIA, TINY
+from ident.diagnosis.criteria import CRITERIA, EPSILON, TINY
 from ident.diagnosis.discovery.run_data import RunData
 from ident.diagnosis.discovery.term import Term
 from ident.residuals.decimation import Response
 
 Array = NDArray[np.float64]
+_BLOCK = 128
+"""Terms whose responses are worked out together: the responses to all terms at once are large."""
+_COLUMNS_AT_ONCE = 32
+"""Terms whose samples are simulated to the output at once: they stay in the processor's cache."""
 
 
 @dataclass(frozen=True)
@@ -38,11 +42,9 @@ class Regressors:
         basis = np.empty((len(known), 0))
         if record.free.shape[1]:
             free, _ = _within(record.free, record, band)
-            basis = scipy.linalg.orth(
-                free / np.maximum(np.linalg.norm(free, axis=0), TINY), rcond=CRITERIA.discovery.free_rank
-            )
+            basis = scipy.linalg.orth(free / np.maximum(np.linalg.norm(free, axis=0), TINY))
         known = known - basis @ (basis.T @ known)
-        least = CRITERIA.discovery.rounding * float(np.std(record.run.measured)) * float(np.sqrt(len(known)))
+        least = EPSILON * float(np.std(record.run.measured)) * float(np.sqrt(len(known)))
         size = max(float(np.linalg.norm(known[:, -1])), least, np.finfo(float).tiny)
         return cls(record, band, known / size, basis, size)
 
@@ -51,7 +53,7 @@ class Regressors:
 
         `path` is the response from that signal to the output. Where the linear model is unstable a response diverges.
         """
-        step = CRITERIA.discovery.columns_at_once
+        step = _COLUMNS_AT_ONCE
         parts = [self._answers(terms[k : k + step], path) for k in range(0, len(terms), step)]
         found, sound = np.hstack([rows for rows, _ in parts]), np.concatenate([finite for _, finite in parts])
         return np.asarray((found - self.basis @ (self.basis.T @ found)) / self.size), sound
@@ -63,15 +65,11 @@ class Regressors:
 
 
 def blocks(terms: Sequence[Term]) -> list[list[int]]:
-    """The numbers of terms that add to one signal, at most :data:`BLOCK` together."""
+    """The numbers of terms that add to one signal, at most :data:`_BLOCK` together."""
     by_signal: dict[str, list[int]] = {}
     for i, term in enumerate(terms):
         by_signal.setdefault(term.path, []).append(i)
-    return [
-        here[k : k + CRITERIA.discovery.block]
-        for here in by_signal.values()
-        for k in range(0, len(here), CRITERIA.discovery.block)
-    ]
+    return [here[k : k + _BLOCK] for here in by_signal.values() for k in range(0, len(here), _BLOCK)]
 
 
 def _within(rows: Array, record: RunData, band: float) -> tuple[Array, NDArray[np.bool_]]:

@@ -55,7 +55,7 @@ def run_data(refit: FittedModel, names: Sequence[str], instead_of: Sequence[str]
     fitness, point = refit.fitness, refit.point
     windows = [fitness.anchoring(run).window for run in fitness.runs]
     count = next(n for n in range(stride(fitness.runs), 0, -1) if all(window % n == 0 for window in windows))
-    most = max(CRITERIA.discovery.fewest_samples, CRITERIA.discovery.samples // len(fitness.runs))
+    most = samples_of_each(len(fitness.runs))
     sensitivities = Sensitivities.of(fitness, point)
     values = {name: float(value[0]) for name, value in fitness.space.values(point[None]).items()}
     inner = inside(fitness.whole(), values, names)
@@ -78,6 +78,11 @@ def run_data(refit: FittedModel, names: Sequence[str], instead_of: Sequence[str]
         )
 
     return tuple(each(one, fitness.runs))
+
+
+def samples_of_each(runs: int) -> int:
+    """The samples on the coarse clock that each of so many runs has at most."""
+    return max(CRITERIA.discovery.fewest_samples, CRITERIA.estimation.rough_samples // runs)
 
 
 def signal_paths(

@@ -101,7 +101,7 @@ class TermSearch:
         if (
             terms
             and begun._added(curves=True)
-            and _held_out(begun) <= CRITERIA.discovery.practically_equal * _held_out(self)
+            and _held_out(begun) <= CRITERIA.equality.practically_equal * _held_out(self)
         ):
             self.models, self.base, self.beside, self.found = begun.models, begun.base, begun.beside, begun.found
         self.looked_at, self.left_out = begun.looked_at, begun.left_out
@@ -181,13 +181,13 @@ class TermSearch:
             new = [one for one in again.candidates if not any(map(one.begins_as, seen.candidates))]
             tried += refits(new, best[1].local.error)
         ranked = stable_ranking(tried, lambda one: one[1].error)
-        plain = [one for one in ranked[CRITERIA.discovery.most_close :] if one[0].plain][: CRITERIA.discovery.plain]
+        plain = [one for one in ranked[CRITERIA.estimation.leading :] if one[0].plain][: CRITERIA.discovery.of_a_kind]
         close = [
             one
-            for one in (*ranked[: CRITERIA.discovery.most_close], *plain)
-            if one[1].error <= CRITERIA.discovery.close * ranked[0][1].error
+            for one in (*ranked[: CRITERIA.estimation.leading], *plain)
+            if one[1].error <= CRITERIA.free_widths.missed * ranked[0][1].error
         ]
-        on = replace(CRITERIA.estimation.full, aim=CRITERIA.discovery.practically_equal * ranked[0][1].local.error)
+        on = replace(CRITERIA.estimation.full, aim=CRITERIA.equality.practically_equal * ranked[0][1].local.error)
         return _followed(each(lambda one: _gone_on(one, on), close))
 
     def _prune(self, latest: str) -> None:
@@ -283,7 +283,7 @@ def _ahead(begun: Sequence[RefittedTerm], least: float) -> list[RefittedTerm]:
     """Rough refits that end where they cannot come near the `least` error before, or the least of the first steps."""
     on = replace(
         CRITERIA.estimation.trial,
-        aim=CRITERIA.discovery.close * min([least, *(refit.local.error for _, refit, _ in begun)]),
+        aim=CRITERIA.free_widths.missed * min([least, *(refit.local.error for _, refit, _ in begun)]),
     )
     return _followed(each(lambda one: _gone_on(one, on), begun))
 
@@ -310,7 +310,7 @@ def _chosen(base: FittedModel, tried: Sequence[RefittedTerm], runs: Sequence[Run
     )
     least = min(errors)
     bound = min(
-        CRITERIA.discovery.practically_equal * least, least + CRITERIA.discovery.lost_gain * max(before - least, 0.0)
+        CRITERIA.equality.practically_equal * least, least + CRITERIA.discovery.lost_gain * max(before - least, 0.0)
     )
     good = [one for one, error in zip(tried, errors, strict=True) if error <= bound]
     return min(good, key=lambda one: one[0].simplicity)
@@ -331,15 +331,9 @@ def _parts(runs: Sequence[Run]) -> tuple[tuple[Run, ...], tuple[Run, ...], tuple
 
     ordered = list(dict.fromkeys(run.record or run.id for run in sorted(runs, key=condition)))
     parts: list[set[str]] = [set(), set(), set()]
-    dealing = np.random.default_rng(0)
-    for first in range(
-        0, len(ordered), CRITERIA.discovery.parts
-    ):  # neighbours go to one part each: one after the other a part gets one gain
-        for at, record in zip(
-            dealing.permutation(CRITERIA.discovery.parts),
-            ordered[first : first + CRITERIA.discovery.parts],
-            strict=False,
-        ):
+    dealing, count = np.random.default_rng(0), len(parts)
+    for first in range(0, len(ordered), count):  # of neighbours each part gets one: in turn a part would get one gain
+        for at, record in zip(dealing.permutation(count), ordered[first : first + count], strict=False):
             parts[at].add(record)
     sought, chosen_by, confirming = (tuple(run for run in runs if (run.record or run.id) in part) for part in parts)
     return sought, chosen_by, confirming

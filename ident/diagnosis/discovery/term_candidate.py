@@ -115,7 +115,7 @@ def _pairs(found: Regression, units: Mapping[str, str]) -> tuple[list[TermCandid
     i, j = np.tile(rows[of_rows], 2), np.tile(columns[of_columns], 2)
     signs = np.repeat([1.0, -1.0], len(of_rows))
     both = power[i] + power[j] + 2 * signs * found.products[i, j]
-    sound = both > CRITERIA.discovery.cancelled * (power[i] + power[j])
+    sound = both > (1.0 - CRITERIA.discovery.same_class) * (power[i] + power[j])  # else the two are one class
     with_residual = found.with_residual[i] + signs * found.with_residual[j]
     share = found.share(np.where(sound, with_residual**2 / np.where(sound, both, 1.0), 0.0))
 
@@ -126,8 +126,10 @@ def _pairs(found: Regression, units: Mapping[str, str]) -> tuple[list[TermCandid
         return bool(abs(common) > CRITERIA.discovery.same_class * np.sqrt(both[k] * both[other]))
 
     taken: list[int] = []
-    for k in map(int, np.argsort(-share, kind="stable")[: CRITERIA.discovery.pairs_seen]):
-        if len(taken) < CRITERIA.discovery.pairs and share[k] > 0 and not any(alike(k, other) for other in taken):
+    for k in map(int, np.argsort(-share, kind="stable")):
+        if len(taken) == CRITERIA.discovery.of_a_kind or not share[k] > CRITERIA.discovery.may_win * share.max():
+            break
+        if not any(alike(k, other) for other in taken):
             taken.append(k)
     return [_pair(found, (i[k], j[k]), signs[k], with_residual[k] / both[k], share[k]) for k in taken], len(i)
 

@@ -98,7 +98,7 @@ class TermLibrary(Site):
 
     def _slipping(self, place: str, at: str) -> Iterator[Term]:
         """Friction that slips smoothly near rest, as that of a wet seal, alone and in proportion to each signal."""
-        vs = self.slow(CRITERIA.terms.slipping)
+        vs = self.slow(min(CRITERIA.terms.slow))
         if vs.value > 0:
             yield Term(place, at, SLIP, "slip", ("v",), {}, (vs,))
             for a in self.signals[at]:
@@ -109,7 +109,7 @@ class TermLibrary(Site):
         if "x" not in self.typical:
             return
         x = self.typical["x"]
-        span = float(np.ptp(np.quantile(x, CRITERIA.terms.range_quantiles)))
+        span = float(np.ptp(np.quantile(x, CRITERIA.terms.hills)))  # single samples do not count
         for share, wide in product(CRITERIA.terms.hills, CRITERIA.terms.hill_widths) if span > 0 else ():
             middle = Shape(
                 "xm", float(np.quantile(x, share)), self.units["x"], lower=float(x.min()), upper=float(x.max())
@@ -139,7 +139,7 @@ class TermLibrary(Site):
                     yield self._dragging(rubbing, a, name)
         if "t" not in self.varied:
             yield Term(place, at, "t", "drift", ("t",), {"s": 1.0})
-        for share in CRITERIA.terms.fading:
+        for share in CRITERIA.terms.time_constants:
             T = Shape("T", share * self.seconds, "s")
             for a in self.signals[at]:
                 if a in (at, "v"):
@@ -164,7 +164,7 @@ class TermLibrary(Site):
         step = 1.0 / self.seconds
         for number in range(1, int(self.band / (2 * np.pi) / step)):
             f = Shape("fp", number * step, "1/s", spread=1.0 + CRITERIA.terms.frequency_spread / number)
-            for phase in CRITERIA.terms.phases:
+            for phase in (0.0, 0.25):  # sin(2 π (f t + 1/4)) = cos(2 π f t)
                 turn = Shape("g", phase, "1", lower=-0.5, upper=0.5)
                 text = f"{at} * sin(2 * pi * (fp * t + g))"
                 yield Term(place, at, text, "periodic", (at, "t"), self.unit((at, 1)), (f, turn))

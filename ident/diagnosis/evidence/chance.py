@@ -22,6 +22,8 @@ from ident.diagnosis.evidence.disturbance import Disturbance
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
+_SURROGATES_AT_ONCE = 25
+"""Surrogates that lie in memory together: of records of a hundred thousand samples they take 40 MB."""
 
 
 def bar(
@@ -54,7 +56,7 @@ def bar(
     places = np.tile(band, 2), np.arange(2 * len(band))
     in_bands = csr_array((np.tile(weights**-2.0, 2), places), shape=(bands.size, 2 * len(band)))
     gains: list[float] = []
-    while (count := min(bands.criteria.surrogates - len(gains), bands.criteria.surrogates_at_once)) > 0:
+    while (count := min(bands.criteria.surrogates - len(gains), _SURROGATES_AT_ONCE)) > 0:
         uniform = random.random((len(sizes), count))
         phases = (2.0 * np.pi * uniform).astype(np.float32)  # to 7 digits: a fifth of the cost
         drawn = np.concatenate([sizes[:, None] * np.cos(phases), sizes[:, None] * np.sin(phases)])

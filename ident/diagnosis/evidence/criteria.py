@@ -45,9 +45,10 @@ class EvidenceCriteria:
     many is known to three points of a per cent.
     Test: test_evidence.py::test_the_bar_hardly_hangs_on_the_random_phases"""
     chance: float = 0.05
-    """[1] Probability that chance passes the bar, or that a difference exceeds its limit by chance. Why: the custom of
-    the field; it is corrected for the number of candidates, because the bar is for the largest gain.
-    Test: test_evidence.py::test_the_bar_is_passed_by_chance_as_often_as_it_says"""
+    """[1] Probability that chance passes the bar, or that a difference exceeds its limit by chance; a less probable
+    effect is not said to stand beside a named one. Why: the custom of the field; it is corrected for the number of
+    candidates, because the bar is for the largest gain. Test:
+    test_evidence.py::test_the_bar_is_passed_by_chance_as_often_as_it_says"""
     correlation_times: float = 10.0
     """[correlation times] Length of a block. Why: means of blocks so long are independent to a tenth of their
     variance (Flegal and Jones 2010).
@@ -61,9 +62,9 @@ class EvidenceCriteria:
     value is 1.8 for twelve blocks, one tenth more than for many; it is 2.4 for four, whose scatter is hardly known.
     Test: test_blocks.py::test_a_record_of_forty_correlation_times_has_more_blocks_than_ten_of_them_would_give"""
     whole_runs: int = 4
-    """[runs] Least number for which whole runs are the blocks. Why: a difference from run to run shows between runs
-    only, and the scatter of fewer than four runs is hardly known.
-    Test: test_evidence.py::test_what_only_one_of_many_runs_asks_for_does_not_improve"""
+    """[runs] Least number for which whole runs are held out, and are the blocks. Why: a difference from run to run
+    shows between runs only, the scatter of fewer than four runs is hardly known, and a fit of fewer without one of
+    them is too poor. Test: test_evidence.py::test_what_only_one_of_many_runs_asks_for_does_not_improve"""
     least_blocks: int = 4
     """[blocks] Fewest blocks of all runs together. Why: with two Student's value is 6.3, and nothing matters.
     Test: test_blocks.py::test_the_error_of_a_difference_holds_for_a_record_of_twenty_correlation_times"""
@@ -80,13 +81,9 @@ class EvidenceCriteria:
     and three quarters of all stay for the noise between the harmonics.
     Test: test_evidence.py::test_five_periods_and_a_hundred_give_the_same_evidence_against_a_wrong_model"""
     dependent: float = 1e-09
-    """[of the largest column] Size of the unexplained part of a response below which the sensitivities explain all of
-    it. Why: rounding of products of ten thousand samples; its root for a norm.
-    Test: test_evidence.py::test_the_bar_is_passed_by_chance_as_often_as_it_says"""
-    surrogates_at_once: int = 25
-    """[residuals] Surrogates that lie in memory together. Why: records may have a hundred thousand samples: 25 of
-    them take 40 MB.
-    Test: test_evidence.py::test_the_bar_is_passed_by_chance_as_often_as_it_says"""
+    """[of the largest] Size of a direction, or of the unexplained part of a response, below which the others
+    explain all of it. Why: rounding of products of ten thousand samples; its root for a norm. Test:
+    test_evidence.py::test_the_bar_is_passed_by_chance_as_often_as_it_says"""
     share: float = 0.01
     """[1] Share of the explainable power that matters: an effect takes more, no part of the data loses as much, the
     residual power of a dominated model is larger by as much. Why: less is not worth a parameter, however certain.
@@ -96,8 +93,9 @@ class EvidenceCriteria:
     large very strong evidence; the probability of the effect follows from another number (learning_rate).
     Test: test_evidence.py::test_a_gain_below_the_least_adds_nothing_however_low_the_bar"""
     level: float = 3e-4
-    """[of the standard deviation] Root mean square of the means of the runs that matters. Why: a smaller mean is of no
-    use to anyone. Test: test_evidence.py::test_an_effect_that_moves_the_means_of_the_runs_alone_matters"""
+    """[of the standard deviation] Root mean square of the means of the runs that matters; smaller ones count as
+    that in a score. Why: a smaller mean is of no use to anyone. Test:
+    test_evidence.py::test_an_effect_that_moves_the_means_of_the_runs_alone_matters"""
     separation: float = 0.05
     """[1] Power of the difference of two outputs over the residual power of the better one above the noise. Why: an
     effect that both lack may have turned the order of two outputs so near to each other.

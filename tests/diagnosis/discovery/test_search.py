@@ -26,7 +26,6 @@ from ident.matrix import Matrix
 from ident.progress import Progress
 from ident.workflows import diagnose, identify, study
 from tests.blind.machines import matrix_of
-from tests.diagnosis.vary import vary
 from tests.reference import qian_reference as linear
 from tests.reference.outside_reference import Outside, measure_all
 from tests.short_form import short_form
@@ -258,7 +257,8 @@ def test_the_regression_is_that_of_all_terms_and_runs_at_once(monkeypatch):
         return [(one.equation, one.strength, one.share) for one in seen.candidates]
 
     together = candidates()
-    vary(monkeypatch, "discovery", block=7, runs_at_once=5)
+    monkeypatch.setattr("ident.diagnosis.discovery.regressors._BLOCK", 7)
+    monkeypatch.setattr("ident.diagnosis.discovery.regression._RUNS_AT_ONCE", 5)
     for (text, strength, share), (other, same, left) in zip(together, candidates(), strict=True):
         assert text == other
         assert (strength, share) == pytest.approx((same, left), rel=1e-6)

@@ -1,0 +1,138 @@
+"""Move each number of a diagnosis by 30 % up and down, and see the test that it names fail.
+
+python -m tests.diagnosis.moved_criteria [SECTION.NAME | SECTION | FILE OF TESTS …]
+
+Of a ratio near one, as of a cosine, its distance from one is moved. Where no test fails, either way, the number decides
+nothing that a test sees: the table says so, and the run ends with 1. A number of one test is moved in a process of its
+own, in which the source of the criteria is changed as it is loaded; nothing is written.
+"""
+
+from __future__ import annotations
+
+import ast
+import importlib.abc
+import importlib.machinery
+import importlib.util
+import os
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+from types import ModuleType
+from typing import Any
+
+import pytest
+
+from tests.diagnosis.criteria_source import named_tests
+
+ROOT = Path(__file__).resolve().parents[2]
+FOLDER = "tests/diagnosis/"
+MODULES = {
+    "ident.diagnosis.criteria": ROOT / "ident/diagnosis/criteria.py",
+    "ident.diagnosis.evidence.criteria": ROOT / "ident/diagnosis/evidence/criteria.py",
+    "ident.diagnosis.discovery.criteria": ROOT / "ident/diagnosis/discovery/criteria.py",
+}
+BELOW = (
+    "ident.fit.identification", "ident.simulation.simulate", "ident.checks.check", "ident.design.proposal",
+    "ident.residuals.views", "ident.custom.definition", "scipy.stats", "scipy.optimize", "scipy.signal",
+)  # fmt: skip
+"""Rooms that know no number of a diagnosis, loaded once for all processes."""
+UP, DOWN = 1.3, 0.7
+CAUGHT, PASSED, FAULT = 1, 0, 99  # what a process ends with
+
+
+def moved(value: Any, factor: float) -> Any:
+    """A number moved by a factor; an integer by one at least, of a ratio near one its distance from one."""
+    if isinstance(value, int):
+        nearest = round(value * factor)
+        return nearest if nearest != value else value + (1 if factor > 1 else -1)
+    return 1.0 + (value - 1.0) * factor if 0.9 <= value <= 1.5 and value != 1.0 else value * factor
+
+
+class _Moved(ast.NodeTransformer):
+    """The value of one field of one class with every number in it moved."""
+
+    def __init__(self, owner: str, name: str, factor: float) -> None:
+        self.owner, self.name, self.factor = owner, name, factor
+        self.found = False
+
+    def visit_Module(self, node: ast.Module) -> ast.Module:
+        bodies = [node.body, *(one.body for one in node.body if isinstance(one, ast.ClassDef))]
+        owners = ["", *(one.name for one in node.body if isinstance(one, ast.ClassDef))]
+        for owner, body in zip(owners, bodies, strict=True):
+            for one in body:
+                if isinstance(one, ast.AnnAssign) and (owner, ast.unparse(one.target)) == (self.owner, self.name):
+                    assert one.value is not None
+                    self.found, one.value = True, self._scaled(one.value)
+        return node
+
+    def _scaled(self, value: ast.expr) -> ast.expr:
+        for node in ast.walk(value):
+            if isinstance(node, ast.Constant) and type(node.value) in (int, float):
+                node.value = moved(node.value, self.factor)
+        return value
+
+
+class _Loader(importlib.machinery.SourceFileLoader):
+    """Loads a module with one number moved."""
+
+    change: _Moved
+
+    def source_to_code(self, data: Any, path: Any, *, _optimize: int = -1) -> Any:
+        return compile(self.change.visit(ast.parse(data)), path, "exec", dont_inherit=True, optimize=_optimize)
+
+    def get_code(self, _fullname: str) -> Any:
+        return self.source_to_code(Path(self.path).read_bytes(), self.path)
+
+
+class _Finder(importlib.abc.MetaPathFinder):
+    def __init__(self, change: _Moved) -> None:
+        self.change = change
+
+    def find_spec(self, name: str, _path: Sequence[str] | None, _target: ModuleType | None = None) -> Any:
+        if name not in MODULES:
+            return None
+        loader = _Loader(name, str(MODULES[name]))
+        loader.change = self.change
+        return importlib.util.spec_from_file_location(name, MODULES[name], loader=loader)
+
+
+def ended(owner: str, name: str, factor: float, test: str) -> int:
+    """What pytest ends with on one test with a number moved, in a process of its own."""
+    child = os.fork()
+    if child:
+        return os.waitstatus_to_exitcode(os.waitpid(child, 0)[1])
+    with Path(os.devnull).open("w") as silent:
+        os.dup2(silent.fileno(), 1)
+        os.dup2(silent.fileno(), 2)
+    change = _Moved(owner, name, factor)
+    sys.meta_path.insert(0, _Finder(change))
+    code = int(pytest.main(["-x", "-q", "-p", "no:cacheprovider", "--full", str(ROOT / FOLDER / test)]))
+    os._exit(code if change.found else FAULT)
+
+
+def outcome(owner: str, name: str, test: str) -> str:
+    """The ways in which a moved number makes its test fail: "up and down", "up", "down" or "neither"."""
+    codes = {way: ended(owner, name, factor, test) for way, factor in (("up", UP), ("down", DOWN))}
+    if faults := {way: code for way, code in codes.items() if code not in (CAUGHT, PASSED)}:
+        return f"fault: {faults}"
+    return " and ".join(way for way, code in codes.items() if code == CAUGHT) or "neither"
+
+
+def main(asked: Sequence[str]) -> int:
+    """The table of all numbers, or of those that are asked for; 1 where one moves no test."""
+    os.environ["PYTEST_DISABLE_PLUGIN_AUTOLOAD"] = "1"
+    for module in BELOW:
+        importlib.import_module(module)
+    assert not MODULES.keys() & sys.modules.keys()
+    lost = 0
+    for full_name, test in named_tests().items():
+        owner, name = full_name.split(".")
+        if not asked or {full_name, owner, test.partition("::")[0]} & {*asked}:
+            found = outcome(owner, name, test)
+            lost += found not in ("up and down", "up", "down")
+            print(f"{full_name:44} {found:12} {test}", flush=True)
+    return 1 if lost else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))

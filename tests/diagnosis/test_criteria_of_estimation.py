@@ -1,0 +1,136 @@
+"""Each number of the estimation decides a case that lies within a third of it."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+import scipy.stats
+
+from ident.diagnosis.candidate_models import CandidateModels, _is_beyond
+from ident.diagnosis.criteria import CRITERIA
+from ident.diagnosis.verdict import Residual, is_noise
+from ident.fit.levenberg_marquardt import levenberg_marquardt
+
+BOUNDS = (0.0, 100.0)
+
+
+def slope(gain: float, falls: bool = True) -> Any:
+    """An objective on a line, 1 at the start: each step of length one promises a gain, and keeps it where it falls."""
+
+    def evaluate(point: np.ndarray) -> Any:
+        error = 1.0 - gain * float(point[0]) if falls or not point[0] else 2.0
+        return SimpleNamespace(error=error, gradient=np.array([-2.0 * gain]), curvature=np.array([[2.0 * gain]]))
+
+    return evaluate
+
+
+@pytest.mark.parametrize(("effort", "steps"), [("full", 20), ("coarse", 20), ("trial", 10), ("screen", 3)])
+def test_a_refit_that_still_gains_ends_after_its_steps(effort, steps):
+    way = replace(getattr(CRITERIA.estimation, effort), within=BOUNDS)
+    point, _ = levenberg_marquardt(slope(0.01), np.zeros(1), way)
+    assert point[0] == pytest.approx(steps, rel=0.01)
+
+
+@pytest.mark.parametrize(("effort", "least"), [("full", 1e-7), ("coarse", 1e-4), ("trial", 1e-4), ("screen", 1e-5)])
+@pytest.mark.parametrize(("share", "moves"), [(0.85, False), (1.15, True)])
+def test_a_refit_ends_where_a_step_promises_next_to_nothing(effort, least, share, moves):
+    way = replace(getattr(CRITERIA.estimation, effort), within=BOUNDS, most=1)
+    point, _ = levenberg_marquardt(slope(share * least), np.zeros(1), way)
+    assert bool(point[0] > 0) is moves
+
+
+@pytest.mark.parametrize(("effort", "rough"), [("full", 1e-5), ("coarse", 1e-4), ("trial", 1e-4)])
+@pytest.mark.parametrize(("share", "once"), [(0.85, True), (1.15, False)])
+def test_a_step_that_failed_is_the_last_where_it_promised_less_than_the_error_is_smooth(effort, rough, share, once):
+    tried: list[float] = []
+    objective = slope(share * rough, falls=False)
+
+    def evaluate(point: np.ndarray) -> Any:
+        tried.append(float(point[0]))
+        return objective(point)
+
+    way = replace(getattr(CRITERIA.estimation, effort), within=BOUNDS, converged=0.0)
+    levenberg_marquardt(evaluate, np.zeros(1), way)
+    assert (len(tried) == 2) is once
+
+
+@pytest.mark.parametrize(
+    ("asked", "cut", "kept"),
+    [("trial", 150_000, 115_000), ("global_starts", 56_000, 43_000)],
+)
+def test_a_refit_takes_so_much_of_the_records(asked, cut, kept):
+    """Of a trial 131 072 samples, of rough first steps 49 152."""
+
+    def fitness(_effects: Any, samples: int) -> Any:
+        raise StopIteration(samples)
+
+    models: Any = SimpleNamespace(fitness=fitness)
+    with pytest.raises(StopIteration) as stopped:
+        getattr(CandidateModels, asked)(models, (), *([[{}]] if asked == "trial" else []))
+    assert kept < stopped.value.value < cut
+
+
+def test_a_model_of_unknown_place_is_begun_from_the_four_best_of_128_points():
+    """The best of these is the hundredth of the sequence; a better one comes later, and would cost as much again."""
+    points = scipy.stats.qmc.Sobol(2, rng=0).random(256)
+    order = [100, 60, 20, 5, 110, *range(128)]
+    error = {150: 0.0} | {n: 1.0 + place for place, n in reversed(list(enumerate(order)))}
+
+    def errors(tried: np.ndarray) -> np.ndarray:
+        return np.array([error.get(int(np.flatnonzero(np.all(points == of, axis=1))[0]), 1e3) for of in tried])
+
+    space = SimpleNamespace(axes=(0, 1), values=lambda at: {"x": at[:, 0]})
+    models: Any = SimpleNamespace(
+        fitness=lambda *_: SimpleNamespace(space=space, errors=errors),
+        resting=SimpleNamespace(held=lambda _space, of: of),
+        refit=lambda _effects, start, *_: start["x"],
+    )
+    assert CandidateModels.global_starts(models, ()) == [points[n, 0] for n in order[:4]]
+
+
+@pytest.mark.parametrize(("error", "is_another"), [(0.9885, True), (0.9915, False)])
+def test_a_refit_one_per_cent_better_is_at_another_optimum(error, is_another):
+    found = SimpleNamespace(effects=(), values={}, local=SimpleNamespace(error=error))
+    models: Any = SimpleNamespace(
+        trial_error=lambda _refit: 1.0, multistart=lambda *_: found, refit=lambda *_: found,
+    )  # fmt: skip
+    given: Any = SimpleNamespace(effects=(), local=SimpleNamespace(error=1.0))
+    assert (CandidateModels.better_optimum(models, given, []) is found) is is_another
+
+
+def test_a_refit_is_continued_five_times_at_most():
+    """Each time it falls by two per cent."""
+
+    def refit(_effects: Any, count: int, *_: Any) -> Any:
+        return SimpleNamespace(
+            effects=(), values=count + 1, finite=True, local=SimpleNamespace(error=0.98**count)
+        )  # fmt: skip
+
+    models: Any = SimpleNamespace(refit=refit)
+    assert CandidateModels.converged(models, refit((), 0)).values == 6
+
+
+@pytest.mark.parametrize(("over", "beyond"), [(0.8e-12, False), (1.2e-12, True)])
+def test_a_value_is_beyond_its_bounds_but_for_rounding(over, beyond):
+    assert _is_beyond(over, -1.0, 0.0) is beyond
+
+
+@pytest.mark.parametrize(
+    ("residual", "noise"),
+    [
+        (Residual(0.0103, 0.01, spread=0.004), True),  # 2 % and 2.5 deviations
+        (Residual(0.0105, 0.01, spread=0.008), False),  # 2 % and 3.75 deviations
+        (Residual(0.0121, 0.01, excess=CRITERIA.noise.bench_excess), True),
+        (Residual(0.0129, 0.01, excess=CRITERIA.noise.bench_excess), False),
+        (Residual(0.010143, 0.01), True),
+        (Residual(0.010257, 0.01), False),
+        (Residual(0.01, None, correlation=0.4), True),
+        (Residual(0.01, None, correlation=0.6), False),
+    ],
+)
+def test_an_error_is_noise_within_each_margin(residual, noise):
+    assert is_noise(residual) is noise
