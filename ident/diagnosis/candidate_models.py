@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from itertools import product
 
 import numpy as np
 import scipy  # stats, which takes half a second to load, is loaded where it is first used
@@ -12,7 +11,7 @@ from numpy.typing import NDArray
 
 from ident.cached import cached_property
 from ident.diagnosis.compared_records import ComparedRecords
-from ident.diagnosis.criteria import CRITERIA, EPSILON
+from ident.diagnosis.criteria import CRITERIA
 from ident.diagnosis.fitted_model import FittedModel
 from ident.diagnosis.offered_effects import offered_effects, place_in_words
 from ident.diagnosis.resting import Resting
@@ -30,7 +29,7 @@ from ident.fit.settings import Settings
 from ident.fit.simulated_fitness import SimulatedFitness, shortened
 from ident.fit.simulated_runs import SimulatedRuns
 from ident.fit.space import search_space
-from ident.fit.wider_bounds import ROUNDS, wider_at
+from ident.fit.wider_bounds import ROUNDS, reaching, wider_at
 from ident.matrix import Matrix
 from ident.noise.floor import Floors, noise_floors
 from ident.parallel import Once, each
@@ -44,12 +43,6 @@ from ident.words.titles import title
 Array = NDArray[np.float64]
 _EFFECTS_A_CHAIN = 8
 """Effects of one simulated chain, one for each lane: the kernel has registers for so many. No result depends on it."""
-
-
-def _is_beyond(value: float, lower: float, upper: float) -> bool:
-    """Whether a value lies outside of its bounds, but for rounding."""
-    least = EPSILON * (upper - lower)
-    return not lower - least <= value <= upper + least
 
 
 @dataclass
@@ -230,12 +223,10 @@ class CandidateModels:
     ) -> SimulatedFitness:  # fmt: skip
         """The objective, its strengths reaching as far as those of some starts, where nobody set how far."""
         names = [name for name in effects if name in self.effects and self.may_reach_farther(fitness, name)]
-        for start, _ in product(starts, range(ROUNDS)):
-            bounds = fitness.space.bounds(start)
-            of = {symbol: bounds[symbol] for symbol in map(self.strength, names)}
-            if beyond := [symbol for symbol, ends in of.items() if _is_beyond(start[symbol], *ends)]:
-                fitness = replace(fitness, space=wider_at(fitness.space, fitness.space.point(start), beyond))
-        return fitness
+        strengths, space = [self.strength(name) for name in names], fitness.space
+        for start in starts:
+            space = reaching(space, start, strengths)
+        return fitness if space is fitness.space else replace(fitness, space=space)
 
     def fitness(self, effects: tuple[str, ...], samples: int = 0) -> SimulatedFitness:
         """The objective of the model with these effects, on records of at most `samples` in all where that is given."""

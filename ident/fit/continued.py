@@ -16,6 +16,7 @@ from ident.errors import Unusable
 from ident.fit import genetic
 from ident.fit.ends import End, distinct
 from ident.fit.fitness import Fitness, Local
+from ident.fit.given import of_model
 from ident.fit.identification import CANDIDATES, SEARCHED, Identification
 from ident.fit.levenberg_marquardt import STEPS
 from ident.fit.linear_fitness import LinearFitness
@@ -25,7 +26,9 @@ from ident.fit.result import FitResult
 from ident.fit.search import State
 from ident.fit.settings import Settings
 from ident.fit.simulated_fitness import SimulatedFitness, shortened
+from ident.fit.space import Space
 from ident.fit.start import Start
+from ident.fit.wider_bounds import reaching
 from ident.matrix import Matrix
 from ident.noise.floor import noise_floors
 from ident.progress import Progress, Report, silent
@@ -58,6 +61,7 @@ class ContinuedIdentification(Identification):
         assert settings.start is not None
         self._start: Start = settings.start
         super().__init__(matrix, settings, report)
+        self.objective = self._reaching(self.objective)
         left_out = {run.id for run in self._runs} & {*self._start.left_out}
         self._left_out = tuple(run for run in self._start.left_out if run in left_out)
         fitted = tuple(run for run in self._runs if run.id not in left_out)
@@ -69,6 +73,17 @@ class ContinuedIdentification(Identification):
             self.searched = replace(self.objective, roughly=True).fresh(shortened(fitted, SEARCHED))
         self.search = replace(self.search, errors=self.searched.errors)
         self.floors = noise_floors(self.matrix.runs, excited_band(self._runs), left_out)
+
+    def _reaching(self, objective: Fitness) -> Fitness:
+        """The objective over a space that reaches as far as the start, which was searched beyond bounds of nobody's."""
+        of_user = {self.preset.parameter(name).in_equations for name in of_model(self.settings, self.preset).bounds}
+        of_user |= {p.in_equations for effect in self.preset.effects if effect.own for p in effect.added}
+        names = [name for name in objective.space.names if name not in of_user]
+        space = reaching(objective.space, self._begins_at(objective.space), names)
+        if isinstance(objective, SimulatedFitness):
+            return replace(objective, space=space)
+        assert isinstance(objective, LinearFitness)
+        return replace(objective, space=space)
 
     def _over(self, runs: tuple[Run, ...]) -> Fitness:
         """The objective of what is gone on with, over its windows, on some runs: a diagnosis simulates every model."""
@@ -97,11 +112,14 @@ class ContinuedIdentification(Identification):
         return state
 
     def _begun(self) -> Array:
-        """The point of the search space where the fit begins, (p,); what the start lacks is as the model has it."""
-        preset, space = self.preset, self.objective.space
-        values = {p.in_equations: p.value for p in preset.parameters}
-        values |= {preset.parameter(name).in_equations: value for name, value in self._start.values.items()}
-        return space.point({**values, **space.fixed})
+        """The point of the search space where the fit begins, (p,)."""
+        return self.objective.space.point(self._begins_at(self.objective.space))
+
+    def _begins_at(self, space: Space) -> dict[str, float]:
+        """The values where the fit begins; what the start lacks is as the model has it."""
+        values = {p.in_equations: p.value for p in self.preset.parameters}
+        values |= {self.preset.parameter(name).in_equations: value for name, value in self._start.values.items()}
+        return {**values, **space.fixed}
 
     def optimum(self, state: State) -> Optimum:
         """The best of where the start and, after a search, its best members end."""

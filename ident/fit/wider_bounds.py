@@ -25,6 +25,8 @@ FURTHER = 10.0
 """Times as far reaches a range that was too narrow. Why: a decade is a step that a polish takes at once."""
 ROUNDS = 3
 """Times that a range is widened at most: a thousandfold. Why: beyond it the parameter is not seen, and at its bound."""
+EPSILON = 1e-12
+"""Of a range: so far rounding may move a value at its bound."""
 WIDENED = ("kg", "s")
 """Units of what is searched beyond its bound: masses, lags and delays. A ratio at its bound says what it is."""
 
@@ -64,6 +66,23 @@ def wider_at(space: Space, point: Array, names: Collection[str]) -> Space:
     return replace(
         space, axes=tuple(_wider(axis, bool(at > 0.5)) if axis.name in names else axis for axis, at in places)
     )
+
+
+def reaching(space: Space, values: Mapping[str, float], names: Collection[str]) -> Space:
+    """The space, with the axes of these parameters reaching as far as `values`, a decade at a time."""
+    for _ in range(ROUNDS):
+        bounds = space.bounds(values)
+        beyond = [name for name in names if _is_beyond(values[name], *bounds[name])]
+        if not beyond:
+            break
+        space = wider_at(space, space.point(values), beyond)
+    return space
+
+
+def _is_beyond(value: float, lower: float, upper: float) -> bool:
+    """Whether a value lies outside of its bounds, but for rounding."""
+    least = EPSILON * (upper - lower)
+    return not lower - least <= value <= upper + least
 
 
 def _starts(best: Optimum, wider: Space, values: Mapping[str, float], names: Iterable[str]) -> Iterator[Array]:

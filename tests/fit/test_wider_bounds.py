@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import cache
 
 import numpy as np
@@ -10,6 +11,10 @@ import scipy.signal
 
 from ident import from_arrays, identify
 from ident.fit.result import FitResult
+from ident.fit.settings import Settings
+from ident.fit.start import Start
+from ident.matrix import Actuator, Matrix
+from ident.run import Run
 
 RATE, LAG, LATE = 100.0, 0.05, 32  # Hz, s, samples: six times the lag, where three are searched
 
@@ -52,3 +57,30 @@ def test_the_generations_of_the_search_stay_where_they_were():
     found = fitted()
     lies = found.searched.index("command_delay.delay")
     assert max(member[lies] for one in found.evolution for member in one.population) <= 0.15
+
+
+def saturated(steep: float) -> Matrix:
+    """A lag of 0.1 s behind all but a switch: y' = (K w / √(1 + (K w)²) − y) / 0.1 s with K `steep`, noise of 0.5 %."""
+    rng, n = np.random.default_rng(96), 800
+    u = np.interp(np.arange(n) / 40, np.arange(n // 40 + 2), rng.uniform(-1, 1, n // 40 + 2))
+    y, at = np.zeros(n), 0.0
+    for k in range(1, n):
+        for part in range(20):
+            w = u[k - 1] + (part + 0.5) / 20 * (u[k] - u[k - 1])
+            at += (steep * w / np.sqrt(1 + (steep * w) ** 2) - at) / 0.1 / 2000.0
+        y[k] = at
+    y = y + 0.005 * y.std() * rng.standard_normal(n)
+    run = Run("r", "", 100.0, {"command": u, "displacement": y}, {"command": "V", "displacement": "m"})
+    return Matrix(Actuator("SWITCH"), (run,))
+
+
+def test_a_fit_begins_where_a_diagnosis_ended_though_that_was_beyond_a_usual_bound():
+    """A strength that a diagnosis searched beyond a range of nobody's is not cut off; a bound of the user holds."""
+    begun = Start("diagnosis", {"gain": 50.0, "tau": 0.1, "flow_saturation.inverse_opening": 50.0}, error=0.01)
+    settings = Settings(model="first_order", effects=("flow_saturation",), start=begun)
+    found = identify(saturated(50.0), settings=settings)
+    assert found.error["fit"] < 0.006
+    assert found.parameters["flow_saturation.inverse_opening"].value == pytest.approx(50.0, rel=0.1)
+    bounds = {"flow_saturation.inverse_opening": (0.0, 5.0)}
+    bounded = identify(saturated(50.0), settings=replace(settings, bounds=bounds))
+    assert bounded.parameters["flow_saturation.inverse_opening"].value <= 5.0
