@@ -3,8 +3,10 @@
 Where the residual of the first model exceeds the noise, an effect is missing, and a machine with more parameters may
 have made up for a part of it. So the models are compared with one effect of the catalogue each. Another model with no
 more parameters then comes before the first where the first is improbable among them; and so does a model with fewer
-parameters and as small an error. A first model with a parameter at its bound is the wrong machine: a model with a
-smaller error comes before it.
+parameters and as small an error. A model with more parameters comes before it only where that is as small an error
+without an effect, and with one gains half of all that the first with its effect leaves to gain: what is missing may
+hide the machine. A first model with a parameter at its bound is the wrong machine: a model with a smaller error comes
+before it.
 """
 
 from __future__ import annotations
@@ -17,7 +19,7 @@ from ident.diagnosis.criteria import CRITERIA
 from ident.diagnosis.evidence.comparison import common_disturbance, gain
 from ident.diagnosis.evidence.probability import structure_probabilities
 from ident.diagnosis.fitted_model import FittedModel
-from ident.diagnosis.model_comparison import better
+from ident.diagnosis.model_comparison import better, evidence
 from ident.diagnosis.operating_point import at_operating_point
 from ident.diagnosis.ranking import rank
 from ident.effects import CATALOGUE
@@ -126,12 +128,29 @@ def _with_an_effect_each(
 ) -> dict[str, _JudgedStructure]:
     """The first model and the models with no more parameters, each with the effect that improves it most.
 
-    Only the first, without an effect, is returned where it is the only one or its residual is noise.
+    A model with more parameters and as small an error is among them where, with its effect, it gains half of all that
+    can be gained in addition to the first with its own. Only the first, without an effect, is returned where it is the
+    only one or its residual is noise.
     """
+    as_good = CRITERIA.structure.worse * min(one.error for one in tried)
     simple = [one for one in tried if one.parameters <= first.parameters]
-    if len(simple) == 1 or not first.refit.finite or not first.models.residual_above_noise(first.refit):
+    larger = [one for one in tried if one.parameters > first.parameters and one.error <= as_good]
+    if len(simple) + len(larger) == 1 or not first.above_noise:
         return {first.machine: first}
-    return {one.machine: one.helped(report) for one in simple}
+    helped = {one.machine: one.helped(report) for one in simple}
+    if helped[first.machine].above_noise:
+        others = (one.helped(report) for one in larger)
+        helped |= {one.machine: one for one in others if _gains_half(helped[first.machine], one)}
+    return helped
+
+
+def _gains_half(first: _JudgedStructure, larger: _JudgedStructure) -> bool:
+    """Whether a model with an effect gains half of all that can be gained in addition to the first model with its
+    own."""
+    if not larger.best.finite:
+        return False
+    found = evidence(first.best, larger.best)
+    return found.gain > CRITERIA.evidence.reaches * found.most
 
 
 def _preferred(
@@ -330,6 +349,11 @@ class _JudgedStructure:
     def best(self) -> FittedModel:
         """The refit with the effect, where there is one, else without."""
         return self.with_effect or self.refit
+
+    @property
+    def above_noise(self) -> bool:
+        """Whether a simulation confirms it and its residual is above the noise."""
+        return self.best.finite and self.models.residual_above_noise(self.best)
 
     @property
     def at_bound(self) -> bool:

@@ -255,6 +255,28 @@ def test_an_improbable_machine_gives_way_to_the_most_probable(probabilities, tak
     assert _preferred(first, [first, lag, motor], set(), probable)[0].machine == taken
 
 
+@pytest.mark.parametrize(("alone", "left", "named"), [(0.61, 0.005, True), (0.61, 0.2, False), (0.7, 0.005, False)])
+def test_a_machine_with_more_parameters_has_to_explain_most_with_its_effect(alone, left, named):
+    """Two tanks that run over are fitted no better than one lag; with the overflow they leave a hundredth of it."""
+    noise, shape = 0.005 * np.random.default_rng(7).standard_normal(3000), np.sin(np.arange(3000) / 9.0)
+    bands = EnergyBands((Record(1.0, floor=0.005**2),), (3000,))
+
+    def model(machine: str, parameters: int, alone: float, left: float) -> SimpleNamespace:
+        held_out, horizon = SimpleNamespace(error=left), SimpleNamespace(horizon=None)
+        best = SimpleNamespace(
+            finite=True,
+            held_out=held_out,
+            fitness=horizon,
+            residuals_held_out=Residuals((noise + left * shape,), bands),
+        )
+        of = SimpleNamespace(machine=machine, parameters=parameters, error=alone, best=best, above_noise=left > 0.01)
+        of.helped = lambda _report: of
+        return of
+
+    lag, tanks = model("first_order", 2, 0.615, 0.51), model("two_tanks", 3, alone, left)
+    assert ("two_tanks" in structure_selection._with_an_effect_each(lag, [lag, tanks], silent)) is named
+
+
 @pytest.mark.parametrize("model", short_form(["motor", "open_valve"], "motor"))
 def test_a_cylinder_is_found_at_any_rate_of_samples(model):
     """At 4.6 kHz: the gain of a position in one of a drive was bounded by the position, as if it were a speed."""
