@@ -132,15 +132,15 @@ def _with_an_effect_each(
     can be gained in addition to the first with its own. Only the first, without an effect, is returned where it is the
     only one or its residual is noise.
     """
-    as_good = CRITERIA.structure.worse * min(one.error for one in tried)
-    simple = [one for one in tried if one.parameters <= first.parameters]
-    larger = [one for one in tried if one.parameters > first.parameters and one.error <= as_good]
+    as_good = CRITERIA.equality.practically_equal * min(judged.error for judged in tried)
+    simple = [judged for judged in tried if judged.parameters <= first.parameters]
+    larger = [judged for judged in tried if judged.parameters > first.parameters and judged.error <= as_good]
     if len(simple) + len(larger) == 1 or not first.above_noise:
         return {first.machine: first}
-    helped = {one.machine: one.helped(report) for one in simple}
+    helped = {judged.machine: judged.helped(report) for judged in simple}
     if helped[first.machine].above_noise:
-        others = (one.helped(report) for one in larger)
-        helped |= {one.machine: one for one in others if _gains_half(helped[first.machine], one)}
+        others = (judged.helped(report) for judged in larger)
+        helped |= {judged.machine: judged for judged in others if _gains_half(helped[first.machine], judged)}
     return helped
 
 
