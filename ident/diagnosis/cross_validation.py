@@ -81,7 +81,10 @@ def weight_of_offsets(runs: int, samples: int) -> float:
 
 
 def scored(error: float, offset: float, weight: float) -> float:
-    """Error and offsets in one number, least for the most likely model; offsets below what matters count as that."""
+    """Error and offsets in one number, least for the most likely model.
+
+    Offsets below the level that matters count as that level.
+    """
     return error * (1.0 + weight * float(np.log(max(offset, CRITERIA.evidence.level))))
 
 

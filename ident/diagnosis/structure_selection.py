@@ -4,9 +4,9 @@ Where the residual of the first model exceeds the noise, an effect is missing, a
 have made up for a part of it. So the models are compared with one effect of the catalogue each. Another model with no
 more parameters then comes before the first where the first is improbable among them; and so does a model with fewer
 parameters and as small an error. A model with more parameters comes before it only where that is as small an error
-without an effect, and with one gains half of all that the first with its effect leaves to gain: what is missing may
-hide the machine. A first model with a parameter at its bound is the wrong machine: a model with a smaller error comes
-before it.
+without an effect, and with one gains half of all that can be gained in addition to the first with its effect: a
+missing effect may hide the machine. A first model with a parameter at its bound is the wrong machine: a model with a
+smaller error comes before it.
 """
 
 from __future__ import annotations
