@@ -104,11 +104,25 @@ class ExplanationView(BaseModel):
     better: bool = False
 
 
+class NoiseTestView(BaseModel):
+    """The numbers by which the residual on the estimation data counts as noise, or does not.
+
+    Where a noise `floor` is known the `error` has to be below the `limit`; else the `correlation` of neighbouring
+    residuals must not be above it.
+    """
+
+    error: float
+    limit: float
+    floor: float | None = None
+    correlation: float | None = None
+
+
 class VerdictView(BaseModel):
     """What to add, what the data cannot tell apart, whose label is doubted, whether the residual is unexplained.
 
-    `standing` is found where the error is at the noise floor, stand_in where it is above it, contradicted where
-    the error rises with an effect (`contradicted_by`) on runs to verify, nothing where no effect helps. `at_bound` are
+    `standing` is found where the error is at the noise floor, stand_in where it is above it or may be, contradicted
+    where the error rises with an effect (`contradicted_by`) on runs to verify, nothing where no effect helps.
+    `noise_test` has the numbers by which the residual is unexplained, null where it was not asked. `at_bound` are
     effects whose strength ended at a bound that the search set, `elsewhere` what other models explain as well, and
     `stood_in` effects of the ladder that are not named, for beside proposed terms they are not needed, and
     `unconfirmed` those that are not named, for validation data show nothing of them. `probability` is
@@ -130,6 +144,7 @@ class VerdictView(BaseModel):
     probability: float | None = None
     probabilities: dict[str, float] = Field(default_factory=dict)
     group_probabilities: list[float] = Field(default_factory=list)
+    noise_test: NoiseTestView | None = None
 
 
 class EffectSetView(BaseModel):

@@ -142,6 +142,20 @@ class Explanation:
 
 
 @dataclass(frozen=True)
+class NoiseTest:
+    """The numbers by which the residual on the estimation data counts as noise, or does not.
+
+    Where a noise `floor` is known the `error` has to be below the `limit`; else the `correlation` of neighbouring
+    residuals must not be above it.
+    """
+
+    error: float
+    limit: float
+    floor: float | None = None
+    correlation: float | None = None
+
+
+@dataclass(frozen=True)
 class Verdict:
     """The named effects, the groups that the data cannot tell apart, the suspects, and whether the residual is
     explained.
@@ -153,7 +167,8 @@ class Verdict:
     of `unconfirmed` ones. `indistinguishable` are groups of effects one of which is named, or two lags or delays that
     two others replace as well. `probability` is the probability of the verdict, None where it is not known;
     `probabilities` has each effect that was refitted, "nothing" and something "unlisted", `group_probabilities` has one
-    for each group.
+    for each group. The residual is `unexplained` by the numbers of `noise_test`; they are None where there was no time
+    for the test.
     """
 
     effects: tuple[str, ...] = ()
@@ -170,6 +185,7 @@ class Verdict:
     probability: float | None = field(default=None, metadata=WHERE_KNOWN)
     probabilities: Mapping[str, float] = field(default_factory=dict, metadata=WHERE_KNOWN)
     group_probabilities: tuple[float, ...] = field(default=(), metadata=WHERE_KNOWN)
+    noise_test: NoiseTest | None = field(default=None, metadata=WHERE_KNOWN)
 
 
 @dataclass(frozen=True)

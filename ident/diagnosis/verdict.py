@@ -28,7 +28,7 @@ from itertools import takewhile
 
 from ident.diagnosis.criteria import CRITERIA, Criteria
 from ident.diagnosis.evidence.probability import NOTHING, Probabilities, SetGains, probabilities
-from ident.diagnosis.result import Explanation, Suspect, Verdict
+from ident.diagnosis.result import Explanation, NoiseTest, Suspect, Verdict
 from ident.diagnosis.verification import Contradiction, Standing, VerifyChange
 
 Names = tuple[str, ...]
@@ -76,15 +76,19 @@ class Findings:
 
 
 def is_noise(residual: Residual, criteria: Criteria = CRITERIA) -> bool:
-    """Whether the error is noise alone.
+    """Whether the error is noise alone: below its limit, or where no floor is known, without memory."""
+    test = noise_test(residual, criteria)
+    return residual.error < test.limit if test.correlation is None else not test.correlation > test.limit
 
-    With a floor the error has to exceed it by less than a share and chance; without a floor the residual has to have no
-    memory.
-    """
+
+def noise_test(residual: Residual, criteria: Criteria = CRITERIA) -> NoiseTest:
+    """The error and its limit, the floor and a margin for its own error and for chance; without a floor the correlation
+    of neighbouring residuals and its limit."""
     if residual.floor is None:
-        return not residual.correlation > criteria.noise.noise_correlation
+        return NoiseTest(residual.error, criteria.noise.noise_correlation, correlation=residual.correlation)
     margin = criteria.evidence.floor_margin if residual.excess is None else 1.0 + residual.excess
-    return residual.error < (margin + criteria.noise.floor_deviations * residual.spread) * residual.floor
+    limit = (margin + criteria.noise.floor_deviations * residual.spread) * residual.floor
+    return NoiseTest(residual.error, limit, floor=residual.floor)
 
 
 def contradicts(change: VerifyChange, criteria: Criteria = CRITERIA) -> bool:
@@ -124,6 +128,7 @@ def conclude(found: Findings, criteria: Criteria = CRITERIA) -> Verdict:
         indistinguishable=groups,
         suspects=tuple(found.suspects),
         unexplained=_unexplained(found, criteria),
+        noise_test=None if found.residual is None else noise_test(found.residual, criteria),
         at_bound=found.at_bound,
         elsewhere=tuple(found.elsewhere),
         stood_in=found.dispensable,

@@ -42,6 +42,16 @@ def test_how_a_verdict_stands(found, standing, unexplained):
     assert (verdict.standing, verdict.unexplained) == (standing, unexplained)
 
 
+def test_the_numbers_that_decide_whether_the_residual_is_noise_stand_in_the_verdict():
+    """The error and its limit, two per cent and three deviations above the floor; without a floor the correlation."""
+    test = conclude(replace(LEAD, residual=FAR)).noise_test
+    assert (test.error, test.floor, test.correlation) == (0.02, 0.01, None)
+    assert test.limit == pytest.approx((1.02 + 3 * 0.001) * 0.01)
+    without = conclude(replace(LEAD, residual=Residual(0.02, None, correlation=0.7))).noise_test
+    assert (without.correlation, without.limit, without.floor) == (0.7, 0.5, None)
+    assert conclude(replace(LEAD, residual=None)).noise_test is None
+
+
 def test_what_only_a_dispensable_effect_was_contradicted_by_is_a_stand_in():
     """Two effects, and runs to verify that speak against one: beside confirmed terms that one is not needed."""
     two = replace(LEAD, added=("lead", "lag"), verify=(RISES,))
