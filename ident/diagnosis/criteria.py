@@ -60,22 +60,22 @@ class Estimation:
     Test: test_criteria_of_estimation.py::test_a_refit_one_per_cent_better_is_at_another_optimum"""
     places_of_rest: int = 65
     """[places] Along its range, at which such a parameter is tried. Why: eight a decade of an eight-decade range.
-    Test: test_undetermined.py::test_a_mass_that_no_record_shows_rests_where_steps_are_few"""
+    Test: test_criteria_of_estimation.py::test_a_parameter_at_rest_is_looked_for_at_each_64th_of_its_range"""
     convergence_rounds: int = 5
     """[refits] To continue with while each is at a better optimum. Why: in a long narrow valley one refit stops on its
     way, and of an effect that acts in jumps the next optimum lies behind the last.
     Test: test_criteria_of_estimation.py::test_a_refit_is_continued_five_times_at_most"""
     pair_shares: tuple[float, ...] = (1.0, 0.3, 0.03)
-    """[of the strength] Of the second of two effects when fitted alone, to start the pair from. Why: the first may
-    take over most of what the second explained alone.
-    Test: test_selection.py::test_two_that_only_together_explain_the_data_are_found_where_a_third_came_first"""
+    """[of the strength] Of the second of two effects when fitted alone, to start the pair from. Why: the first may take
+    over most of what the second explained alone.
+    Test: test_criteria_of_estimation.py::test_a_pair_begins_with_all_of_the_second_effect_and_with_a_small_part"""
     simulation_excess: float = 1.03
     """[ratio of errors] Of a simulation over its linear prediction that is still a result. Why: a model that is not
     linear in its initial states may look good at states that no simulation confirms.
     Test: test_fitted_model.py::test_what_no_first_state_leads_to_is_no_refit"""
     off_strength: float = 0.01
     """[of the largest strength] Below which an effect is as good as off. Why: less is not seen in the output.
-    Test: test_selection.py::test_an_effect_that_is_off_and_leads_nowhere_better_without_it_is_added_as_any_other"""
+    Test: test_criteria_of_estimation.py::test_an_effect_is_as_good_as_off_at_a_hundredth_of_its_range"""
 
 
 @dataclass(frozen=True)
@@ -106,14 +106,16 @@ class StructureSelection:
     improbable: float = 0.01
     """[probability] Of the first machine with its best effect, below which the most probable one comes before it. Why:
     a machine with more parameters may have made up for a part of a missing effect; the usual order changes only where
-    it is that sure. Test: test_structure_selection.py::test_more_parameters_do_not_make_up_for_an_effect"""
+    it is that sure.
+    Test: test_criteria_of_comparison.py::
+    test_the_most_probable_machine_comes_first_where_the_usual_one_is_improbable"""
     longer_gain: float = 10.0
     """[log-likelihood] Gain of longer windows over the fitted ones, beyond the logarithm of the number of models. Why:
     one in 20,000 by chance.
-    Test: test_criteria_of_ranking.py::test_longer_windows_have_to_make_the_records_more_likely_beyond_chance"""
+    Test: test_criteria_of_comparison.py::test_longer_windows_have_to_make_the_records_more_likely_beyond_chance"""
     carried_models: int = 4
     """[models] Taken to the next longer windows. Why: the most probable of each set of effects.
-    Test: test_prediction_horizon.py::test_another_gain_each_way_is_judged_over_whole_runs"""
+    Test: test_criteria_of_ranking.py::test_the_four_most_probable_sets_of_effects_are_taken_to_longer_windows"""
 
 
 @dataclass(frozen=True)
@@ -122,40 +124,41 @@ class Screening:
 
     strengths: tuple[float, ...] = (0.01, 0.03, 0.1, 0.3, 1.0)
     """[of the way to each bound] At which an effect is simulated. Why: a response scales over a factor of three.
-    Test: test_criteria_of_ranking.py::test_strengths_over_four_decades_lie_near_one_that_is_simulated"""
+    Test: test_criteria_of_prediction.py::test_strengths_over_four_decades_lie_near_one_that_is_simulated"""
     weak_strengths: tuple[float, ...] = (1e-4, 3e-4, 1e-3, 3e-3)
     """[of the way to each bound] In addition, for a machine of unknown size. Why: its bounds are wide.
-    Test: test_criteria_of_ranking.py::test_strengths_over_four_decades_lie_near_one_that_is_simulated"""
+    Test: test_criteria_of_prediction.py::test_strengths_over_four_decades_lie_near_one_that_is_simulated"""
     many_shapes: int = 10
     """[initial guesses] Of shapes, above which each is simulated at fewer strengths. Why: the simulations are as many
     as shapes times strengths.
-    Test: test_criteria_of_ranking.py::test_of_many_shapes_each_is_simulated_once"""
+    Test: test_criteria_of_prediction.py::test_of_many_shapes_each_is_simulated_once"""
     strengths_of_many: tuple[float, ...] = (0.3,)
     """[of the way to each bound] At which each of many shapes is simulated. Why: the middle of the range by its
     logarithm.
-    Test: test_criteria_of_ranking.py::
+    Test: test_criteria_of_prediction.py::
     test_the_one_strength_of_many_shapes_can_be_scaled_from_a_sixth_to_over_half_of_the_range"""
     strengths_of_stop: tuple[float, ...] = (1.02, 1.08, 1.2, 1.4, 1.7)
     """[of the inverse of the way that was covered] At which a stop is simulated. Why: a stop that gives way was passed.
     Test: test_initial_guesses.py::test_a_stop_that_gives_way_lies_before_the_end_of_the_way"""
     elsewhere: int = 3
     """[places] Of its shapes from which a refit begins again, in addition to the one with the best prediction. Why:
-    there are four places along a range. Test: test_free_shapes.py::test_an_end_above_its_prediction_is_begun_again"""
+    there are four places along a range.
+    Test: test_free_shapes.py::test_a_search_for_a_width_begins_again_from_three_other_places_and_three_strengths"""
     max_scaling: float = 2.0
     """[ratio of strengths] By which a response may be scaled. Why: beyond it the response would be another strength's.
-    Test: test_criteria_of_ranking.py::test_a_response_is_scaled_by_two_at_most"""
+    Test: test_criteria_of_prediction.py::test_a_response_is_scaled_by_two_at_most"""
     strength_powers: tuple[float, ...] = (0.67, 0.33, 0.0)
     """[exponent of the scaling] Of further starts, between the scaled and the simulated strength. Why: an effect with a
     threshold needs the simulated strength.
-    Test: test_criteria_of_ranking.py::
+    Test: test_criteria_of_prediction.py::
     test_from_the_simulated_strength_to_the_scaled_one_refits_begin_within_a_factor_of_five"""
     threshold_growth: float = 300.0
     """[ratio of powers] Of two neighbouring responses between which a threshold lies. Why: a proportional response
     grows by at most ten.
-    Test: test_far_starts.py::test_the_hidden_effect_is_found_where_no_start_near_the_fit_leads_to_it"""
+    Test: test_criteria_of_prediction.py::test_a_threshold_lies_where_the_power_of_a_response_grows_three_hundredfold"""
     reweighting_rounds: int = 3
     """[rounds] Of weighting each run by its residual. Why: the weights settle within three.
-    Test: test_criteria_of_ranking.py::test_the_weights_of_runs_are_settled_when_a_fit_is_predicted"""
+    Test: test_criteria_of_prediction.py::test_the_weights_of_runs_are_settled_when_a_fit_is_predicted"""
 
 
 @dataclass(frozen=True)
@@ -164,33 +167,30 @@ class InitialGuesses:
 
     lines: int = 6
     """[lines] Of the spectrum taken as frequencies. Why: the clearest are usually among the first three.
-    Test: test_initial_guesses.py::test_pulsations_are_found_clearest_first_whatever_the_sample_rate"""
+    Test: test_criteria_of_prediction.py::test_the_six_clearest_lines_of_a_spectrum_are_tried"""
     angles: int = 6
     """[angles] Around a turn, where a phase begins. Why: an optimum of a phase reaches a third of a turn.
-    Test: test_criteria_of_ranking.py::test_a_phase_begins_at_each_sixth_of_a_turn"""
+    Test: test_criteria_of_prediction.py::test_a_phase_begins_at_each_sixth_of_a_turn"""
     along_range: tuple[float, ...] = (0.2, 0.4, 0.6, 0.8)
-    """[of an axis] Where a searched shape begins, and where strengths are tried between two of which one does next
-    to nothing and the other much. Why: a width is felt over about a fifth of four decades. Test:
-    test_free_shapes.py::test_two_searches_from_other_places_end_alike"""
+    """[of an axis] Where a searched shape begins, and where strengths are tried between two of which one does next to
+    nothing and the other much. Why: a width is felt over about a fifth of four decades.
+    Test: test_criteria_of_prediction.py::test_a_threshold_lies_where_the_power_of_a_response_grows_three_hundredfold"""
     finely: int = 24
     """[places] Where a searched shape begins with which the output jumps. Why: over two decades each is a fifth longer
     than the one before, about the resolution of a play in a sample.
-    Test: test_friction_behind_play.py::test_a_play_before_the_friction_is_named_with_its_width_and_its_contact"""
+    Test: test_criteria_of_prediction.py::test_a_shape_with_which_the_output_jumps_begins_at_places_a_fifth_apart"""
     hanging_shares: tuple[float, ...] = (0.1, 0.4, 0.7, 0.9)
     """[of the moving mass] That may hang behind a spring, where the search for its frequency begins. Why: each place is
     a third lower than the one before, and the refit follows a resonance over a fifth.
-    Test: test_initial_guesses.py::test_a_part_behind_a_spring_begins_below_the_resonance_of_the_record"""
+    Test: test_criteria_of_prediction.py::test_a_part_behind_a_spring_begins_within_a_third_of_its_frequency"""
     spring_shares: tuple[float, ...] = (0.3, 0.6)
     """[of the machine's spring] Share that an effect which is a spring at first has taken over. Why: from either share
     the refit of a Bouc-Wen oscillator reaches its optimum, from none and from all of the spring it does not.
-    Test: test_free_loops.py::test_an_oscillator_that_hardens_is_named_with_the_shape_of_its_loop"""
-    amplitude: float = 1.414
-    """[of the motion's deviation] Amplitude at which such an effect yields at first. Why: the amplitude of a sine: it
-    has yielded at the turning points.
-    Test: test_free_loops.py::test_an_oscillator_that_hardens_is_named_with_the_shape_of_its_loop"""
+    Test: test_criteria_of_prediction.py::
+    test_an_effect_in_the_place_of_a_spring_begins_with_a_quarter_to_three_quarters_of_it"""
     spectrum_points: int = 4
     """[points] Of a spectrum for each that the record resolves. Why: a peak between two is not missed.
-    Test: test_initial_guesses.py::test_the_lines_of_what_does_not_pulsate_are_the_same_at_every_sample_rate"""
+    Test: test_initial_guesses.py::test_a_pulsation_is_found_to_an_eighth_of_what_the_record_resolves"""
 
 
 @dataclass(frozen=True)
@@ -198,20 +198,21 @@ class FreeWidths:
     """When the widths of an effect are identified with its strength."""
 
     missed: float = 1.1
-    """[ratio of errors] Of a refit over its prediction, above which it is begun again elsewhere; of rough refits
-    with terms to the least, within which they are refined. Why: a prediction is a step towards an optimum, and a
-    rough refit is that far off. Test: test_free_shapes.py::test_an_end_above_its_prediction_is_begun_again"""
+    """[ratio of errors] Of a refit over its prediction, above which it is begun again elsewhere; of rough refits with
+    terms to the least, within which they are refined. Why: a prediction is a step towards an optimum, and a rough refit
+    is that far off.
+    Test: test_criteria_of_prediction.py::test_a_refit_keeps_its_prediction_within_a_tenth"""
     short_steps: int = 50_000
     """[simulation steps] Of all runs below which widths are free from the start and refits begin again. Why: a single
     test has a tenth of the samples of a test matrix, and determines the initial guesses less.
-    Test: test_free_shapes.py::test_where_records_are_long_widths_keep_their_usual_values_at_first"""
+    Test: test_criteria_of_estimation.py::test_records_are_short_below_fifty_thousand_steps_of_eight_a_sample_at_most"""
     counted_steps: int = 8
     """[steps a sample] That count at most for a short record. Why: a base whose mass ended next to nothing asks for 32,
     and no model that explains the records does.
-    Test: test_free_shapes.py::test_a_mass_next_to_nothing_makes_no_record_long"""
+    Test: test_criteria_of_estimation.py::test_records_are_short_below_fifty_thousand_steps_of_eight_a_sample_at_most"""
     tried: int = 3
     """[effects] Refitted with free widths, the best predictions first. Why: each is refitted from several places.
-    Test: test_criteria_of_ranking.py::test_three_effects_are_refitted_with_free_widths"""
+    Test: test_criteria_of_prediction.py::test_three_effects_are_refitted_with_free_widths"""
 
 
 @dataclass(frozen=True)
@@ -223,11 +224,12 @@ class Ranking:
     the best is among the first twelve predictions, and each refit costs more the larger the model.
     Test: test_criteria_of_ranking.py::test_of_a_large_matrix_fewer_are_tried_the_larger_the_model"""
     quick_steps: int = 200_000
-    """[simulation steps] Of all runs below which a matrix is quick. Why: every prediction and every finalist can
-    then be tried. Test: test_ranking.py::test_what_leaves_as_much_as_the_last_finalist_is_one_in_a_small_matrix"""
+    """[simulation steps] Of all runs below which a matrix is quick. Why: every prediction and every finalist can then
+    be tried.
+    Test: test_criteria_of_estimation.py::test_a_matrix_is_quick_below_two_hundred_thousand_steps"""
     near_best: float = 1.3
     """[ratio of predicted errors] To the best, of a contender for a further effect. Why: a prediction is that far off.
-    Test: test_ranking.py::test_where_the_boldest_promise_is_not_kept_more_is_tried"""
+    Test: test_criteria_of_ranking.py::test_a_further_effect_is_tried_where_it_promises_within_a_third_of_the_best"""
     finalists: int = 5
     """[candidates] Refitted to every sample, told as soon as they are predicted, and tried two at a time. Why: the
     table shows the first five in full.
@@ -241,7 +243,8 @@ class Ranking:
     Test: test_criteria_of_ranking.py::test_the_best_two_finalists_are_begun_again"""
     strong_starts: tuple[float, ...] = (1.0, 0.6, 0.3)
     """[of the largest strength] From which a refit begins, too. Why: a fit that lacks the effect may have gone far
-    astray. Test: test_far_starts.py::test_strong_starts_lie_within_the_bounds_of_the_model_that_they_begin_from"""
+    astray.
+    Test: test_criteria_of_ranking.py::test_a_strong_effect_begins_within_a_factor_of_its_strength"""
     perturbed_starts: tuple[float, ...] = (0.5, 0.7, 1.4, 2.0)
     """[of the fitted strength] From which a refit begins, too. Why: play and stiction have optima nearby, one for each
     reversal.
@@ -263,27 +266,27 @@ class CrossValidationFolds:
 
     folds: int = 4
     """[folds] A quarter of the runs is held out at a time. Why: the fit without a fold is close to the fit of all.
-    Test: test_cross_validation.py::test_residuals_out_of_fold_are_those_of_fits_without_each_fold"""
+    Test: test_criteria_of_comparison.py::test_a_single_run_has_eight_stretches_and_many_runs_four_folds"""
     stretches: int = 8
     """[stretches] Of a single run, each held out in turn; half as many of each of two or three runs. Why: twice as many
     fits as for many runs, and each stretch is longer than the machine's memory.
-    Test: test_cross_validation.py::test_of_four_runs_whole_ones_are_left_out_of_fewer_stretches"""
+    Test: test_criteria_of_comparison.py::test_a_single_run_has_eight_stretches_and_many_runs_four_folds"""
     max_step: float = 0.01
     """[of an axis] Step over which one linearisation is trusted. Why: an effect that acts in jumps is far from linear
     beyond.
-    Test: test_cross_validation.py::test_a_step_stays_in_the_cube_and_the_rest_makes_up_for_it"""
+    Test: test_criteria_of_comparison.py::test_one_linearisation_is_trusted_over_a_hundredth_of_an_axis"""
     longest_step: float = 0.1
     """[of an axis] Longest step of any parameter by one linearisation: in a fold, and from a fitted model to a
-    prediction. Why: a parameter that the data do not determine would go to a bound. Test:
-    test_cross_validation.py::test_a_step_that_is_too_long_is_shortened"""
+    prediction. Why: a parameter that the data do not determine would go to a bound.
+    Test: test_criteria_of_comparison.py::test_a_long_step_is_tried_at_a_tenth_of_an_axis_and_at_shares_of_that"""
     step_shares: tuple[float, ...] = (1.0, 0.5, 0.2, 0.05)
-    """[of the step] Shares of a step of a linearisation that are tried, in a fold until the other folds are
-    explained better. Why: a linearisation may be too bold, each share is a simulation, and less than a twentieth
-    moves nothing. Test: test_cross_validation.py::test_a_step_that_is_too_long_is_shortened"""
+    """[of the step] Shares of a step of a linearisation that are tried, in a fold until the other folds are explained
+    better. Why: a linearisation may be too bold, each share is a simulation, and less than a twentieth moves nothing.
+    Test: test_criteria_of_comparison.py::test_a_long_step_is_tried_at_a_tenth_of_an_axis_and_at_shares_of_that"""
     conditions_of_an_octave: float = 2.0
     """[steps] Of the size and the period of a command, by which tests are of one condition. Why: repetitions of a test
     differ by less, levels of a test matrix by more.
-    Test: test_criteria_of_ranking.py::test_tests_whose_commands_differ_in_size_by_a_fifth_are_of_two_conditions"""
+    Test: test_criteria_of_comparison.py::test_tests_whose_commands_differ_in_size_by_a_fifth_are_of_two_conditions"""
 
 
 @dataclass(frozen=True)
@@ -292,12 +295,12 @@ class Equality:
 
     tie: float = 1e-4
     """[relative difference] Of two errors that rounding may decide. Why: refits end within about a hundredth of it.
-    Test: test_tie_breaking.py::test_rounding_changes_no_order"""
+    Test: test_criteria_of_comparison.py::test_rounding_may_decide_on_a_ten_thousandth_of_an_error"""
     practically_equal: float = 1.02
     """[ratio of errors] Of two models that the data cannot tell apart, within which they tie; of a simpler model or
-    term to the best, within which it is taken. Why: in a flat valley rounding decides where a refit ends, and less
-    is no reason for another parameter. Test:
-    test_structure_selection.py::test_of_equals_the_one_with_fewer_parameters_is_taken"""
+    term to the best, within which it is taken. Why: in a flat valley rounding decides where a refit ends, and less is
+    no reason for another parameter.
+    Test: test_criteria_of_comparison.py::test_models_that_the_data_cannot_tell_apart_tie_within_two_per_cent"""
 
 
 @dataclass(frozen=True)
@@ -317,19 +320,19 @@ class Selection:
     rounds: int = 3
     """[rounds] Of exchange, and of the wider search. Why: effects that are added and taken out in a circle come to an
     end.
-    Test: test_selection.py::test_of_effects_that_enter_and_leave_in_a_circle_the_best_set_stays"""
+    Test: test_criteria_of_ranking.py::test_a_pass_of_exchanges_ends_after_three_rounds"""
     global_restarts: int = 8
     """[effects] Of the first ranking started from the whole search space. Why: a local optimum far from the true one
-    makes another effect look better. Test:
-    test_selection.py::test_one_effect_from_anywhere_takes_the_place_of_the_first"""
+    makes another effect look better.
+    Test: test_criteria_of_ranking.py::test_the_eight_best_of_the_first_ranking_are_started_from_anywhere"""
     companions: int = 2
     """[effects] That by themselves improve the model and worsen a part of the data, each of which is tried with all
     others. Why: each costs a ranking, and more than the leading ones seldom act.
-    Test: test_free_run.py::test_friction_and_a_constant_force_are_found_that_only_together_run_freely"""
+    Test: test_criteria_of_ranking.py::test_two_effects_that_worsen_a_part_are_tried_with_all_others"""
     runners_up: int = 2
     """[sets] Of as many effects as were selected, from which the search continues where it ends above the noise floor.
     Why: each costs a ranking, and where one lag imitates two, either of the two leads to both.
-    Test: test_selection.py::test_two_of_which_neither_helps_beside_what_stands_for_both_are_found"""
+    Test: test_criteria_of_ranking.py::test_the_search_continues_from_the_two_next_best_sets"""
 
 
 @dataclass(frozen=True)
@@ -339,11 +342,12 @@ class Verification:
     deviations: float = 2.0
     """[standard errors] Rise of the validation error that contradicts an effect; and the shortfall of its fall at which
     validation data show nothing of an effect. Why: one in 40 by chance, and it only takes away the word found, or the
-    last name. Test: test_verification.py::test_chance_contradicts_seldom"""
+    last name.
+    Test: test_criteria_of_comparison.py::test_an_effect_is_contradicted_where_the_error_rises_by_two_standard_errors"""
     rise: float = 1.1
     """[ratio of validation errors] Of the last model to the best on the path, from which on it is reported. Why: less
     is a matter of chance.
-    Test: test_sentences.py::test_a_smaller_error_on_verify_runs_on_the_way_is_told_with_what_was_added_since"""
+    Test: test_criteria_of_comparison.py::test_a_smaller_error_on_the_way_is_told_where_the_last_is_a_tenth_larger"""
 
 
 @dataclass(frozen=True)
@@ -382,13 +386,13 @@ class RunConsistency:
     most_runs: int = 12
     """[runs] Up to which the model is refitted to each alone. Why: each costs a refit; with more runs whole runs are
     held out in turn, so that evidence and standard errors hold between runs.
-    Test: test_run_consistency.py::test_of_many_runs_none_is_fitted_alone"""
+    Test: test_criteria_of_comparison.py::test_up_to_twelve_runs_are_fitted_alone"""
     chance: float = 1e-3
     """[probability] That runs of one machine disagree in any parameter. Why: the sentence sends a user to the test rig.
-    Test: test_run_consistency.py::test_runs_of_one_machine_agree"""
+    Test: test_criteria_of_comparison.py::test_two_runs_differ_by_a_third_and_beyond_a_chance_of_one_in_a_thousand"""
     ratio: float = 1.3
     """[ratio] Of the largest value to the least, at least. Why: oil and windings that warm up make less of it.
-    Test: test_run_consistency.py::test_a_machine_that_differs_by_little_is_one_machine"""
+    Test: test_criteria_of_comparison.py::test_two_runs_differ_by_a_third_and_beyond_a_chance_of_one_in_a_thousand"""
 
 
 @dataclass(frozen=True)
@@ -398,10 +402,11 @@ class Conclusion:
     competing: int = 3
     """[models] That the next run is to distinguish, and explanations by another machine that are named. Why: more make
     no better experiment, and a sentence has room for no more.
-    Test: test_criteria_of_ranking.py::test_the_next_run_is_to_distinguish_three_models"""
+    Test: test_criteria_of_comparison.py::test_the_next_run_is_to_distinguish_three_models"""
     simpler_terms: float = 1.05
     """[ratio of errors] Up to which terms alone come before terms in addition to the added effects. Why: they need one
-    effect less. Test: test_stages.py::test_terms_of_the_first_search_stay_where_there_is_no_time_for_the_second"""
+    effect less.
+    Test: test_criteria_of_comparison.py::test_terms_alone_come_first_up_to_an_error_five_per_cent_larger"""
 
 
 @dataclass(frozen=True)

@@ -43,7 +43,8 @@ def in_place_of_spring(base: FittedModel, effect: Effect) -> list[dict[str, floa
     if spring is None:
         return []
     way, stiffness, strength = way_of(effect), base.values[spring], effect.added[0].in_equations
-    amplitude = criteria.amplitude * float(np.mean([run.motion for run in base.fitness.runs])) if way else 1.0
+    motion = float(np.mean([run.motion for run in base.fitness.runs]))
+    amplitude = float(np.sqrt(2.0)) * motion if way else 1.0  # that of a sine: it has yielded at the turning points
     return [
         {**base.values, spring: (1.0 - share) * stiffness, strength: share * stiffness * amplitude,
          **({way.in_equations: amplitude} if way else {})}

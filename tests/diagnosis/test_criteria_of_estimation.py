@@ -12,8 +12,10 @@ import scipy.stats
 
 from ident.diagnosis.candidate_models import CandidateModels, _is_beyond
 from ident.diagnosis.criteria import CRITERIA
+from ident.diagnosis.undetermined import _with_fewer_steps
 from ident.diagnosis.verdict import Residual, is_noise
 from ident.fit.levenberg_marquardt import levenberg_marquardt
+from ident.simulation.steps import MOST
 
 BOUNDS = (0.0, 100.0)
 
@@ -134,3 +136,60 @@ def test_a_value_is_beyond_its_bounds_but_for_rounding(over, beyond):
 )
 def test_an_error_is_noise_within_each_margin(residual, noise):
     assert is_noise(residual) is noise
+
+
+@pytest.mark.parametrize(("strength", "off"), [(0.0085, True), (0.0115, False)])
+def test_an_effect_is_as_good_as_off_at_a_hundredth_of_its_range(strength, off):
+    models: Any = SimpleNamespace(effects={"a": SimpleNamespace(has_searched_shapes=False)}, strength=lambda _: "s")
+    refit: Any = SimpleNamespace(space=SimpleNamespace(reach=lambda *_: (-0.5, 1.0)), values={"s": strength})
+    assert CandidateModels.may_be_dispensable(models, refit, "a") is off
+
+
+def test_a_pair_begins_with_all_of_the_second_effect_and_with_a_small_part():
+    """Of which the first may have taken over all but a hundredth: a start lies within a factor of 3.4 of the rest."""
+    begun: list[float] = []
+    models: Any = SimpleNamespace(
+        strength=lambda effect: effect,
+        trial=lambda _effects, starts, _aim: begun.extend(start["b"] for start in starts if start["a"] == 1.0),
+    )
+    first, second = (SimpleNamespace(effects=(name,), values={name: 1.0}) for name in "ab")
+    CandidateModels.pair_trial(models, first, second, 1.0)  # type: ignore[arg-type]
+    assert 1.0 in begun
+    for rest in np.geomspace(0.0092, 1.0, 50):
+        assert np.exp(np.abs(np.log(np.array(begun) / rest)).min()) < 3.4
+
+
+def test_a_parameter_at_rest_is_looked_for_at_each_64th_of_its_range():
+    places: list[np.ndarray] = []
+
+    def values(points: np.ndarray) -> np.ndarray:
+        places.append(points[:-1, 0])
+        return points
+
+    fitness = SimpleNamespace(space=SimpleNamespace(values=values), steps=lambda points: np.ones(len(points)))
+    models: Any = SimpleNamespace(fitness=lambda _effects: fitness)
+    refit: Any = SimpleNamespace(effects=(), point=np.array([0.5]))
+    assert _with_fewer_steps(models, refit, 0) is None
+    assert np.diff(places[0]) == pytest.approx(1.0 / 64.0)
+
+
+def sized(samples: int, steps: int) -> tuple[Any, Any]:
+    """Models of one run of so many samples, and a fitted one that asks for so many steps a sample."""
+    models: Any = SimpleNamespace(runs=(SimpleNamespace(length=samples),))
+    models._steps = lambda fitted, most=MOST: CandidateModels._steps(models, fitted, most)
+    space = SimpleNamespace(values=lambda points: points)
+    fitness = SimpleNamespace(space=space, steps=lambda _values: np.array([steps]))
+    return models, SimpleNamespace(fitness=fitness, point=np.zeros(1))
+
+
+@pytest.mark.parametrize(
+    ("samples", "steps", "short"),
+    [(42_000, 1, True), (58_000, 1, False), (5_500, 32, True), (7_000, 32, False)],
+)
+def test_records_are_short_below_fifty_thousand_steps_of_eight_a_sample_at_most(samples, steps, short):
+    assert CandidateModels.is_short(*sized(samples, steps)) is short
+
+
+@pytest.mark.parametrize(("samples", "quick"), [(170_000, True), (230_000, False)])
+def test_a_matrix_is_quick_below_two_hundred_thousand_steps(samples, quick):
+    assert CandidateModels.is_quick(*sized(samples, 1)) is quick

@@ -114,6 +114,12 @@ def test_an_effect_that_nowhere_comes_to_its_prediction_is_sought_in_the_whole_s
     assert trial_from_everywhere(models, SimpleNamespace(effects=()), promised).local.error == best
 
 
+def test_a_search_for_a_width_begins_again_from_three_other_places_and_three_strengths():
+    """Of four places along the range, and of all strengths that were simulated."""
+    _, _, prediction = refitted(Damper())
+    assert (len(prediction.elsewhere), len(prediction.simulated)) == (3, 3)
+
+
 def test_a_width_that_the_data_do_not_determine_is_not_freed():
     """Ten samples pass it at once: a friction that builds up at once explains as much."""
     free, base, prediction = refitted(replace(Damper(), displacement=1e-6, rate=50.0))
@@ -164,7 +170,7 @@ def test_a_floor_that_a_fitted_model_comes_below_is_none():
     """The two differ by chance by some per cent."""
     models = CandidateModels.of(Damper().matrix(), Settings("specimen"))
     base = models.refit((), {})
-    for ratio, believed in ((1.1, True), (2.0, False)):
+    for ratio, believed in ((1.1, True), (1.17, True), (1.23, False), (2.0, False)):
         models.__dict__["floors"] = replace(models.floors, by_run={"fit": ratio * base.error, "verify": 0.1})
         assert (models.doubting(base).floor is not None) is believed
 

@@ -45,6 +45,13 @@ def test_pulsations_are_found_clearest_first_whatever_the_sample_rate(rate):
     assert found[:2] == pytest.approx([11.0, 4.5], abs=0.5 / SECONDS)
 
 
+@pytest.mark.parametrize("share", [0.0, 0.25, 0.4, 0.5])
+def test_a_pulsation_is_found_to_an_eighth_of_what_the_record_resolves(share):
+    """Wherever it lies between two lines of the spectrum."""
+    pulsation = (88.0 + share) / SECONDS
+    assert spectral_lines(base(400.0, {pulsation: 0.02}), 0.5, 100.0)[0] == pytest.approx(pulsation, abs=0.13 / SECONDS)
+
+
 def test_the_lines_of_what_does_not_pulsate_are_the_same_at_every_sample_rate():
     """Of a residual like any other: with too few samples the upper half of the product would fold onto the lower."""
     found = []

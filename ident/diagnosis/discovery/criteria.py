@@ -14,22 +14,24 @@ class Discovery:
 
     most: int = 3
     """[terms] Proposed at most. Why: each is sought in addition to the last.
-    Test: discovery/test_search.py::test_what_stood_in_for_a_term_is_left_out_again"""
+    Test: discovery/test_criteria_of_terms.py::test_three_terms_are_proposed_at_most"""
     worthwhile: float = 1e-2
     """[relative reduction] Least reduction of the error that is worth a term. Why: less is not worth one, however
     certain.
-    Test: discovery/test_term_evidence.py::test_all_runs_gain_or_some_gain_much_and_none_loses"""
+    Test: discovery/test_criteria_of_terms.py::test_a_term_is_worthwhile_where_the_error_falls_by_a_hundredth"""
     log_likelihood_gain: float = 5.0
     """[log-likelihood] Least gain beyond the logarithm of the number of candidates. Why: one in 150 by chance, whatever
-    the number. Test: discovery/test_search.py::test_noise_of_any_colour_is_no_physics"""
+    the number.
+    Test: discovery/test_criteria_of_terms.py::
+    test_the_best_of_many_terms_has_to_gain_five_nats_beyond_the_logarithm_of_their_number"""
     lost_gain: float = 0.25
     """[of the best term's gain] Share that a simpler term may lose. Why: where all terms gain little, a term with an
-    equal error may gain nothing. Test: discovery/test_term_candidate.py::
-    test_what_is_simpler_and_gains_next_to_nothing_does_not_stand_for_what_gains"""
+    equal error may gain nothing.
+    Test: discovery/test_criteria_of_terms.py::test_a_simpler_term_may_lose_a_quarter_of_the_gain"""
     fewest_runs: int = 6
     """[runs] Least number for which separate runs search, choose and confirm. Why: one run does not show the
-    differences between runs. Test:
-    discovery/test_free_curves.py::test_of_few_runs_a_curve_is_drawn_only_where_it_is_asked_for"""
+    differences between runs.
+    Test: discovery/test_criteria_of_terms.py::test_six_runs_are_parted_into_those_that_search_choose_and_confirm"""
     classes: int = 6
     """[classes] Of terms that are refitted. Why: the best is among the first.
     Test: discovery/test_criteria_of_terms.py::test_the_six_best_classes_are_refitted"""
@@ -43,21 +45,24 @@ class Discovery:
     Why: a shape that is not yet at its optimum has that much of it, and a pair that explains less is not the best.
     Test: discovery/test_criteria_of_terms.py::test_a_kind_with_a_shape_is_refitted_where_it_gains_half_of_the_best"""
     same_shape: float = 0.01
-    """[of the range of a shape] Within which two guesses lead to the same refit. Why: from there both come to the
-    same optimum.
-    Test: discovery/test_term_candidate.py::test_what_was_refitted_from_about_there_is_not_refitted_again"""
+    """[of the range of a shape] Within which two guesses lead to the same refit. Why: from there both come to the same
+    optimum.
+    Test: discovery/test_criteria_of_terms.py::
+    test_two_first_values_lead_to_one_refit_within_a_hundredth_of_the_range"""
     smoothing: int = 16
     """[frequencies] Averaged in a periodogram. Why: its scatter is then a quarter of its level.
     Test: discovery/test_criteria_of_terms.py::test_a_line_gains_what_it_adds_to_the_mean_of_sixteen_frequencies"""
     few_runs: int = 3
     """[runs] Below which their scatter is not used. Why: the scatter of two runs is not known.
-    Test: discovery/test_term_evidence.py::test_all_runs_gain_or_some_gain_much_and_none_loses"""
+    Test: discovery/test_criteria_of_terms.py::test_the_scatter_of_two_runs_is_not_known"""
     consistent: float = 3.0
     """[standard errors] By which the mean gain of a run exceeds zero. Why: one in 700 by chance.
-    Test: discovery/test_term_evidence.py::test_all_runs_gain_or_some_gain_much_and_none_loses"""
+    Test: discovery/test_criteria_of_terms.py::
+    test_runs_agree_where_their_mean_gain_is_three_standard_errors_above_zero"""
     lost: float = 0.03
     """[of the gains] Most that the runs may lose in all where few gain. Why: a stop that only some runs reach loses
-    nothing in the others. Test: discovery/test_term_evidence.py::test_all_runs_gain_or_some_gain_much_and_none_loses"""
+    nothing in the others.
+    Test: discovery/test_criteria_of_terms.py::test_runs_lose_three_in_a_hundred_of_the_gains_at_most"""
     absorbed: float = 1e-4
     """[of a term's power] Least share that the parameters do not explain. Why: below it the parameters replace the
     term.
@@ -75,13 +80,14 @@ class Discovery:
     Test: discovery/test_criteria_of_terms.py::test_the_search_reaches_a_third_beyond_the_band_of_the_command"""
     diverged: float = 1e60
     """[of the output] Size of a response to a strength of one from which on it has diverged. Why: no power of a signal
-    comes near. Test: discovery/test_search.py::test_an_answer_that_grows_without_end_is_no_column"""
+    comes near.
+    Test: discovery/test_criteria_of_terms.py::test_a_response_beyond_all_numbers_has_diverged"""
     fewest_samples: int = 256
     """[samples] Of each run, however many there are. Why: a spectrum needs some.
     Test: discovery/test_criteria_of_terms.py::test_each_run_has_256_samples_of_the_coarse_clock_at_least"""
     knots: tuple[float, ...] = (0.005, 0.04, 0.12, 0.25, 0.38, 0.5, 0.62, 0.75, 0.88, 0.96, 0.995)
     """[quantiles of the signal] Where a free curve has its knots. Why: more at the ends, where curves bend.
-    Test: discovery/test_free_curves.py::test_what_no_form_reaches_is_drawn_as_a_free_curve"""
+    Test: discovery/test_criteria_of_terms.py::test_a_curve_has_a_knot_near_every_quantile_of_its_signal"""
     fewest_knots: int = 4
     """[knots] Of a free curve. Why: fewer are a formula.
     Test: discovery/test_criteria_of_terms.py::test_a_curve_has_four_knots_at_least"""
@@ -90,7 +96,7 @@ class Discovery:
     Test: discovery/test_criteria_of_terms.py::test_a_characteristic_with_24_steps_is_seen_whole"""
     shown: float = 0.5
     """[of a term's power] Least share that a curve is to show. Why: below it no curve shows the term.
-    Test: discovery/test_characteristic_plot.py::test_a_term_is_drawn_where_it_shows"""
+    Test: discovery/test_criteria_of_terms.py::test_a_curve_shows_a_term_where_it_explains_half_of_it"""
     small: float = 0.1
     """[of a signal's deviation] Size below which no quotient by the signal is taken. Why: a quotient of small numbers
     scatters.

@@ -121,7 +121,7 @@ class TermSearch:
         tried = self._all_tried(searching, base, name, seen, curves)
         if not tried:
             return False
-        few, bar = _few(self.models.runs), float(np.log(self.looked_at)) + CRITERIA.discovery.log_likelihood_gain
+        few, bar = _few(self.models.runs), least_gain(self.looked_at)
         candidate, refit, family = _chosen(base, tried, () if few else chosen_by)
         if few:
             found = evidence(base, refit)
@@ -273,6 +273,11 @@ def _tried(base: FittedModel, name: str, candidate: TermCandidate, family: Candi
     start |= {p.in_equations: p.value for p in family.effects[name].added[1:]}
     refit = family.refit((*base.effects, name), start, way=CRITERIA.estimation.screen)
     return (candidate, refit, family) if refit.stable else None
+
+
+def least_gain(looked_at: int) -> float:
+    """The gain (nats) that the best of so many terms has to exceed."""
+    return float(np.log(looked_at)) + CRITERIA.discovery.log_likelihood_gain
 
 
 def _held_out(search: TermSearch) -> float:

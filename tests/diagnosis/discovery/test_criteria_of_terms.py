@@ -9,18 +9,21 @@ from typing import Any
 import numpy as np
 import pytest
 
+from ident.diagnosis.discovery import characteristic_plot
 from ident.diagnosis.discovery.characteristic_plot import _explained_share, characteristic_view
 from ident.diagnosis.discovery.free_curves import FreeCurve, free_curves, offered
 from ident.diagnosis.discovery.regression import Regression, _alone
 from ident.diagnosis.discovery.regressors import _within
 from ident.diagnosis.discovery.run_data import samples_of_each
+from ident.diagnosis.discovery.search import TermSearch, _chosen, _parts, least_gain
 from ident.diagnosis.discovery.term import Curve, Shape, Term
-from ident.diagnosis.discovery.term_candidate import term_candidates
-from ident.diagnosis.discovery.term_evidence import _of_run
+from ident.diagnosis.discovery.term_candidate import TermCandidate, term_candidates
+from ident.diagnosis.discovery.term_evidence import TermEvidence, _of_run
 from ident.diagnosis.discovery.term_library import TermLibrary
 from ident.diagnosis.discovery.term_to_effect import definition, searched_bounds
 from ident.fit.anchoring import Anchoring
 from ident.presets import preset
+from ident.run import Run
 
 UNITS = {"w": "m", "Q": "m^3/s", "P": "Pa", "v": "m/s", "x": "m", "R": "N", "e": "m", "Ke": "m^3/Pa", "t": "s"}
 
@@ -174,4 +177,99 @@ def test_no_quotient_is_drawn_of_a_signal_below_a_tenth_of_its_deviation(small, 
     w = np.where(rng.random(20_000) < 0.5, small, np.sqrt(2.0)) * np.sign(rng.standard_normal(20_000))  # of one
     known = {"w": w, "P": rng.uniform(-1.0, 1.0, 20_000)}
     term = Term("spool", "w", "abs(P) * sgn(w)", "any", ("w", "P"), {})
+    assert characteristic_view(term, preset("qian2014"), known) == view
+
+
+# Evidence
+
+
+@pytest.mark.parametrize(("reduction", "worthwhile"), [(0.0085, False), (0.0115, True)])
+def test_a_term_is_worthwhile_where_the_error_falls_by_a_hundredth(reduction, worthwhile):
+    assert TermEvidence(np.array([30.0]), reduction).worthwhile is worthwhile
+
+
+@pytest.mark.parametrize(("deviations", "consistent"), [(2.6, False), (3.4, True)])
+def test_runs_agree_where_their_mean_gain_is_three_standard_errors_above_zero(deviations, consistent):
+    """Also without the one that gains most, of a hundred, so that it hardly counts."""
+    scatter = np.tile([1.0, -1.0], 50)
+    gains = scatter + deviations * float(np.std(scatter, ddof=1)) / 10.0
+    assert TermEvidence(gains, 0.1).consistent is consistent
+
+
+@pytest.mark.parametrize(("gains", "consistent"), [([9.0, 5.0, -4.0], True), ([9.0, 5.0, -4.0, 5.0], False)])
+def test_the_scatter_of_two_runs_is_not_known(gains, consistent):
+    assert TermEvidence(np.array(gains), 0.1).consistent is consistent
+
+
+@pytest.mark.parametrize(("lost", "beyond"), [(2.5, True), (3.5, False)])
+def test_runs_lose_three_in_a_hundred_of_the_gains_at_most(lost, beyond):
+    assert TermEvidence(np.array([40.0, 30.0, 30.0, -lost]), 0.1).beyond(14.0) is beyond
+
+
+def test_the_best_of_many_terms_has_to_gain_five_nats_beyond_the_logarithm_of_their_number():
+    assert least_gain(1000) - np.log(1000) == pytest.approx(5.0)
+
+
+@pytest.mark.parametrize(("count", "few"), [(5, True), (6, False)])
+def test_six_runs_are_parted_into_those_that_search_choose_and_confirm(count, few):
+    runs: Any = [Run(str(n), "", 1.0, {"command": np.arange(3.0)}, output="command") for n in range(count)]
+    sought, chosen_by, confirming = _parts(runs)
+    assert (sought == chosen_by == confirming) is few
+    assert {run.id for run in (*sought, *chosen_by, *confirming)} == {run.id for run in runs}
+
+
+def test_three_terms_are_proposed_at_most(monkeypatch):
+    added: list[bool] = []
+
+    def one_more(self: TermSearch, curves: bool = False) -> bool:
+        added.append(curves)
+        self.found.append(None)  # type: ignore[arg-type]
+        return True
+
+    monkeypatch.setattr(TermSearch, "_added", one_more)
+    monkeypatch.setattr(TermSearch, "_restated", lambda _self, proposal: proposal)
+    models: Any = SimpleNamespace(at_floor=lambda _: False, runs=())
+    TermSearch(models, SimpleNamespace(effects=()), lambda _: None, (), asked=False).run()  # type: ignore[arg-type]
+    assert added == [False] * 3
+
+
+@pytest.mark.parametrize(("lost", "taken"), [(0.0008, 0), (0.0012, 1)])
+def test_a_simpler_term_may_lose_a_quarter_of_the_gain(lost, taken):
+    """The best term takes 0.004 off: a simpler one that loses 0.0008 of it is taken, one that loses 0.0012 is not."""
+
+    def leaving(error: float, simplicity: int) -> Any:
+        return SimpleNamespace(simplicity=simplicity), SimpleNamespace(held_out=SimpleNamespace(error=error)), None
+
+    base: Any = SimpleNamespace(held_out=SimpleNamespace(error=0.1))
+    tried = [leaving(0.096 + lost, 0), leaving(0.096, 1)]
+    assert _chosen(base, tried, ()) is tried[taken]
+
+
+@pytest.mark.parametrize(("value", "same"), [(1.065, True), (1.09, False)])
+def test_two_first_values_lead_to_one_refit_within_a_hundredth_of_the_range(value, same):
+    """Of a shape that a refit moves from an eighth to eight times its value."""
+    one, other = (
+        TermCandidate((of_load("a", (Shape("h", of, "1", lower=0.125, upper=8.0),)),), (1.0,), 1.0, 0.5)
+        for of in (1.0, value)
+    )
+    assert one.begins_as(other) is same
+
+
+@pytest.mark.parametrize(("size", "sound"), [(0.8e60, True), (1.2e60, False)])
+def test_a_response_beyond_all_numbers_has_diverged(size, sound):
+    record: Any = SimpleNamespace(rate=1.0, anchoring=Anchoring(0))
+    _, finite = _within(np.array([[size], [0.0], [0.0]]), record, 1.0)
+    assert bool(finite[0]) is sound
+
+
+def test_a_curve_has_a_knot_near_every_quantile_of_its_signal():
+    (curve, *_) = free_curves(library(x=np.linspace(0.0, 1.0, 2001)))
+    assert max(np.abs(np.array(curve.knots) - place).min() for place in np.linspace(0.0, 1.0, 201)) < 0.07
+
+
+@pytest.mark.parametrize(("share", "view"), [(0.43, ""), (0.57, "R(x)")])
+def test_a_curve_shows_a_term_where_it_explains_half_of_it(monkeypatch, share, view):
+    monkeypatch.setattr(characteristic_plot, "_explained_share", lambda *_, straight: share if straight else 0.0)
+    term = Term("load", "R", "x**3", "cube", ("x",), {})
+    known = {"R": np.ones(5), "x": np.linspace(0.0, 1.0, 5)}
     assert characteristic_view(term, preset("qian2014"), known) == view
