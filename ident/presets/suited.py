@@ -56,8 +56,8 @@ def suited(runs: Sequence[Described], oil: bool = False) -> tuple[Preset, ...]:
     `oil` is whether parts of a machine with oil are stated (:attr:`ident.matrix.Actuator.states_oil`): without them no
     model of oil is one of an electric drive. What is driven by a channel of its own comes first. A loop is taken for
     one where command and what it compares are lengths or forces alike, or in unknown units but the one where the other
-    is, or a loop gain is stated; else the command opens a valve or drives a motor. Raises Unusable where no model has
-    such inputs and outputs.
+    is, or a loop gain is stated; else the command opens a valve, drives a motor or is a pressure that drives a mass.
+    Raises Unusable where no model has such inputs and outputs.
     """
     without_oil = electric(runs, oil)
     found = [known for known in PRESETS.values() if all(_allows(known, run) for run in runs)]

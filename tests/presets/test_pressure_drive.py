@@ -122,6 +122,7 @@ def test_what_a_pressure_drives_may_have_a_valve_s_effects_but_none_of_a_flow():
     assert not found & flowing
 
 
+@pytest.mark.full
 def test_the_machine_is_told_from_a_valve_by_its_spring():
     """A pressure that pilots a valve moves a cylinder on and on; one that drives a mass on a spring does not."""
     assert choose_structure(CYLINDER.recorded(2)).structures[0].machine == "pressure_drive"
@@ -138,6 +139,6 @@ def test_hidden_friction_and_weight_are_named(full):
     assert force.unit == "Pa"
     assert force.value == pytest.approx(8.0 / CYLINDER.area, rel=0.1)
     with of_few_effects(full, "arm_gravity", "coulomb_friction", "cubic_stiffness"):
-        hanging = replace(ARM, stiffness=1.0, weight=4.0).recorded(3, "rad")
+        hanging = replace(ARM, stiffness=1.0, weight=2.0).recorded(3, "rad")
         found = diagnose(hanging, settings=Settings(model=""), most=1, propose=False)
     assert found.verdict.effects == ("arm_gravity",)
