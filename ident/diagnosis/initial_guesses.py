@@ -12,7 +12,7 @@ from scipy.fft import next_fast_len
 from ident.diagnosis.criteria import CRITERIA
 from ident.diagnosis.fitted_model import FittedModel
 from ident.effects.effect import Effect
-from ident.effects.ringing import resonances
+from ident.effects.ringing import resonance
 from ident.fit.space import Space
 from ident.parameter import AtReversals, Parameter, Starts
 from ident.run import Run
@@ -105,10 +105,10 @@ def _guesses_of(base: FittedModel, parameter: Parameter, space: Space, known: Ma
 def _below_resonance(base: FittedModel) -> list[float]:
     """The frequencies (1/s) of a part of the moving mass with the drive standing: ω √(1 − μ), ω that of the records.
 
-    Of several records the median; none where none rings.
+    None where these do not ring.
     """
-    found, shares = resonances(base.fitness.runs), CRITERIA.initial_guesses.hanging_shares
-    return [float(np.median(found) * np.sqrt(1.0 - share)) for share in shares] if found else []
+    found, shares = resonance(base.fitness.runs), CRITERIA.initial_guesses.hanging_shares
+    return [float(found * np.sqrt(1.0 - share)) for share in shares] if found is not None else []
 
 
 def spectral_lines(base: FittedModel, lower: float, upper: float) -> tuple[float, ...]:

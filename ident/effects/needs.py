@@ -8,7 +8,7 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from ident.effects.ringing import resonances
+from ident.effects.ringing import resonance
 from ident.matrix import Matrix
 
 Need = Callable[[Matrix], bool]
@@ -78,8 +78,8 @@ def one_sided_command(matrix: Matrix) -> bool:
 
 
 def resonant(matrix: Matrix) -> bool:
-    """Whether a run that is fitted answers its command with a damped oscillation."""
-    return bool(resonances(matrix.of_use("fit")))
+    """Whether the runs that are fitted answer their commands with a damped oscillation."""
+    return resonance(matrix.of_use("fit")) is not None
 
 
 def speed_measured(matrix: Matrix) -> bool:

@@ -1,18 +1,18 @@
-"""Whether a record rings: whether its output answers the command with a damped oscillation.
+"""Whether records ring: whether their output answers the command with a damped oscillation.
 
-Of y and u, means over q samples, y_k = Σ a_i y_(k−i) + Σ b_i u_(k−i) of fourth order is fitted by least squares (Ljung
-1999, section 10.1); it rings where a pair of its poles exp(s) has a damping ratio −Re s/|s| below 0.5, at |s|. Noise
-puts pairs near half the sample rate, and the poles of what is sampled too finely on the real axis: so pairs above 1.2
-rad count not, and q is doubled while 100 means are left. Of several pairs the least damped is the machine's.
+Of y and u, means over q samples, y_k = Σ a_i y_(k−i) + Σ b_i u_(k−i) of fourth order is solved by least squares, and
+from there by instrumental variables, which are the past of the model's own output (Ljung 1999, sections 10.1 and 7.6):
+the noise of y would damp and move the poles. A pair of poles exp(s) oscillates where its damping ratio −Re s/|s| is
+between 0 and 1/√2, at |s|. Noise puts pairs near half the sample rate, and the poles of what is sampled too finely on the real
+axis: so pairs above 1.2 rad count not, and q is doubled while 100 means are left.
 
-A position integrates, and by least squares the noise of its samples hides the poles. Its equation is solved by
-instrumental variables, which are the past of the model's own output (Ljung 1999, section 7.6, method of Young), from
-the solution by least squares on.
+What is a machine's shows twice, at one frequency: in two runs, or in two of one run and its two halves. What noise or
+dry friction makes of one run does not. Of several the least damped is the machine's.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from weakref import WeakKeyDictionary
 
 import numpy as np
@@ -22,58 +22,77 @@ from ident.linear_filter import linear_filter
 from ident.run import Run
 
 Array = NDArray[np.float64]
+Mode = tuple[float, float]
+"""Damping ratio and frequency of a pair of poles, rad/s or rad a sample."""
 ORDER = 4
 FEWEST = 100
 """Means that a fit of nine numbers is made of at least. Test: tests/effects/test_ringing.py"""
 FASTEST, SLOWEST = 1.2, 0.05
 """Radians in q samples between which a pair of poles is one of the machine. Test: tests/effects/test_ringing.py"""
-DAMPING = 0.5
-"""Damping ratio below which a step is overshot by a sixth, and one resonance is seen. Test: as above"""
+DAMPING = 0.71
+"""Damping ratio below which the frequency response has a peak, 1/√2. Test: as above"""
 REFINED = 3
 """Times that the instruments are computed again from the latest solution. Test: tests/effects/test_ringing.py"""
-_known: WeakKeyDictionary[Run, float | None] = WeakKeyDictionary()
+ALIKE = 0.07
+"""Relative difference of two frequencies that are one: three standard errors of a mode that twenty periods show.
+Test: tests/effects/test_ringing.py"""
+WHOLE, HALVES = 0, (1, 2)
+_known: WeakKeyDictionary[Run, dict[int, list[Mode]]] = WeakKeyDictionary()
 
 
-def resonances(runs: Iterable[Run]) -> list[float]:
-    """The frequencies, rad/s, at which the runs that have a command answer it with a damped oscillation."""
-    found = ((run.sample_rate, _of_run(run)) for run in runs if "command" in run.channels)
-    return [rate * frequency for rate, frequency in found if frequency is not None]
+def resonance(runs: Iterable[Run]) -> float | None:
+    """The frequency, rad/s, at which the runs that have a command answer it with a damped oscillation, or None."""
+    driven = [run for run in runs if "command" in run.channels]
+    if len(driven) == 1:
+        return shown_twice([_of(driven[0], part) for part in (WHOLE, *HALVES)])
+    return shown_twice([_of(run, WHOLE) for run in driven])
 
 
-def _of_run(run: Run) -> float | None:
-    """The frequency, rad a sample, at which a run rings: worked out once, though several effects ask for it."""
-    if run not in _known:
-        _known[run] = ringing(run.command, run.measured, run.output == "displacement")
-    return _known[run]
+def shown_twice(of: Sequence[Sequence[Mode]]) -> float | None:
+    """The frequency of the least damped of the modes that two of several records show, or None."""
+    found = [
+        (max(one[0], other[0]), float(np.sqrt(one[1] * other[1])))
+        for number, modes in enumerate(of) for one in modes for others in of[:number] for other in others
+        if abs(np.log(one[1] / other[1])) < ALIKE
+    ]  # fmt: skip
+    return min(found)[1] if found else None
 
 
-def ringing(command: Array, output: Array, integrates: bool = False) -> float | None:
-    """The frequency, rad a sample, at which an output (n,) answers its command (n,) with a damped oscillation.
+def _of(run: Run, part: int) -> list[Mode]:
+    """The modes, rad/s, of a run or of one of its halves: worked out once, though several effects ask for them."""
+    known = _known.setdefault(run, {})
+    if part not in known:
+        half = run.length // 2
+        samples = (slice(None), slice(half), slice(half, None))[part]
+        found = modes(run.command[samples], run.measured[samples])
+        known[part] = [(damping, run.sample_rate * frequency) for damping, frequency in found]
+    return known[part]
 
-    `integrates` is whether the output is a position. None where it does at no q.
-    """
-    found: list[tuple[float, float]] = []
+
+def modes(command: Array, output: Array) -> list[Mode]:
+    """The damped oscillations, rad a sample, with which an output (n,) answers its command (n,), at every q."""
+    found: list[Mode] = []
     q = 1
     while len(output) // q >= FEWEST:
         count = len(output) // q * q
         u, y = (signal[:count].reshape(-1, q).mean(axis=1) for signal in (command, output))
-        pairs = _pairs(u - u.mean(), y - y.mean(), integrates)
-        found += [(damping, frequency / q) for damping, frequency in pairs]
+        found += [(damping, frequency / q) for damping, frequency in _pairs(u - u.mean(), y - y.mean())]
         q *= 2
-    return min(found)[1] if found else None
+    return found
 
 
-def _pairs(u: Array, y: Array, integrates: bool) -> list[tuple[float, float]]:
+def _pairs(u: Array, y: Array) -> list[Mode]:
     """Damping ratio and frequency, rad a sample, of each pair of poles with which y answers u."""
     samples = np.column_stack((_regressors(y, u), y[ORDER:]))
     triangle = np.asarray(np.linalg.qr(samples, mode="r"))  # of ten rows, as well conditioned as all samples
     found, *_ = np.linalg.lstsq(triangle[:, :-1], triangle[:, -1], rcond=None)
-    for _ in range(REFINED if integrates else 0):
+    for _ in range(REFINED):
         instruments = _regressors(_answer(found, u), u)
         found, *_ = np.linalg.lstsq(instruments.T @ samples[:, :-1], instruments.T @ samples[:, -1], rcond=None)
     poles = np.log(_poles(found) + 1e-12)
     size = np.abs(poles)
-    within = (poles.imag > 0) & (size > SLOWEST) & (size < FASTEST) & (-poles.real < DAMPING * size)
+    damped = (poles.real < 0) & (-poles.real < DAMPING * size)
+    within = damped & (poles.imag > 0) & (size > SLOWEST) & (size < FASTEST)
     return [(float(-pole.real / abs(pole)), float(abs(pole))) for pole in poles[within]]
 
 
