@@ -18,7 +18,7 @@ from ident.bench.observed import Observed, observe
 from ident.bench.records import Record
 from ident.bench.residual import Residual
 from ident.cached import cached_property
-from ident.diagnosis.cross_validation import fold_of_blocks
+from ident.diagnosis.cross_validation import fold_of_segments
 from ident.diagnosis.evidence.comparison import Evidence, Residuals, compare
 from ident.diagnosis.evidence.energy_bands import EnergyBands
 from ident.diagnosis.evidence.energy_bands import Record as ComparedRecord
@@ -167,7 +167,7 @@ class Refitter:
     def _out_of_fold(self, whole: Residual) -> tuple[Array, ...]:
         """The residuals (n,) of the positions that are compared, by models that were fitted without each fold."""
         products, runs = whole.normal(whole.origin).products, len(self._fine)
-        folds = [fold_of_blocks(number, len(products) // runs, runs) for number in range(runs)]
+        folds = [fold_of_segments(number, len(products) // runs, runs) for number in range(runs)]
         of_block = np.concatenate(folds)
         models = [
             whole.at(whole.origin + _bounded(products[of_block != fold].sum(axis=0)))

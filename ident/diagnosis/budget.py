@@ -58,19 +58,19 @@ class SearchBudget:
         """Whether the caller raised this error to end the work."""
         return any(error is one for one in self._stopped_by)
 
-    def publish(self, found: Diagnosis) -> None:
+    def publish(self, diagnosis: Diagnosis) -> None:
         """Report the diagnosis so far."""
         if self.listener is None:
             return
         try:
-            self.listener(replace(found, seconds=self.seconds_taken))
+            self.listener(replace(diagnosis, seconds=self.seconds_taken))
         except TimeIsUp:
             self.budget.end()
         except BaseException as error:
             self._stopped_by.append(error)
             raise
 
-    def publish_verdict(self, found: Diagnosis) -> None:
+    def publish_verdict(self, diagnosis: Diagnosis) -> None:
         """Report the verdict on the catalogue, which later stages do not change."""
-        self._verdict = found.verdict.text
-        self.publish(found)
+        self._verdict = diagnosis.verdict.text
+        self.publish(diagnosis)

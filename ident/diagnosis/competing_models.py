@@ -18,44 +18,44 @@ from ident.presets import PRESETS, preset
 Values = Mapping[str, ParameterEstimate]
 
 
-def competing_models(found: Diagnosis, custom: Sequence[Effect] = ()) -> Rivals:
+def competing_models(diagnosis: Diagnosis, custom: Sequence[Effect] = ()) -> Rivals:
     """The models of an indistinguishable group, else the selected model; where no effect was named, the best
     candidates.
 
     `custom` are users' effects that the diagnosis does not define. Raises Unusable where it is of a bench, or has too
     few values to put its models together.
     """
-    if found.model in PRESETS and PRESETS[found.model].kind == "bench":
-        raise Unusable("no-experiment", "no run is proposed for the records of a bench", f"model {found.model}",
+    if diagnosis.model in PRESETS and PRESETS[diagnosis.model].kind == "bench":
+        raise Unusable("no-experiment", "no run is proposed for the records of a bench", f"model {diagnosis.model}",
                        "repeat the records on which the effects differ")  # fmt: skip
-    models = tuple(_model(found, values, custom) for values in _chosen(found))
-    floor = found.noise_floor.get("fit") or 0.0
-    suspect_runs = frozenset(suspect.run for suspect in found.verdict.suspects)
-    switches = found.settings.get("preprocessing", {})
+    models = tuple(_model(diagnosis, values, custom) for values in _chosen(diagnosis))
+    floor = diagnosis.noise_floor.get("fit") or 0.0
+    suspect_runs = frozenset(suspect.run for suspect in diagnosis.verdict.suspects)
+    switches = diagnosis.settings.get("preprocessing", {})
     return Rivals(models, floor if 0 < floor < math.inf else NOISE, suspect_runs, switches)
 
 
-def _chosen(found: Diagnosis) -> list[Values]:
+def _chosen(diagnosis: Diagnosis) -> list[Values]:
     """The parameters of each model in question."""
-    refitted = {candidate.effect: candidate.parameters for candidate in found.candidates if candidate.parameters}
-    for group in found.verdict.indistinguishable:
+    refitted = {candidate.effect: candidate.parameters for candidate in diagnosis.candidates if candidate.parameters}
+    for group in diagnosis.verdict.indistinguishable:
         known = [refitted[name] for name in group if name in refitted]
         if len(known) > 1:
             return known[: CRITERIA.conclusion.competing]
-    ladder = [rung.parameters for rung in found.ladder if rung.parameters]
-    settled = bool(found.verdict.effects) or not found.verdict.unexplained
+    ladder = [rung.parameters for rung in diagnosis.ladder if rung.parameters]
+    settled = bool(diagnosis.verdict.effects) or not diagnosis.verdict.unexplained
     if settled and ladder:  # only the accuracy of the parameters is in question
         return ladder[-1:]
     return list(refitted.values())[: CRITERIA.conclusion.competing] or ladder[-1:]
 
 
-def _model(found: Diagnosis, parameters: Values, custom: Sequence[Effect]) -> Model:
+def _model(diagnosis: Diagnosis, parameters: Values, custom: Sequence[Effect]) -> Model:
     """The preset with the effects that the parameters belong to, and their values."""
-    defined = (read_effect(entry, model=found.model) for entry in found.settings.get("custom") or ())
+    defined = (read_effect(entry, model=diagnosis.model) for entry in diagnosis.settings.get("custom") or ())
     own = {effect.name: effect for effect in (*custom, *defined)}
     known = [*(effect.name for effect in CATALOGUE), *own]
     effects = tuple(name for name in known if any(parameter.startswith(f"{name}.") for parameter in parameters))
-    model = preset(found.model, effects, tuple(effect for effect in own.values() if effect.name in effects))
+    model = preset(diagnosis.model, effects, tuple(effect for effect in own.values() if effect.name in effects))
     values = usual_shapes(model.effects)
     values |= {model.parameter(name).in_equations: entry.value for name, entry in parameters.items()}
     missing = [parameter.name for parameter in model.parameters if parameter.in_equations not in values]

@@ -3,7 +3,7 @@
 With four runs or more whole runs are held out in turn; with fewer, stretches of each: eight of a single run, four of
 two or three. The parameters are fitted again without the data of one fold, and the refitted model is simulated there.
 From the optimum of all data one Gauss-Newton step leads to the optimum without a fold, exactly for a linear
-least-squares problem, so that sums of products of each block are all that a fit without a fold takes,
+least-squares problem, so that sums of products of each segment of a record are all that a fit without a fold takes,
 
     δ = −H⁻¹ g  from the other folds
 
@@ -99,7 +99,7 @@ def out_of_fold(
     residual of the run with a number. Where no model without a fold is better on the other folds than the optimum of
     all data, that one stands in for it.
     """
-    folds = [fold_of_blocks(number, len(run.blocks), len(here.runs)) for number, run in enumerate(here.runs)]
+    folds = [fold_of_segments(number, len(run.blocks), len(here.runs)) for number, run in enumerate(here.runs)]
     of_samples = [of[np.arange(n) * len(of) // n] for of, n in zip(folds, lengths, strict=True)]
     found, means = [np.full(length, np.nan) for length in lengths], np.zeros(len(lengths))
 
@@ -163,23 +163,23 @@ def _of_long_steps(
     return found
 
 
-def fold_of_blocks(number: int, blocks: int, runs: int) -> Indices:
-    """The fold of each block of the run with a number, (blocks,): one for all where whole runs are left out.
+def fold_of_segments(number: int, segments: int, runs: int) -> Indices:
+    """The fold of each segment of the run with a number, (segments,): one for all where whole runs are left out.
 
     Whole runs are dealt out at random.
     """
     folds, stretches = CRITERIA.cross_validation.folds, CRITERIA.cross_validation.stretches
     if runs >= CRITERIA.evidence.whole_runs:
         dealt = np.random.default_rng(0).permutation(runs) % folds
-        return np.full(blocks, dealt[number])
+        return np.full(segments, dealt[number])
     count = stretches if runs == 1 else stretches // 2
-    return np.asarray(np.arange(blocks) * min(count, blocks) // blocks, dtype=np.intp)
+    return np.asarray(np.arange(segments) * min(count, segments) // segments, dtype=np.intp)
 
 
 def _projected(run: NormalMatrices, used: Mask) -> Array:
-    """[J, r] products of the used blocks without the nuisance parameters of the record, (p+1, p+1).
+    """[J, r] products of the used segments without the nuisance parameters of the record, (p+1, p+1).
 
-    The record's mean and first state are taken from all of it: a first state shows in its first block alone.
+    The record's mean and first state are taken from all of it: a first state shows in its first segment alone.
     """
     return without(run.remove, run.blocks[used].sum(axis=0))
 

@@ -179,7 +179,7 @@ class Diagnoser:
         return replace(
             diagnosis,
             verdict=replace(verdict, text=" ".join((*sentences, *not_looked_at(missing)))),
-            proposals=terms.found,
+            proposals=terms.proposals,
             looked_at=terms.looked_at,
             terms_left_out=terms.left_out,
             complete=not missing,

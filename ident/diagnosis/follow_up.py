@@ -26,10 +26,10 @@ def error_budget(matrix: Matrix, fit: FitResult) -> Budget | None:
         return None
 
 
-def next_run(matrix: Matrix, found: Diagnosis, custom: Sequence[Effect] = ()) -> NextRun | None:
+def next_run(matrix: Matrix, diagnosis: Diagnosis, custom: Sequence[Effect] = ()) -> NextRun | None:
     """The run that best distinguishes the models in question; None where no run can be proposed."""
     try:
-        proposal = propose(competing_models(found, custom), matrix, found.seed)
+        proposal = propose(competing_models(diagnosis, custom), matrix, diagnosis.seed)
     except Unusable as error:
         if error.code not in ("no-experiment", "bad-diagnosis"):
             raise

@@ -26,64 +26,64 @@ class Named:
     parameters: Mapping[str, ParameterEstimate] = field(default_factory=dict)
 
 
-def named(found: Diagnosis, name: str) -> Named | None:
+def named(diagnosis: Diagnosis, name: str) -> Named | None:
     """The effects that the name of a candidate or of a proposed term adds to the diagnosed fit; None for other names.
 
     With a term come the terms before it, and the effects in addition to which it was found, without the fit's own.
     """
-    terms = found.proposals or ()
+    terms = diagnosis.proposals or ()
     for count, term in enumerate(terms, 1):
         if term.effect["name"] == name:
-            beside = tuple(effect for effect in term.beside if effect not in found.effects)
+            beside = tuple(effect for effect in term.beside if effect not in diagnosis.effects)
             definitions = tuple(dict(one.effect) for one in terms[:count])
             effects = (*beside, *(str(one["name"]) for one in definitions))
-            return Named(effects, (*_own(found, beside), *definitions), term.parameters)
-    for candidate in found.candidates:
+            return Named(effects, (*_own(diagnosis, beside), *definitions), term.parameters)
+    for candidate in diagnosis.candidates:
         if candidate.effect == name:
-            return Named((name,), _own(found, (name,)), candidate.parameters)
+            return Named((name,), _own(diagnosis, (name,)), candidate.parameters)
     return None
 
 
-def of_fit(found: Diagnosis) -> Named:
+def of_fit(diagnosis: Diagnosis) -> Named:
     """The effects that the diagnosed fit had."""
-    return Named(found.effects, _own(found, found.effects))
+    return Named(diagnosis.effects, _own(diagnosis, diagnosis.effects))
 
 
-def names(found: Diagnosis) -> Iterator[str]:
+def names(diagnosis: Diagnosis) -> Iterator[str]:
     """Every name that :func:`named` takes: the candidates, best first, then the proposed terms."""
-    yield from (candidate.effect for candidate in found.candidates)
-    yield from (str(term.effect["name"]) for term in found.proposals or ())
+    yield from (candidate.effect for candidate in diagnosis.candidates)
+    yield from (str(term.effect["name"]) for term in diagnosis.proposals or ())
 
 
 def with_named(
-    settings: Settings, wanted: Sequence[str], custom: Sequence[Definition] = (), found: Diagnosis | None = None,
+    settings: Settings, wanted: Sequence[str], custom: Sequence[Definition] = (), diagnosis: Diagnosis | None = None,
     kept: Kept = dict,
 ) -> Settings:  # fmt: skip
     """The settings of a fit with effects by name, and with all effects that `custom` defines.
 
-    A name is first sought in the catalogue and the definitions, then in the diagnosis `found`, then among the effects
+    A name is first sought in the catalogue and the definitions, then in the `diagnosis`, then among the effects
     that are `kept`, which are read only then. Raises Unusable as :func:`ident.fit.extended.extended`.
     """
     known = {effect.name for effect in CATALOGUE} | {str(one["name"]) for one in (*settings.custom, *custom)}
     effects: list[str] = []
     definitions = list(custom)
     for name in wanted:
-        one = Named((name,)) if name in known else _looked_up(name, known, found, kept)
+        one = Named((name,)) if name in known else _looked_up(name, known, diagnosis, kept)
         effects += one.effects
         definitions += [definition for definition in one.custom if definition not in definitions]
     return extended(settings, effects, definitions)
 
 
-def _looked_up(name: str, known: set[str], found: Diagnosis | None, kept: Kept) -> Named:
+def _looked_up(name: str, known: set[str], diagnosis: Diagnosis | None, kept: Kept) -> Named:
     """The effects of a name that is neither in the catalogue nor defined. Raises Unusable."""
-    if found is not None and (one := named(found, name)) is not None:
+    if diagnosis is not None and (one := named(diagnosis, name)) is not None:
         return one
     own = kept()
     if name in own:
         return Named((name,), (own[name],))
-    raise unknown(name, (*known, *(names(found) if found is not None else ()), *own))
+    raise unknown(name, (*known, *(names(diagnosis) if diagnosis is not None else ()), *own))
 
 
-def _own(found: Diagnosis, effects: Sequence[str]) -> tuple[Definition, ...]:
+def _own(diagnosis: Diagnosis, effects: Sequence[str]) -> tuple[Definition, ...]:
     """The definitions of the users' effects among these, as they were given to the diagnosis."""
-    return tuple(definition for definition in found.settings.get("custom", ()) if definition["name"] in effects)
+    return tuple(definition for definition in diagnosis.settings.get("custom", ()) if definition["name"] in effects)

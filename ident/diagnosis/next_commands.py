@@ -18,19 +18,19 @@ _RUN_NAMED = (*_RUN_FIRST, "next.add_and")
 """Steps that name the proposed run; with any other it is optional."""
 
 
-def next_commands(found: Diagnosis, file: str, matrix: str, seconds: float | None = None) -> tuple[str, ...]:
+def next_commands(diagnosis: Diagnosis, file: str, matrix: str, seconds: float | None = None) -> tuple[str, ...]:
     """The commands of a diagnosis, in the order in which they are needed.
 
     `file` is the file of the diagnosis and `matrix` the folder of its data, both as a shell takes them; `seconds` is
     the time limit of the search, None where it had none.
     """
-    fit, run = next_command(found, file, matrix), next_run_command(found, file, matrix)
-    ordered = (run, fit) if next_step(found).key in _RUN_FIRST else (fit, run)
-    first = (_again(found, matrix, seconds), _compared(found, file, matrix))
+    fit, run = next_command(diagnosis, file, matrix), next_run_command(diagnosis, file, matrix)
+    ordered = (run, fit) if next_step(diagnosis).key in _RUN_FIRST else (fit, run)
+    first = (_again(diagnosis, matrix, seconds), _compared(diagnosis, file, matrix))
     return tuple(filter(None, (*(str(command) for command in first if command), *ordered)))
 
 
-def next_command(found: Diagnosis, file: str = "D.json", matrix: str = "MATRIX") -> str:
+def next_command(diagnosis: Diagnosis, file: str = "D.json", matrix: str = "MATRIX") -> str:
     """The command that makes the recommended fit, in sentences; "" where a diagnosis has nothing to add.
 
     `file` is that of the diagnosis and `matrix` that of its data, both as a shell takes them.
@@ -38,13 +38,13 @@ def next_command(found: Diagnosis, file: str = "D.json", matrix: str = "MATRIX")
     It is also "" where validation data contradict its effects, where a label is to be corrected first, or where an
     earlier version did not write the ends of its refits.
     """
-    if found.verdict.suspects or not (found.proposals or end_of_ladder(found)):
+    if diagnosis.verdict.suspects or not (diagnosis.proposals or end_of_ladder(diagnosis)):
         return ""
-    end = recommended(found)
-    if not end.added or (found.verdict.standing == "contradicted" and not end.custom):
+    end = recommended(diagnosis)
+    if not end.added or (diagnosis.verdict.standing == "contradicted" and not end.custom):
         return ""
     values: dict[str, Any] = {"matrix": matrix, "file": file, "effects": end.added, "error": end.error.get("fit")}
-    groups = [group for group in found.verdict.indistinguishable if not has_two(group, found.verdict.effects)]
+    groups = [group for group in diagnosis.verdict.indistinguishable if not has_two(group, diagnosis.verdict.effects)]
     taken = next((name for name in end.added if any(name in group for group in groups)), None)
     if taken is None:
         command = message("recommended", **values)
@@ -53,23 +53,23 @@ def next_command(found: Diagnosis, file: str = "D.json", matrix: str = "MATRIX")
     return said([command, *([message("recommended.terms")] if end.custom else [])])
 
 
-def next_run_command(found: Diagnosis, file: str = "D.json", matrix: str = "MATRIX") -> str:
+def next_run_command(diagnosis: Diagnosis, file: str = "D.json", matrix: str = "MATRIX") -> str:
     """The command that writes the proposed run, and the purpose of the run; "" where none is proposed, or not yet."""
-    key, verdict = next_step(found).key, found.verdict
-    if found.next_experiment is None or key in _NO_RUN:
+    key, verdict = next_step(diagnosis).key, diagnosis.verdict
+    if diagnosis.next_experiment is None or key in _NO_RUN:
         return ""
     if key == "next.distinguish":
         group = verdict.indistinguishable[0]
         return str(message("recommended.run_distinguishes", matrix=matrix, file=file, group=group))
     if key not in _RUN_NAMED:
         return str(message("recommended.run_optional", matrix=matrix, file=file))
-    several = not verdict.effects and found.next_experiment.separation is not None
+    several = not verdict.effects and diagnosis.next_experiment.separation is not None
     return str(message("recommended.run_differs" if several else "recommended.run", matrix=matrix, file=file))
 
 
-def _again(found: Diagnosis, matrix: str, seconds: float | None) -> Message | None:
+def _again(diagnosis: Diagnosis, matrix: str, seconds: float | None) -> Message | None:
     """The command that searches again, with twice the time or the effects; None where another step is next."""
-    step = next_step(found)
+    step = next_step(diagnosis)
     if step.key == "next.more":
         return message("recommended.more", matrix=matrix, most=step.values["most"])
     if step.key == "next.time" and seconds is not None:
@@ -77,10 +77,10 @@ def _again(found: Diagnosis, matrix: str, seconds: float | None) -> Message | No
     return None
 
 
-def _compared(found: Diagnosis, file: str, matrix: str) -> Message | None:
+def _compared(diagnosis: Diagnosis, file: str, matrix: str) -> Message | None:
     """The commands that compare the fits with and without the effects that validation data contradict."""
-    added = end_of_ladder(found)
-    if next_step(found).key != "next.compare" or found.proposals or not added:
+    added = end_of_ladder(diagnosis)
+    if next_step(diagnosis).key != "next.compare" or diagnosis.proposals or not added:
         return None
-    options = [f"--model {found.model}", *(f"--effect {name}" for name in found.effects)]
+    options = [f"--model {diagnosis.model}", *(f"--effect {name}" for name in diagnosis.effects)]
     return message("recommended.compare", matrix=matrix, file=file, options=options, effects=added)

@@ -53,7 +53,7 @@ def settings_after(
     return settings_of_end(found, end, search)
 
 
-def recommended(found: Diagnosis, terms: int | None = None) -> End:
+def recommended(diagnosis: Diagnosis, terms: int | None = None) -> End:
     """The refit that a diagnosis recommends, with its proposed terms or the first `terms` of them (0: none).
 
     Where no number is given no term is taken that validation data contradict, unless terms behind it correct that, and
@@ -61,14 +61,14 @@ def recommended(found: Diagnosis, terms: int | None = None) -> End:
 
     Raises Unusable where it proposes fewer, or has no refit.
     """
-    proposals = found.proposals or ()
+    proposals = diagnosis.proposals or ()
     if terms is not None and not 0 <= terms <= len(proposals):
         raise Unusable("bad-option", f"{count(terms, 'term')} of {len(proposals)}", "terms",
                        f"give 0 to {len(proposals)}")  # fmt: skip
     taken = _supported(proposals) if terms is None else proposals[:terms]
     if taken:
         return _with_terms(taken)
-    ladder = [end for end in _rungs(found) if not {*end.added} & {*found.verdict.unconfirmed}]
+    ladder = [end for end in _rungs(diagnosis) if not {*end.added} & {*diagnosis.verdict.unconfirmed}]
     if not ladder:
         raise Unusable("bad-diagnosis", "the diagnosis holds no refit", "start",
                        "give what `servoident diagnose --json FILE` wrote")  # fmt: skip
@@ -85,41 +85,41 @@ def _supported(proposals: Sequence[Proposal]) -> Sequence[Proposal]:
     return proposals[: next(against, None)]
 
 
-def end_of_ladder(found: Diagnosis) -> tuple[str, ...]:
+def end_of_ladder(diagnosis: Diagnosis) -> tuple[str, ...]:
     """The effects that the last refit of the ladder has beyond the fitted model; () where there was no refit."""
-    return max((end.added for end in _rungs(found)), key=len, default=())
+    return max((end.added for end in _rungs(diagnosis)), key=len, default=())
 
 
-def end_with(found: Diagnosis, effects: Sequence[str]) -> End | None:
+def end_with(diagnosis: Diagnosis, effects: Sequence[str]) -> End | None:
     """The refit of the model with just these effects and terms added to the fitted one; None where there was none."""
-    wanted = {*found.effects, *effects}
-    return next((end for end in _ends(found) if {*found.effects, *end.added} == wanted), None)
+    wanted = {*diagnosis.effects, *effects}
+    return next((end for end in _ends(diagnosis) if {*diagnosis.effects, *end.added} == wanted), None)
 
 
-def settings_of_end(found: Diagnosis, end: End, search: bool = False) -> Settings:
+def settings_of_end(diagnosis: Diagnosis, end: End, search: bool = False) -> Settings:
     """The settings of the fit that begins at an end of a diagnosis: over the same runs and windows."""
-    before = Settings.from_json(dict(found.settings)) if found.settings else Settings(seed=found.seed)
+    before = Settings.from_json(dict(diagnosis.settings)) if diagnosis.settings else Settings(seed=diagnosis.seed)
     values = {name: one.value for name, one in end.parameters.items()}
     start = Start(
-        "diagnosis", values, found.horizon, found.memory, found.left_out, end.error.get("fit"), found.data_hash,
-        search=search,
+        "diagnosis", values, diagnosis.horizon, diagnosis.memory, diagnosis.left_out, end.error.get("fit"),
+        diagnosis.data_hash, search=search,
     )  # fmt: skip
-    effects, custom = tuple(dict.fromkeys((*found.effects, *end.added))), together(before.custom, end.custom)
-    return replace(before, model=found.model, effects=effects, custom=custom, budget=None, start=start)
+    effects, custom = tuple(dict.fromkeys((*diagnosis.effects, *end.added))), together(before.custom, end.custom)
+    return replace(before, model=diagnosis.model, effects=effects, custom=custom, budget=None, start=start)
 
 
-def _ends(found: Diagnosis) -> Iterator[End]:
+def _ends(diagnosis: Diagnosis) -> Iterator[End]:
     """Every refit of a diagnosis, the refit with all proposed terms first."""
-    proposals = found.proposals or ()
+    proposals = diagnosis.proposals or ()
     yield from (_with_terms(proposals[:terms]) for terms in range(len(proposals), 0, -1))
-    yield from _rungs(found)
-    yield from (End((one.effect,), one.parameters, one.error) for one in found.candidates if one.parameters)
+    yield from _rungs(diagnosis)
+    yield from (End((one.effect,), one.parameters, one.error) for one in diagnosis.candidates if one.parameters)
 
 
-def _rungs(found: Diagnosis) -> Iterator[End]:
+def _rungs(diagnosis: Diagnosis) -> Iterator[End]:
     """The refits of the ladder, the fitted model first."""
     added: tuple[str, ...] = ()
-    for rung in found.ladder:
+    for rung in diagnosis.ladder:
         added = (*added, rung.added) if rung.added else added
         if rung.parameters:
             yield End(added, rung.parameters, rung.error)

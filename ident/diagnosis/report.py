@@ -26,14 +26,16 @@ from ident.time_budget import in_time
 from ident.words.engineering import quantity
 
 
-def report(fit: FitResult, models: CandidateModels, selection: Selection, steps: Rungs, found: Findings) -> Diagnosis:
+def report(
+    fit: FitResult, models: CandidateModels, selection: Selection, steps: Rungs, findings: Findings
+) -> Diagnosis:
     """The diagnosis of a fit by the findings on a selection; `models` are the models of all runs, `steps` the
     ladder."""
     base = selection.base
     unknown: Errors = {**NO_ERRORS, **fit.noise_floor}
     floor = in_time(lambda: selection.models.floors.of_use(selection.models.matrix)) or unknown
     ladder = _ladder(steps, selection.added)
-    verdict = replace(conclude(found), text=_text(selection, steps, found, floor["fit"]))
+    verdict = replace(conclude(findings), text=_text(selection, steps, findings, floor["fit"]))
     return Diagnosis(
         model=fit.model,
         effects=base.effects,
@@ -62,8 +64,8 @@ def report(fit: FitResult, models: CandidateModels, selection: Selection, steps:
         preprocessing=models.matrix.preprocessing,
         settings=_settings(fit, models, selection),
         notes=_held(selection),
-        effect_sets=_effect_sets(found.set_gains, list(models.effects)),
-        most_nats=None if found.set_gains is None else found.set_gains.most,
+        effect_sets=_effect_sets(findings.set_gains, list(models.effects)),
+        most_nats=None if findings.set_gains is None else findings.set_gains.most,
     )
 
 
@@ -93,18 +95,18 @@ def _held(selection: Selection) -> tuple[str, ...]:
     return (f"Held at the usual value, which these data did not ask to change: {', '.join(values)}.",) if values else ()
 
 
-def _text(selection: Selection, steps: Rungs, found: Findings, floor: float | None) -> str:
+def _text(selection: Selection, steps: Rungs, findings: Findings, floor: float | None) -> str:
     """The verdict in sentences."""
-    models, verdict = selection.models, conclude(found)
-    against = tuple(filter(None, map(contradiction, found.verify)))
+    models, verdict = selection.models, conclude(findings)
+    against = tuple(filter(None, map(contradiction, findings.verify)))
     in_band = in_time(lambda: models.floors.in_band)
-    unconfirmed = {change.effect: change for change in found.verify if change.effect in verdict.unconfirmed}
+    unconfirmed = {change.effect: change for change in findings.verify if change.effect in verdict.unconfirmed}
     steps = [step for step in steps if step[0] not in unconfirmed]
     fewer = None if against else better_with_fewer(steps)
     return verdict_text(
-        verdict.effects, verdict.indistinguishable, found.suspects, verdict.unexplained, steps[-1][1].errors,
+        verdict.effects, verdict.indistinguishable, findings.suspects, verdict.unexplained, steps[-1][1].errors,
         selection.base.error, in_band is not False, floor, against, selection.complete, models.described,
-        [name for name in found.at_bound if name not in unconfirmed], fewer,
+        [name for name in findings.at_bound if name not in unconfirmed], fewer,
         steps[-1][1].unstable.get("verify", ()), verdict.probabilities, verdict.group_probabilities, selection.limit,
         [unconfirmed[name] for name in verdict.unconfirmed],
     )  # fmt: skip

@@ -34,28 +34,28 @@ def why(candidate: Candidate, effect: Effect, before: float, floor: float | None
 
 
 def why_of_evidence(
-    found: Evidence, effect: Effect, errors: tuple[float, float], worth_adding: bool, floor: float | None, best: bool
+    evidence: Evidence, effect: Effect, errors: tuple[float, float], worth_adding: bool, floor: float | None, best: bool
 ) -> str:  # fmt: skip
     """The same of an effect that was refitted; `errors` are those on held-out data without it and with it."""
-    return said(list(_reasons(found, effect, errors, worth_adding, floor, best)))
+    return said(list(_reasons(evidence, effect, errors, worth_adding, floor, best)))
 
 
 def _reasons(
-    found: Evidence, effect: Effect, errors: tuple[float, float], worth_adding: bool, floor: float | None, best: bool
+    evidence: Evidence, effect: Effect, errors: tuple[float, float], worth_adding: bool, floor: float | None, best: bool
 ) -> Iterator[Message]:  # fmt: skip
     before, after = errors
-    if matters(found) and generalises(found) and worth_adding and floor is not None:
+    if matters(evidence) and generalises(evidence) and worth_adding and floor is not None:
         yield message("why.change_floor", before=before, after=after, floor=floor)
     else:
         yield message("why.change", before=before, after=after)
-    if not matters(found):
-        share, error = 100 * found.share.mean, 100 * found.share.bound(EVIDENCE_CRITERIA)
+    if not matters(evidence):
+        share, error = 100 * evidence.share.mean, 100 * evidence.share.bound(EVIDENCE_CRITERIA)
         yield message("why.little", share=share, error=error, least=100 * EVIDENCE_CRITERIA.share)
         yield message("why.would_show", looks=effect.looks)
-    elif not generalises(found):
-        yield _loses(losing_part(found))
-    elif not worth_adding and not runs_freely(found):
-        yield _drifts(found)
+    elif not generalises(evidence):
+        yield _loses(losing_part(evidence))
+    elif not worth_adding and not runs_freely(evidence):
+        yield _drifts(evidence)
     elif not worth_adding:
         yield message("why.chance")
         yield message("why.would_show", looks=effect.looks)
@@ -70,21 +70,21 @@ def _loses(part: Hashable) -> Message:
     return message("why.half", part=part) if part in HALVES else message("why.condition")
 
 
-def _drifts(found: Evidence) -> Message:
+def _drifts(evidence: Evidence) -> Message:
     """The message that the free run drifts away with an effect that improves the model over windows."""
-    assert found.free_runs is not None
-    before, after = found.free_runs
+    assert evidence.free_runs is not None
+    before, after = evidence.free_runs
     return message("why.free_run", before=sqrt(before.power), after=sqrt(after.power), expected=sqrt(after.expected))
 
 
-def evidence_figures(found: Evidence | None, effect: Effect, worth_adding: bool) -> dict[str, Any]:
+def evidence_figures(evidence: Evidence | None, effect: Effect, worth_adding: bool) -> dict[str, Any]:
     """The figures behind an effect that was refitted, or only predicted."""
-    if found is None:
+    if evidence is None:
         return {"confirmed": False, "looks": effect.looks}
     return {
-        "confirmed": True, "nats": found.gain, "nats_without_best_run": found.without, "most_nats": found.most,
-        "share": found.share.mean, "share_error": found.share.error if found.share.blocks > 1 else None,
-        "distinct": found.distinct, "beyond_chance": worth_adding, "carries_over": generalises(found),
+        "confirmed": True, "nats": evidence.gain, "nats_without_best_run": evidence.without, "most_nats": evidence.most,
+        "share": evidence.share.mean, "share_error": evidence.share.error if evidence.share.blocks > 1 else None,
+        "distinct": evidence.distinct, "beyond_chance": worth_adding, "carries_over": generalises(evidence),
         "looks": effect.looks, "meaning": effect.meaning,
     }  # fmt: skip
 

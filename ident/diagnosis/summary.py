@@ -18,93 +18,93 @@ _USES = ("verify", "held_out", "fit")
 
 
 @in_brief.register
-def summary(found: Diagnosis) -> tuple[str, ...]:
+def summary(diagnosis: Diagnosis) -> tuple[str, ...]:
     """One or two sentences for each line, from the stored fields alone, so that a diagnosis of any version has them."""
-    return tuple(map(str, summary_messages(found)))
+    return tuple(map(str, summary_messages(diagnosis)))
 
 
-def summary_messages(found: Diagnosis) -> tuple[Message, Message, Message]:
+def summary_messages(diagnosis: Diagnosis) -> tuple[Message, Message, Message]:
     """The three lines as messages."""
-    return _missing(found), _error(found), next_step(found)
+    return _missing(diagnosis), _error(diagnosis), next_step(diagnosis)
 
 
-def _missing(found: Diagnosis) -> Message:
-    verdict = found.verdict
-    if found.lacks_input:
-        return message("summary.missing_input", run=found.missing_inputs[0]["run"])
-    if found.oscillates:
-        return message("summary.oscillation", evidence=found.oscillation[0]["evidence"])
+def _missing(diagnosis: Diagnosis) -> Message:
+    verdict = diagnosis.verdict
+    if diagnosis.lacks_input:
+        return message("summary.missing_input", run=diagnosis.missing_inputs[0]["run"])
+    if diagnosis.oscillates:
+        return message("summary.oscillation", evidence=diagnosis.oscillation[0]["evidence"])
     if verdict.effects:
-        named = [_named(found, name) for name in verdict.effects]
+        named = [_named(diagnosis, name) for name in verdict.effects]
         if verdict.standing == "contradicted":  # a probability knows nothing of validation data
-            return message("summary.contradicted", effects=[_strong(found, name) for name in verdict.effects])
-        return _missing_and_helping(found, named)
+            return message("summary.contradicted", effects=[_strong(diagnosis, name) for name in verdict.effects])
+        return _missing_and_helping(diagnosis, named)
     if verdict.suspects:
         return message("summary.label", run=verdict.suspects[0].run)
-    if not found.complete:
-        return message("summary.stopped" if found.candidates else "summary.unexamined")
+    if not diagnosis.complete:
+        return message("summary.stopped" if diagnosis.candidates else "summary.unexamined")
     if verdict.unexplained:
-        return _probable(found, "unlisted", "summary.unlisted", "summary.unlisted_probable")
-    return _probable(found, "nothing", "summary.nothing", "summary.nothing_probable")
+        return _probable(diagnosis, "unlisted", "summary.unlisted", "summary.unlisted_probable")
+    return _probable(diagnosis, "nothing", "summary.nothing", "summary.nothing_probable")
 
 
-def _missing_and_helping(found: Diagnosis, named: Sequence[Message]) -> Message:
+def _missing_and_helping(diagnosis: Diagnosis, named: Sequence[Message]) -> Message:
     """The missing effects, and the effects that improve the model though they are less probable than not."""
-    of_all = found.verdict.probabilities
-    improbable = [is_improbable(_probability(found, name), of_all) for name in found.verdict.effects]
+    of_all = diagnosis.verdict.probabilities
+    improbable = [is_improbable(_probability(diagnosis, name), of_all) for name in diagnosis.verdict.effects]
     missing = [effect for effect, doubted in zip(named, improbable, strict=True) if not doubted]
     helping = [effect for effect, doubted in zip(named, improbable, strict=True) if doubted]
     if not helping:
-        partly = found.verdict.standing == "stand_in" and found.verdict.unexplained
+        partly = diagnosis.verdict.standing == "stand_in" and diagnosis.verdict.unexplained
         return message("summary.missing_partly" if partly else "summary.missing", effects=missing)
     if not missing:
-        return message("summary.helping_by_chance" if _by_chance(found) else "summary.helping", helping=helping)
+        return message("summary.helping_by_chance" if _by_chance(diagnosis) else "summary.helping", helping=helping)
     return message("summary.missing_and_helping", effects=missing, helping=helping)
 
 
-def _by_chance(found: Diagnosis) -> bool:
+def _by_chance(diagnosis: Diagnosis) -> bool:
     """Whether all named effects are improbable, and most probably nothing is missing."""
-    verdict, of_all = found.verdict, found.verdict.probabilities
-    improbable = all(is_improbable(_probability(found, name), of_all) for name in verdict.effects)
+    verdict, of_all = diagnosis.verdict, diagnosis.verdict.probabilities
+    improbable = all(is_improbable(_probability(diagnosis, name), of_all) for name in verdict.effects)
     return bool(verdict.effects) and improbable and of_all.get("nothing", 0.0) > of_all.get("unlisted", 0.0)
 
 
-def _probability(found: Diagnosis, name: str) -> float | None:
+def _probability(diagnosis: Diagnosis, name: str) -> float | None:
     """The probability of an effect, or of its group; None where it is not known."""
-    verdict = found.verdict
-    group = _group(found, name)
+    verdict = diagnosis.verdict
+    group = _group(diagnosis, name)
     of_group = dict(zip(verdict.indistinguishable, verdict.group_probabilities, strict=False)).get(group)
     return verdict.probabilities.get(name) if of_group is None else of_group
 
 
-def _group(found: Diagnosis, name: str) -> tuple[str, ...]:
+def _group(diagnosis: Diagnosis, name: str) -> tuple[str, ...]:
     """The effects that the data cannot tell apart from one, itself included; none where there are no others."""
-    return next((group for group in found.verdict.indistinguishable if name in group), ())
+    return next((group for group in diagnosis.verdict.indistinguishable if name in group), ())
 
 
-def _probable(found: Diagnosis, what: str, bare: str, with_probability: str) -> Message:
-    probability = found.verdict.probabilities.get(what)
+def _probable(diagnosis: Diagnosis, what: str, bare: str, with_probability: str) -> Message:
+    probability = diagnosis.verdict.probabilities.get(what)
     return message(bare) if probability is None else message(with_probability, probability=probability)
 
 
-def _named(found: Diagnosis, name: str) -> Message:
+def _named(diagnosis: Diagnosis, name: str) -> Message:
     """An effect or its group, with its strength and its probability."""
-    probability = _probability(found, name)
+    probability = _probability(diagnosis, name)
     if probability is None:
-        return _strong(found, name)
-    names = _names(found, name)
-    if len(names) > 1 and not has_two(_group(found, name), found.verdict.effects):
+        return _strong(diagnosis, name)
+    names = _names(diagnosis, name)
+    if len(names) > 1 and not has_two(_group(diagnosis, name), diagnosis.verdict.effects):
         return message("effect.one_of", names=names, probability=probability)
-    strength = _strength(found, name) if len(names) == 1 else None
+    strength = _strength(diagnosis, name) if len(names) == 1 else None
     if strength is None:
         return message("effect.probable", names=names, probability=probability)
     return message("effect.strength_probable", names=names, strength=strength, probability=probability)
 
 
-def _strong(found: Diagnosis, name: str) -> Message:
+def _strong(diagnosis: Diagnosis, name: str) -> Message:
     """An effect or its group, with its strength."""
-    names = _names(found, name)
-    strength = _strength(found, name) if len(names) == 1 else None
+    names = _names(diagnosis, name)
+    strength = _strength(diagnosis, name) if len(names) == 1 else None
     return (
         message("effect", names=names)
         if strength is None
@@ -112,30 +112,30 @@ def _strong(found: Diagnosis, name: str) -> Message:
     )
 
 
-def _names(found: Diagnosis, name: str) -> list[str]:
+def _names(diagnosis: Diagnosis, name: str) -> list[str]:
     """The titles of an effect and of the others of its group that are not named themselves."""
-    others = (other for other in _group(found, name) if other != name and other not in found.verdict.effects)
+    others = (other for other in _group(diagnosis, name) if other != name and other not in diagnosis.verdict.effects)
     return [title(name), *map(title, others)]
 
 
-def _strength(found: Diagnosis, name: str) -> tuple[float, float, str] | None:
+def _strength(diagnosis: Diagnosis, name: str) -> tuple[float, float, str] | None:
     """The strength on the last step, its standard error and unit; None where it is not known."""
-    last = found.confirmed_ladder[-1].parameters if found.ladder else {}
+    last = diagnosis.confirmed_ladder[-1].parameters if diagnosis.ladder else {}
     strength = next((p for parameter, p in last.items() if parameter.startswith(f"{name}.")), None)
     if strength is None or strength.std_error is None:
         return None
     return strength.value, strength.std_error, strength.unit
 
 
-def _error(found: Diagnosis) -> Message:
+def _error(diagnosis: Diagnosis) -> Message:
     """The error on the first use of :data:`_USES` that has one, before and after, and the noise floor."""
-    steps = found.confirmed_ladder or (found.baseline,)
+    steps = diagnosis.confirmed_ladder or (diagnosis.baseline,)
     use = next((use for use in _USES if steps[0].error.get(use) is not None), _USES[-1])
     before, after = (step.error.get(use) for step in (steps[0], steps[-1]))
-    floor = found.noise_floor.get(use) or found.noise_floor.get("fit")
+    floor = diagnosis.noise_floor.get(use) or diagnosis.noise_floor.get("fit")
     if before is None:
         return message("summary.error_unknown")
-    if not found.verdict.effects or len(steps) == 1:
+    if not diagnosis.verdict.effects or len(steps) == 1:
         if floor is None:
             return message("summary.error_floor_unknown", use=use, before=before)
         return message("summary.error", use=use, before=before, floor=floor)
@@ -144,29 +144,29 @@ def _error(found: Diagnosis) -> Message:
     return message("summary.change", use=use, before=before, after=after, floor=floor)
 
 
-def next_step(found: Diagnosis) -> Message:
+def next_step(diagnosis: Diagnosis) -> Message:
     """The next step."""
-    verdict = found.verdict
-    if found.lacks_input:
+    verdict = diagnosis.verdict
+    if diagnosis.lacks_input:
         return message("next.input")
-    if found.oscillates:
-        return message("next.oscillation", runs=[run_name(str(swing["run"])) for swing in found.oscillation])
+    if diagnosis.oscillates:
+        return message("next.oscillation", runs=[run_name(str(swing["run"])) for swing in diagnosis.oscillation])
     if verdict.suspects:
         return _correct(verdict.suspects[0], verdict.effects)
-    if not found.complete:
+    if not diagnosis.complete:
         return message("next.time")
     if verdict.standing == "contradicted":
         return message("next.compare", effect=verdict.contradicted_by[0])
-    if _by_chance(found):
-        return message("next.then", then=_then(found))
-    if verdict.indistinguishable and found.next_experiment is not None:
+    if _by_chance(diagnosis):
+        return message("next.then", then=_then(diagnosis))
+    if verdict.indistinguishable and diagnosis.next_experiment is not None:
         return message("next.distinguish", group=verdict.indistinguishable[0])
-    if verdict.unexplained and found.max_effects and len(verdict.effects) >= found.max_effects:
-        return message("next.more", most=2 * found.max_effects)
+    if verdict.unexplained and diagnosis.max_effects and len(verdict.effects) >= diagnosis.max_effects:
+        return message("next.more", most=2 * diagnosis.max_effects)
     if verdict.unexplained and verdict.effects:
-        return message("next.add_and", effects=verdict.effects, then=_then(found))
+        return message("next.add_and", effects=verdict.effects, then=_then(diagnosis))
     if verdict.unexplained:
-        return message("next.then", then=_then(found))
+        return message("next.then", then=_then(diagnosis))
     return message("next.add", effects=verdict.effects) if verdict.effects else message("next.use")
 
 
@@ -183,8 +183,8 @@ def _correct(suspect: Suspect, effects: Sequence[str]) -> Message:
     return message("next.label_value", **values)
 
 
-def _then(found: Diagnosis) -> list[Message]:
+def _then(diagnosis: Diagnosis) -> list[Message]:
     """The ways to find further effects: the proposed terms and the next run, else the search that was not made."""
-    terms = [message("then.terms")] if found.proposals else []
-    run = [message("then.run")] if found.next_experiment is not None else []
+    terms = [message("then.terms")] if diagnosis.proposals else []
+    run = [message("then.run")] if diagnosis.next_experiment is not None else []
     return [*terms, *run] or [message("then.search")]

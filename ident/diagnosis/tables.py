@@ -20,49 +20,49 @@ Row = tuple[str, ...]
 
 
 @listings.register
-def diagnosis_listings(found: Diagnosis) -> Iterator[Listing | str]:
+def diagnosis_listings(diagnosis: Diagnosis) -> Iterator[Listing | str]:
     """Errors, ranking, ladder, suspects, proposals; sentences between and below them."""
     uses = tuple(DATA.values())
-    yield found.headline
-    if any(value is not None for value in (*found.baseline.error.values(), *found.noise_floor.values())):
-        yield Listing("", (_measure(found), *uses), error_rows(found), uses)
-    if ranked := [*ranking_rows(found)]:
+    yield diagnosis.headline
+    if any(value is not None for value in (*diagnosis.baseline.error.values(), *diagnosis.noise_floor.values())):
+        yield Listing("", (_measure(diagnosis), *uses), error_rows(diagnosis), uses)
+    if ranked := [*ranking_rows(diagnosis)]:
         header = ("effect", "probability", "predicted", "held-out", "validation", "strength", "group")
         yield Listing("", header, ranked, header[1:5])
-    if rest := unconfirmed(found):
+    if rest := unconfirmed(diagnosis):
         yield rest
     steps = ("added", *uses, "floor", "evidence (nats)")
-    if found.ladder:
-        yield Listing("", steps, ladder_rows(found), steps[1:])
-    if len(found.ladder) > 1:
+    if diagnosis.ladder:
+        yield Listing("", steps, ladder_rows(diagnosis), steps[1:])
+    if len(diagnosis.ladder) > 1:
         yield "evidence: nats by which the step made the held-out data more likely"
-    if found.verdict.suspects:
-        rows = [(suspect.run, suspect.what, suspect.evidence) for suspect in found.verdict.suspects]
+    if diagnosis.verdict.suspects:
+        rows = [(suspect.run, suspect.what, suspect.evidence) for suspect in diagnosis.verdict.suspects]
         yield Listing("", ("suspect run", "label", "evidence"), rows)
-    if found.proposals:
-        yield proposals_listing(found)
+    if diagnosis.proposals:
+        yield proposals_listing(diagnosis)
         yield "each on top of those before"
-    for note in found.notes:
+    for note in diagnosis.notes:
         yield f"note: {note}"
-    for said in told(found.preprocessing, found.notes):
+    for said in told(diagnosis.preprocessing, diagnosis.notes):
         yield f"preprocessing: {said}"
-    yield found.verdict.text
-    yield "\n".join(summary(found))
+    yield diagnosis.verdict.text
+    yield "\n".join(summary(diagnosis))
 
 
-def proposals_listing(found: Diagnosis) -> Listing:
+def proposals_listing(diagnosis: Diagnosis) -> Listing:
     """The table of the proposed terms."""
     numbers = (*DATA.values(), "nats (bar)")
     header = ("terms", "proposed by search", "what it would mean", "strength", *numbers, "or")
-    return Listing("", header, proposal_rows(found), ("terms", *numbers))
+    return Listing("", header, proposal_rows(diagnosis), ("terms", *numbers))
 
 
-def proposal_rows(found: Diagnosis) -> Iterator[Row]:
+def proposal_rows(diagnosis: Diagnosis) -> Iterator[Row]:
     """The error against the number of terms: none, then one row a term, each on top of the ones before."""
-    without, *rest = term_count_curve(found.proposals or (), found.ladder)
+    without, *rest = term_count_curve(diagnosis.proposals or (), diagnosis.ladder)
     errors = [error_said(without.error.get(use)) for use in DATA]
     yield "0", f"(with {without.latest})" if without.latest else "(the fitted model)", "–", "–", *errors, "–", ""
-    for choice, one in zip(rest, found.proposals or (), strict=True):
+    for choice, one in zip(rest, diagnosis.proposals or (), strict=True):
         errors = [one.error_of(use).said() for use in DATA]
         meant = str(message("term.hypothesis", meaning=one.meaning)) if one.hypothesis else one.meaning
         evidence = f"{one.nats:.3g} ({one.bar:.3g})"
@@ -70,19 +70,19 @@ def proposal_rows(found: Diagnosis) -> Iterator[Row]:
         yield str(choice.terms), one.equation, meant or "–", strength_is, *errors, evidence, ", ".join(one.alike[:3])
 
 
-def _measure(found: Diagnosis) -> str:
-    return "error (eq. 17)" if found.horizon is None else f"error over {found.horizon:.3g} s"
+def _measure(diagnosis: Diagnosis) -> str:
+    return "error (eq. 17)" if diagnosis.horizon is None else f"error over {diagnosis.horizon:.3g} s"
 
 
-def error_rows(found: Diagnosis) -> Iterator[Row]:
+def error_rows(diagnosis: Diagnosis) -> Iterator[Row]:
     """The model's error and the noise floor by use, in per cent."""
-    yield "model", *(found.baseline.error_of(use).said() for use in DATA)
-    yield "noise floor", *(percent(found.noise_floor.get(use)) for use in DATA)
+    yield "model", *(diagnosis.baseline.error_of(use).said() for use in DATA)
+    yield "noise floor", *(percent(diagnosis.noise_floor.get(use)) for use in DATA)
 
 
-def ranking_rows(found: Diagnosis) -> Iterator[Row]:
+def ranking_rows(diagnosis: Diagnosis) -> Iterator[Row]:
     """One row an effect that was refitted, best first."""
-    for ranked in found.candidates:
+    for ranked in diagnosis.candidates:
         if not ranked.parameters:
             continue
         errors = (error_said(ranked.predicted_error), *(ranked.error_of(use).said() for use in ("held_out", "verify")))
@@ -96,9 +96,9 @@ def ranking_rows(found: Diagnosis) -> Iterator[Row]:
         )
 
 
-def unconfirmed(found: Diagnosis) -> str:
+def unconfirmed(diagnosis: Diagnosis) -> str:
     """The effects whose prediction was too small for a refit, in a line."""
-    rest = [ranked for ranked in found.candidates if not ranked.parameters]
+    rest = [ranked for ranked in diagnosis.candidates if not ranked.parameters]
     if not rest:
         return ""
     best = min((ranked.predicted_error for ranked in rest if ranked.predicted_error is not None), default=None)
@@ -116,9 +116,9 @@ def _searched(value: float, std_error: float | None, unit: str) -> str:
     return UNDETERMINED if std_error is None else plus_minus(value, std_error, unit)
 
 
-def ladder_rows(found: Diagnosis) -> Iterator[Row]:
+def ladder_rows(diagnosis: Diagnosis) -> Iterator[Row]:
     """One row for each step: the added effect, the errors after it, the floor below them, the evidence for it."""
-    floor = percent(found.noise_floor.get("fit"))
-    for rung in found.ladder:
+    floor = percent(diagnosis.noise_floor.get("fit"))
+    for rung in diagnosis.ladder:
         evidence = "–" if rung.nats is None else f"{rung.nats:.3g}"
         yield rung.added or "(the fitted model)", *(rung.error_of(use).said() for use in DATA), floor, evidence

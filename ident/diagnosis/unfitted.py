@@ -43,26 +43,26 @@ def unsearched(matrix: Matrix, fit: FitResult, missing: Sequence[MissingInput], 
     )
 
 
-def with_missing_inputs(found: Diagnosis, missing: Sequence[MissingInput]) -> Diagnosis:
+def with_missing_inputs(diagnosis: Diagnosis, missing: Sequence[MissingInput]) -> Diagnosis:
     """The diagnosis with the inputs that validation data miss as its first sentence; unchanged where they miss none."""
     if not missing:
-        return found
+        return diagnosis
     said = message("verdict.missing_input_validation", evidence=missing[0].evidence)
-    verdict = replace(found.verdict, text=f"{said} {found.verdict.text}")
-    return replace(found, verdict=verdict, missing_inputs=tuple(stretch.to_json() for stretch in missing))
+    verdict = replace(diagnosis.verdict, text=f"{said} {diagnosis.verdict.text}")
+    return replace(diagnosis, verdict=verdict, missing_inputs=tuple(stretch.to_json() for stretch in missing))
 
 
-def with_oscillations(found: Diagnosis, swings: Sequence[SelfOscillation]) -> Diagnosis:
+def with_oscillations(diagnosis: Diagnosis, swings: Sequence[SelfOscillation]) -> Diagnosis:
     """The diagnosis with the self-oscillations of the machine as its first sentence; unchanged where there are none."""
     if not swings:
-        return found
+        return diagnosis
     first, *others = swings
     said = message("verdict.oscillation", evidence=first.evidence, cause=first.cause)
     if others:
         names = [run_name(swing.run) for swing in others]
         said = message("verdict.oscillation_of_several", evidence=first.evidence, others=names, cause=first.cause)
-    verdict = replace(found.verdict, text=f"{said} {found.verdict.text}")
-    return replace(found, verdict=verdict, oscillation=tuple(swing.to_json() for swing in swings))
+    verdict = replace(diagnosis.verdict, text=f"{said} {diagnosis.verdict.text}")
+    return replace(diagnosis, verdict=verdict, oscillation=tuple(swing.to_json() for swing in swings))
 
 
 def _of_fit(matrix: Matrix, fit: FitResult, why: Message, seconds: float) -> Diagnosis:

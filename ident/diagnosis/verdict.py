@@ -113,39 +113,39 @@ def contradiction(change: VerifyChange | None) -> Contradiction | None:
     return None if change is None or not contradicts(change) else change.contradiction()
 
 
-def conclude(found: Findings, criteria: Criteria = CRITERIA) -> Verdict:
+def conclude(findings: Findings, criteria: Criteria = CRITERIA) -> Verdict:
     """The verdict that follows from the findings; its sentences are the report's."""
-    unconfirmed = _unconfirmed(found, criteria)
-    named = tuple(name for name in found.added if name not in (*found.dispensable, *unconfirmed))
-    contradicted = tuple(change.effect for change in found.verify if contradicts(change, criteria))
-    against = tuple(name for name in contradicted if name not in found.dispensable)
-    groups = _groups(found, unconfirmed)
-    of_sets = None if found.set_gains is None else probabilities(found.set_gains, criteria.evidence)
+    unconfirmed = _unconfirmed(findings, criteria)
+    named = tuple(name for name in findings.added if name not in (*findings.dispensable, *unconfirmed))
+    contradicted = tuple(change.effect for change in findings.verify if contradicts(change, criteria))
+    against = tuple(name for name in contradicted if name not in findings.dispensable)
+    groups = _groups(findings, unconfirmed)
+    of_sets = None if findings.set_gains is None else probabilities(findings.set_gains, criteria.evidence)
     return Verdict(
         effects=named,
-        standing=_standing(found, named, against, bool(contradicted), criteria),
+        standing=_standing(findings, named, against, bool(contradicted), criteria),
         contradicted_by=against,
         indistinguishable=groups,
-        suspects=tuple(found.suspects),
-        unexplained=_unexplained(found, criteria),
-        noise_test=None if found.residual is None else noise_test(found.residual, criteria),
-        at_bound=found.at_bound,
-        elsewhere=tuple(found.elsewhere),
-        stood_in=found.dispensable,
+        suspects=tuple(findings.suspects),
+        unexplained=_unexplained(findings, criteria),
+        noise_test=None if findings.residual is None else noise_test(findings.residual, criteria),
+        at_bound=findings.at_bound,
+        elsewhere=tuple(findings.elsewhere),
+        stood_in=findings.dispensable,
         unconfirmed=unconfirmed,
-        probability=None if of_sets is None else _probability(found, of_sets, named, groups, criteria),
+        probability=None if of_sets is None else _probability(findings, of_sets, named, groups, criteria),
         probabilities={} if of_sets is None else of_sets.named,
         group_probabilities=() if of_sets is None else tuple(_of_group(group, of_sets, named) for group in groups),
     )
 
 
 def _probability(
-    found: Findings, of_sets: Probabilities, named: Names, groups: Sequence[Names], criteria: Criteria
+    findings: Findings, of_sets: Probabilities, named: Names, groups: Sequence[Names], criteria: Criteria
 ) -> float:
     """The probability that every named effect, or one of its group, acts; without a name, of the verdict."""
     if named:
         return of_sets.of(next((group for group in groups if name in group), (name,)) for name in named)
-    return of_sets.with_unlisted[NOTHING] if _unexplained(found, criteria) else of_sets.nothing
+    return of_sets.with_unlisted[NOTHING] if _unexplained(findings, criteria) else of_sets.nothing
 
 
 def _of_group(group: Names, of_sets: Probabilities, named: Names) -> float:
@@ -153,37 +153,40 @@ def _of_group(group: Names, of_sets: Probabilities, named: Names) -> float:
     return of_sets.of([group] * max(len({*group} & {*named}), 1))
 
 
-def _unexplained(found: Findings, criteria: Criteria) -> bool:
+def _unexplained(findings: Findings, criteria: Criteria) -> bool:
     """Whether the residual is not known to be noise; it is not known where there was no time for the test."""
-    return found.residual is None or not is_noise(found.residual, criteria)
+    return findings.residual is None or not is_noise(findings.residual, criteria)
 
 
 def _standing(
-    found: Findings, named: Names, against: Names, was_contradicted: bool, criteria: Criteria
+    findings: Findings, named: Names, against: Names, was_contradicted: bool, criteria: Criteria
 ) -> Standing:  # fmt: skip
     """How the named effects stand; they are a stand-in where only a dispensable effect was contradicted."""
-    floor_known = found.residual is not None and found.residual.floor is not None
+    floor_known = findings.residual is not None and findings.residual.floor is not None
     if not named:
         return "nothing"
     if against:
         return "contradicted"
-    if was_contradicted or _unexplained(found, criteria) or ({*found.at_bound} & {*named} and not floor_known):
+    if was_contradicted or _unexplained(findings, criteria) or ({*findings.at_bound} & {*named} and not floor_known):
         return "stand_in"
     return "found"
 
 
-def _unconfirmed(found: Findings, criteria: Criteria) -> Names:
+def _unconfirmed(findings: Findings, criteria: Criteria) -> Names:
     """The effects at the end of the selection of which validation data show nothing.
 
     An effect that was added earlier may show only together with later ones, so it stays.
     """
-    nothing = {change.effect for change in found.verify if shows_nothing(change, criteria)}
-    asked = [name for name in found.added if name not in found.dispensable]
+    nothing = {change.effect for change in findings.verify if shows_nothing(change, criteria)}
+    asked = [name for name in findings.added if name not in findings.dispensable]
     return tuple(reversed([*takewhile(nothing.__contains__, reversed(asked))]))
 
 
-def _groups(found: Findings, unconfirmed: Names) -> tuple[Names, ...]:
+def _groups(findings: Findings, unconfirmed: Names) -> tuple[Names, ...]:
     """Groups of effects that the data cannot tell apart, each with a named effect; the lags of a pair are one group."""
-    alone = (group for group in found.alternatives if len(group) > 1)
-    groups = (*(group for group in alone if not any({*group} <= {*pair} for pair in found.lag_pairs)), *found.lag_pairs)
-    return tuple(group for group in groups if not {*group} & {*found.added} & {*found.dispensable, *unconfirmed})
+    alone = (group for group in findings.alternatives if len(group) > 1)
+    groups = (
+        *(group for group in alone if not any({*group} <= {*pair} for pair in findings.lag_pairs)),
+        *findings.lag_pairs,
+    )
+    return tuple(group for group in groups if not {*group} & {*findings.added} & {*findings.dispensable, *unconfirmed})

@@ -3,8 +3,8 @@
 Of y and u, means over q samples, y_k = Σ a_i y_(k−i) + Σ b_i u_(k−i) of fourth order is solved by least squares, and
 from there by instrumental variables, which are the past of the model's own output (Ljung 1999, sections 10.1 and 7.6):
 the noise of y would damp and move the poles. A pair of poles exp(s) oscillates where its damping ratio −Re s/|s| is
-between 0 and 1/√2, at |s|. Noise puts pairs near half the sample rate, and the poles of what is sampled too finely on the real
-axis: so pairs above 1.2 rad count not, and q is doubled while 100 means are left.
+between 0 and 1/√2, at |s|. Noise puts pairs near half the sample rate, and the poles of what is sampled too finely on
+the real axis: so pairs above 1.2 rad count not, and q is doubled while 100 means are left.
 
 What is a machine's shows twice, at one frequency: in two runs, or in two of one run and its two halves. What noise or
 dry friction makes of one run does not. Of several the least damped is the machine's.

@@ -26,7 +26,7 @@ FURTHER = 10.0
 ROUNDS = 3
 """Times that a range is widened at most: a thousandfold. Why: beyond it the parameter is not seen, and at its bound."""
 EPSILON = 1e-12
-"""Of a range: so far rounding may move a value at its bound."""
+"""Of a range: so far rounding may move a value at its bound. Test: tests/fit/test_wider_bounds.py"""
 WIDENED = ("kg", "s")
 """Units of what is searched beyond its bound: masses, lags and delays. A ratio at its bound says what it is."""
 

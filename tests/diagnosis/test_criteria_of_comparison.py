@@ -12,7 +12,7 @@ from ident.diagnosis import candidate, prediction_horizon
 from ident.diagnosis.candidate import Candidate, _ties
 from ident.diagnosis.compared_records import _condition
 from ident.diagnosis.competing_models import _chosen
-from ident.diagnosis.cross_validation import _of_long_steps, _of_short_steps, fold_of_blocks
+from ident.diagnosis.cross_validation import _of_long_steps, _of_short_steps, fold_of_segments
 from ident.diagnosis.discovery import discover
 from ident.diagnosis.prediction_horizon import longer_horizon
 from ident.diagnosis.report import better_with_fewer
@@ -59,9 +59,9 @@ def test_the_next_run_is_to_distinguish_three_models():
 
 
 def test_a_single_run_has_eight_stretches_and_many_runs_four_folds():
-    assert 1 + max(fold_of_blocks(0, 32, 1)) == 8
-    assert 1 + max(fold_of_blocks(0, 32, 3)) == 4
-    assert 1 + max(max(fold_of_blocks(number, 32, 12)) for number in range(12)) == 4
+    assert 1 + max(fold_of_segments(0, 32, 1)) == 8
+    assert 1 + max(fold_of_segments(0, 32, 3)) == 4
+    assert 1 + max(max(fold_of_segments(number, 32, 12)) for number in range(12)) == 4
 
 
 @pytest.mark.parametrize(("step", "short"), [(0.0085, True), (0.0115, False)])
@@ -143,7 +143,7 @@ def test_two_runs_differ_by_a_third_and_beyond_a_chance_of_one_in_a_thousand(rat
 def test_terms_alone_come_first_up_to_an_error_five_per_cent_larger(monkeypatch, error, alone):
     """Than that of terms in addition to an effect; without terms it leaves more."""
     named: Any = SimpleNamespace(
-        complete=True, found=(), instead=lambda *_: named, error_with_terms=lambda *_: error,
+        complete=True, proposals=(), instead=lambda *_: named, error_with_terms=lambda *_: error,
     )  # fmt: skip
     further: Any = SimpleNamespace(complete=True, error_with_terms=lambda *_: 1.0, or_rejected=lambda _: further)
     monkeypatch.setattr(discover, "_search", lambda *_: further)

@@ -10,11 +10,13 @@ import numpy as np
 import pytest
 import scipy.stats
 
-from ident.diagnosis.candidate_models import CandidateModels, _is_beyond
+from ident.diagnosis.candidate_models import CandidateModels
 from ident.diagnosis.criteria import CRITERIA
+from ident.diagnosis.discovery.auxiliary_channels import _varies
 from ident.diagnosis.undetermined import _with_fewer_steps
 from ident.diagnosis.verdict import Residual, is_noise
 from ident.fit.levenberg_marquardt import levenberg_marquardt
+from ident.run import Run
 from ident.simulation.steps import MOST
 
 BOUNDS = (0.0, 100.0)
@@ -116,9 +118,10 @@ def test_a_refit_is_continued_five_times_at_most():
     assert CandidateModels.converged(models, refit((), 0)).values == 6
 
 
-@pytest.mark.parametrize(("over", "beyond"), [(0.8e-12, False), (1.2e-12, True)])
-def test_a_value_is_beyond_its_bounds_but_for_rounding(over, beyond):
-    assert _is_beyond(over, -1.0, 0.0) is beyond
+@pytest.mark.parametrize(("deviation", "varies"), [(0.8e-12, False), (1.2e-12, True)])
+def test_a_channel_varies_where_it_does_by_more_than_rounding(deviation, varies):
+    load = 1.0 + deviation * np.tile([-1.0, 1.0], 500)
+    assert _varies("load_pressure", (Run("r", "", 100.0, {"load_pressure": load}),)) is varies
 
 
 @pytest.mark.parametrize(

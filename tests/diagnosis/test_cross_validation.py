@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from ident.diagnosis.cross_validation import OutOfFold, bounded_step, fold_of_blocks, out_of_fold
+from ident.diagnosis.cross_validation import OutOfFold, bounded_step, fold_of_segments, out_of_fold
 from ident.fit.fitness import Local, local
 from ident.fit.normal_matrices import NormalMatrices, normal_matrices_of
 from ident.noise.effective_sample_size import independent_samples
@@ -72,7 +72,7 @@ def test_residuals_out_of_fold_are_those_of_fits_without_each_fold(rng, count):
     point, here = fitted(data)
     found = out_of_fold(point, here, left_of(data), less_mean, [N] * count)
     weights = np.array([1 / np.sqrt(run.gram[-1, -1] * run.total) for run in here.runs])
-    folds = [np.repeat(fold_of_blocks(i, BLOCKS, count), N // BLOCKS) for i in range(count)]
+    folds = [np.repeat(fold_of_segments(i, BLOCKS, count), N // BLOCKS) for i in range(count)]
     for fold in range(max(of.max() for of in folds) + 1):
         A, b = np.zeros((2, 2)), np.zeros(2)
         for (run, J), weight, of in zip(data, weights, folds, strict=True):
@@ -88,10 +88,10 @@ def test_residuals_out_of_fold_are_those_of_fits_without_each_fold(rng, count):
 
 def test_of_four_runs_whole_ones_are_left_out_of_fewer_stretches():
     """Four folds of runs, eight stretches of a single one, four of each of two or three."""
-    assert {int(of) for number in range(4) for of in fold_of_blocks(number, 32, 4)} == {0, 1, 2, 3}
-    assert all(len(set(fold_of_blocks(number, 32, 4).tolist())) == 1 for number in range(4))
-    assert fold_of_blocks(0, 32, 1).tolist() == np.repeat(np.arange(8), 4).tolist()
-    assert fold_of_blocks(2, 32, 3).tolist() == np.repeat(np.arange(4), 8).tolist()
+    assert {int(of) for number in range(4) for of in fold_of_segments(number, 32, 4)} == {0, 1, 2, 3}
+    assert all(len(set(fold_of_segments(number, 32, 4).tolist())) == 1 for number in range(4))
+    assert fold_of_segments(0, 32, 1).tolist() == np.repeat(np.arange(8), 4).tolist()
+    assert fold_of_segments(2, 32, 3).tolist() == np.repeat(np.arange(4), 8).tolist()
 
 
 def test_the_errors_are_those_of_the_residuals_with_offsets_beside_the_zero(rng):

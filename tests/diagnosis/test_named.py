@@ -40,7 +40,7 @@ FIT = Settings(effects=("sensor_lag",))
 )
 def test_each_name_is_added_with_what_it_stands_on(name, effects, defined):
     """Of the effects beside which a term was found those are added that the fit has not."""
-    settings = with_named(FIT, (name,), found=FOUND)
+    settings = with_named(FIT, (name,), diagnosis=FOUND)
     assert settings.effects == ("sensor_lag", *effects)
     assert tuple(one["name"] for one in settings.custom) == defined
 
@@ -68,7 +68,7 @@ def test_what_is_kept_is_asked_for_only_where_a_name_is_not_known_otherwise():
 def test_a_misspelt_name_is_answered_with_the_nearest(misspelt, meant):
     """Of the catalogue, of a definition, of the diagnosis, of what is kept."""
     with pytest.raises(Unusable, match=f"did you mean {meant}\\?"):
-        with_named(FIT, (misspelt,), found=FOUND, kept=lambda: {"kept_bend": OWN})
+        with_named(FIT, (misspelt,), diagnosis=FOUND, kept=lambda: {"kept_bend": OWN})
 
 
 def test_what_the_fit_has_is_not_added_again():

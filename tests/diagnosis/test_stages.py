@@ -132,7 +132,7 @@ def test_a_defect_is_kept_in_the_error_log_of_the_command_line(tmp_path, monkeyp
 def test_terms_of_the_first_search_stay_where_there_is_no_time_for_the_second(monkeypatch, second):
     """And the search is not called complete."""
     term = SimpleNamespace(error={"fit": 0.1, "held_out": 0.1})
-    searches = iter([DiscoveryResult(found=(term,)), DiscoveryResult(complete=False)])
+    searches = iter([DiscoveryResult(proposals=(term,)), DiscoveryResult(complete=False)])
 
     def search(*_given):
         try:
@@ -148,7 +148,7 @@ def test_terms_of_the_first_search_stay_where_there_is_no_time_for_the_second(mo
     selection.models = SimpleNamespace(matrix=SimpleNamespace(of_use=lambda _: ()), is_noise=lambda _: False)
     budget = SimpleNamespace(propose=True, report_progress=None)
     found = discover.terms_of(selection.models, selection, budget)
-    assert found.found == (term,)
+    assert found.proposals == (term,)
     assert not found.complete
 
 

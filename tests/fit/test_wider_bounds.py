@@ -10,6 +10,7 @@ import pytest
 import scipy.signal
 
 from ident import from_arrays, identify
+from ident.fit import wider_bounds
 from ident.fit.result import FitResult
 from ident.fit.settings import Settings
 from ident.fit.start import Start
@@ -84,3 +85,8 @@ def test_a_fit_begins_where_a_diagnosis_ended_though_that_was_beyond_a_usual_bou
     bounds = {"flow_saturation.inverse_opening": (0.0, 5.0)}
     bounded = identify(saturated(50.0), settings=replace(settings, bounds=bounds))
     assert bounded.parameters["flow_saturation.inverse_opening"].value <= 5.0
+
+
+@pytest.mark.parametrize(("over", "beyond"), [(0.7e-12, False), (1.3e-12, True)])
+def test_a_value_is_beyond_its_bounds_but_for_rounding(over, beyond):
+    assert wider_bounds._is_beyond(over, -1.0, 0.0) is beyond

@@ -73,5 +73,5 @@ def _search(selection: Selection, refit: FittedModel, budget: SearchBudget) -> D
 def _is_a_selected_effect(alone: DiscoveryResult, selection: Selection) -> bool:
     """Whether the first term has the error of a selected effect alone: it is that effect, in other words."""
     named = (c.refit.error for c in selection.ranking if c.refit is not None and c.effect in selection.added)
-    first = alone.found[0].error["fit"] if alone.found else None
+    first = alone.proposals[0].error["fit"] if alone.proposals else None
     return first is not None and any(abs(first - error) <= CRITERIA.equality.tie * error for error in named)

@@ -46,7 +46,7 @@ class DiscoveryResult:
     is not finite. `complete` is false where the time was over.
     """
 
-    found: tuple[Proposal, ...] = ()
+    proposals: tuple[Proposal, ...] = ()
     refit: FittedModel | None = None
     rejected: RejectedTerm | None = None
     looked_at: int = 0
@@ -59,7 +59,7 @@ class DiscoveryResult:
 
         The log-likelihood gains of the two are not comparable, because they count from different models.
         """
-        if self.found or other.rejected is None:
+        if self.proposals or other.rejected is None:
             return self
         refused = (one.rejected for one in (self, other) if one.rejected is not None)
         best = min(refused, key=lambda one: one.error["fit"] or 0.0)
@@ -81,7 +81,7 @@ class DiscoveryResult:
     def error_with_terms(self, before: float, what: str = "fit") -> float:
         """The error with all proposed terms on the estimation data, or "held_out"; `before` where there are no
         terms."""
-        error = self.found[-1].error.get(what) if self.found else None
+        error = self.proposals[-1].error.get(what) if self.proposals else None
         return before if error is None else error
 
     def dispensable(self, named: Sequence[str]) -> tuple[str, ...]:
@@ -89,8 +89,8 @@ class DiscoveryResult:
 
         There are none where the terms are a hypothesis, or replace all effects, or validation data contradict them.
         """
-        last = self.found[-1] if self.found else None
-        doubted = any(one.hypothesis or one.contradicted for one in self.found)
+        last = self.proposals[-1] if self.proposals else None
+        doubted = any(one.hypothesis or one.contradicted for one in self.proposals)
         if last is None or doubted or last.instead_of:
             return ()
         return tuple(name for name in named if name not in last.beside)
@@ -98,11 +98,11 @@ class DiscoveryResult:
     def instead(self, other: FittedModel, named: Sequence[str]) -> DiscoveryResult:
         """The terms in place of the `named` effects, and contradicted where validation data prefer the `other`
         model."""
-        if not self.found or self.refit is None:
+        if not self.proposals or self.refit is None:
             return self
-        *terms, last = (replace(one, instead_of=tuple(named)) for one in self.found)
+        *terms, last = (replace(one, instead_of=tuple(named)) for one in self.proposals)
         name = str(last.effect["name"])
         against = contradiction(verified_change(name, other, self.refit))
         if against is not None:
             last = replace(last, contradicted=replace(against, instead_of=tuple(named)))
-        return replace(self, found=(*terms, last))
+        return replace(self, proposals=(*terms, last))

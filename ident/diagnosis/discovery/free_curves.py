@@ -76,36 +76,44 @@ def _knots(x: Array) -> tuple[float, ...]:
     return tuple(np.unique(np.quantile(x, CRITERIA.discovery.knots)).tolist())
 
 
-def offered(found: Regression, curves: Sequence[FreeCurve]) -> tuple[TermCandidate, ...]:
+def offered(regression: Regression, curves: Sequence[FreeCurve]) -> tuple[TermCandidate, ...]:
     """The curves that explain most, no two of them alike; the terms of the regression are the hats of all curves."""
     ends = np.cumsum([len(curve.knots) for curve in curves])
-    values = [_values(found, np.arange(end - len(curve.knots), end)) for curve, end in zip(curves, ends, strict=True)]
-    gains = found.share(np.array([float(found.with_residual[at] @ value) for at, value in values]))
+    values = [
+        _values(regression, np.arange(end - len(curve.knots), end)) for curve, end in zip(curves, ends, strict=True)
+    ]
+    gains = regression.share(np.array([float(regression.with_residual[at] @ value) for at, value in values]))
     taken: list[int] = []
     for k in map(int, np.argsort(-gains, kind="stable")):
         if (
             len(taken) < CRITERIA.discovery.of_a_kind
             and gains[k] > 0
-            and not any(_cosine(found, values[k], values[i]) > CRITERIA.discovery.same_class for i in taken)
+            and not any(_cosine(regression, values[k], values[i]) > CRITERIA.discovery.same_class for i in taken)
         ):
             taken.append(k)
-    return tuple(_candidate(found, curves[k], *values[k], float(gains[k])) for k in taken)
+    return tuple(_candidate(regression, curves[k], *values[k], float(gains[k])) for k in taken)
 
 
-def _values(found: Regression, at: NDArray[np.intp]) -> tuple[NDArray[np.intp], Array]:
+def _values(regression: Regression, at: NDArray[np.intp]) -> tuple[NDArray[np.intp], Array]:
     """The indices of a curve's hats, and the values at its knots that explain most."""
-    products = found.products[np.ix_(at, at)]
-    return at, np.linalg.pinv(products, rcond=CRITERIA.evidence.dependent, hermitian=True) @ found.with_residual[at]
+    products = regression.products[np.ix_(at, at)]
+    return at, np.linalg.pinv(products, rcond=CRITERIA.evidence.dependent, hermitian=True) @ regression.with_residual[
+        at
+    ]
 
 
-def _cosine(found: Regression, one: tuple[NDArray[np.intp], Array], other: tuple[NDArray[np.intp], Array]) -> float:
+def _cosine(
+    regression: Regression, one: tuple[NDArray[np.intp], Array], other: tuple[NDArray[np.intp], Array]
+) -> float:
     (i, a), (j, b) = one, other
-    powers = [float(v @ found.products[np.ix_(k, k)] @ v) for k, v in (one, other)]
-    return abs(float(a @ found.products[np.ix_(i, j)] @ b)) / max(float(np.sqrt(powers[0] * powers[1])), TINY)
+    powers = [float(v @ regression.products[np.ix_(k, k)] @ v) for k, v in (one, other)]
+    return abs(float(a @ regression.products[np.ix_(i, j)] @ b)) / max(float(np.sqrt(powers[0] * powers[1])), TINY)
 
 
-def _candidate(found: Regression, curve: FreeCurve, at: NDArray[np.intp], values: Array, share: float) -> TermCandidate:
+def _candidate(
+    regression: Regression, curve: FreeCurve, at: NDArray[np.intp], values: Array, share: float
+) -> TermCandidate:
     """A curve that is 1 at the knot where its value explains most: the strength is that value."""
-    held = int(np.argmax(values**2 * np.diag(found.products)[at]))
+    held = int(np.argmax(values**2 * np.diag(regression.products)[at]))
     strength = float(values[held])
     return TermCandidate((curve.drawn((values / strength).tolist(), held),), (1.0,), strength, share)

@@ -25,7 +25,7 @@ from numpy.typing import NDArray
 
 from ident.cached import cached_property
 from ident.diagnosis.criteria import CRITERIA, TINY
-from ident.diagnosis.discovery.regressors import Regressors, blocks
+from ident.diagnosis.discovery.regressors import Regressors, batches
 from ident.diagnosis.discovery.run_data import RunData
 from ident.diagnosis.discovery.term import Term
 from ident.parallel import each
@@ -130,7 +130,7 @@ def _alone(
         found, sound = beside[run].to([terms[i] for i in here], paths[terms[here[0]].path][run])
         return here, beside[run].known.T @ found, np.einsum("nt,nt->t", found, found), sound
 
-    todo = [(run, here) for run in range(len(beside)) for here in blocks(terms)]
+    todo = [(run, here) for run in range(len(beside)) for here in batches(terms)]
     for here, of_known, of_itself, sound in each(sums, todo):
         cross[:, here] += of_known
         power[here] += of_itself
@@ -165,11 +165,11 @@ def _rows(
     terms: Sequence[Term], beside: Sequence[Regressors], paths: Mapping[str, Sequence[Response]], runs: Sequence[int],
     sound: NDArray[np.bool_],
 ) -> Array:  # fmt: skip
-    """[T * φ, J, r] of some runs, one below the other; a block of columns after the other.
+    """[T * φ, J, r] of some runs, one below the other; a batch of columns after the other.
 
     `sound` (terms,) becomes true for terms that are finite in one of these runs.
     """
-    todo = [(run, here) for run in runs for here in blocks(terms)]
+    todo = [(run, here) for run in runs for here in batches(terms)]
     answers = iter(
         each(lambda of: beside[of[0]].to([terms[i] for i in of[1]], paths[terms[of[1][0]].path][of[0]]), todo)
     )
@@ -178,7 +178,7 @@ def _rows(
         known = beside[run].known
         rows = np.empty((len(known), len(terms) + known.shape[1]))
         rows[:, len(terms) :] = known
-        for here in blocks(terms):
+        for here in batches(terms):
             rows[:, here], finite = next(answers)
             sound[here] |= finite
         every.append(rows)

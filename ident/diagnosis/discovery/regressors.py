@@ -15,7 +15,7 @@ from ident.diagnosis.discovery.term import Term
 from ident.residuals.decimation import Response
 
 Array = NDArray[np.float64]
-_BLOCK = 128
+_BATCH = 128
 """Terms whose responses are worked out together: the responses to all terms at once are large."""
 _COLUMNS_AT_ONCE = 32
 """Terms whose samples are simulated to the output at once: they stay in the processor's cache."""
@@ -64,12 +64,12 @@ class Regressors:
         return _within(path.to(samples)[:, :, 0], self.record, self.band)
 
 
-def blocks(terms: Sequence[Term]) -> list[list[int]]:
-    """The numbers of terms that add to one signal, at most :data:`_BLOCK` together."""
+def batches(terms: Sequence[Term]) -> list[list[int]]:
+    """The numbers of terms that add to one signal, at most :data:`_BATCH` together."""
     by_signal: dict[str, list[int]] = {}
     for i, term in enumerate(terms):
         by_signal.setdefault(term.path, []).append(i)
-    return [here[k : k + _BLOCK] for here in by_signal.values() for k in range(0, len(here), _BLOCK)]
+    return [here[k : k + _BATCH] for here in by_signal.values() for k in range(0, len(here), _BATCH)]
 
 
 def _within(rows: Array, record: RunData, band: float) -> tuple[Array, NDArray[np.bool_]]:

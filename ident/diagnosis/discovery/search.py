@@ -69,7 +69,7 @@ class TermSearch:
     most: int = CRITERIA.discovery.most
     looked_at: int = 0
     left_out: int = 0
-    found: list[Proposal] = field(default_factory=list)
+    proposals: list[Proposal] = field(default_factory=list)
     rejected: RejectedTerm | None = None
     complete: bool = False
 
@@ -83,19 +83,19 @@ class TermSearch:
         """
         begun = TermSearch(self.models, self.base, self.report, self.given)
         with suppress(TimeIsUp):
-            while len(self.found) < self.most and not self.models.at_floor(self.base) and self._added():
+            while len(self.proposals) < self.most and not self.models.at_floor(self.base) and self._added():
                 pass
             if (self.asked or not _few(self.models.runs)) and not self.models.at_floor(self.base):
                 self._drawn(begun)
             self.complete = True
         return DiscoveryResult(
-            found=tuple(map(self._restated, self.found)), refit=self.base, rejected=self.rejected,
+            proposals=tuple(map(self._restated, self.proposals)), refit=self.base, rejected=self.rejected,
             looked_at=self.looked_at, left_out=self.left_out, complete=self.complete,
         )  # fmt: skip
 
     def _drawn(self, begun: TermSearch) -> None:
         """Add one free curve to the terms; or put it in the place of all terms, where the error is then no larger."""
-        terms = self.found
+        terms = self.proposals
         self._added(curves=True)
         begun.looked_at, begun.left_out = self.looked_at, self.left_out
         if (
@@ -103,12 +103,17 @@ class TermSearch:
             and begun._added(curves=True)
             and _held_out(begun) <= CRITERIA.equality.practically_equal * _held_out(self)
         ):
-            self.models, self.base, self.beside, self.found = begun.models, begun.base, begun.beside, begun.found
+            self.models, self.base, self.beside, self.proposals = (
+                begun.models,
+                begun.base,
+                begun.beside,
+                begun.proposals,
+            )
         self.looked_at, self.left_out = begun.looked_at, begun.left_out
 
     def _added(self, curves: bool = False) -> bool:
         """Look for one more term, or for a free curve; True where one passed the bar."""
-        self.report(Progress("proposing", len(self.found), self.most))
+        self.report(Progress("proposing", len(self.proposals), self.most))
         sought, chosen_by, confirming = _parts(self.models.runs)
         searching = self.models.without(run.id for run in self.models.runs if run not in sought)
         base = searching.refit(self.base.effects, self.base.values)
@@ -117,7 +122,7 @@ class TermSearch:
         name = next(f"{_PREFIX}{n}" for n in count(1) if f"{_PREFIX}{n}" not in self.models.effects)
         seen = candidate_terms(self.models, base, curves=curves)
         self._count(seen)
-        self.report(Progress("proposing", len(self.found), self.most, base.error))
+        self.report(Progress("proposing", len(self.proposals), self.most, base.error))
         tried = self._all_tried(searching, base, name, seen, curves)
         if not tried:
             return False
@@ -139,7 +144,7 @@ class TermSearch:
         without, self.base = self.base, self.models.refit(refit.effects, refit.values)
         self._prune(name)
         proposal = self._proposal(candidate, seen, name, gained, bar, few)
-        self.found.append(replace(proposal, contradicted=self._contradiction(name, without)))
+        self.proposals.append(replace(proposal, contradicted=self._contradiction(name, without)))
         return True
 
     def _count(self, seen: CandidateTerms) -> None:
@@ -200,7 +205,7 @@ class TermSearch:
             if less.finite and not worth_adding(self.models, less, self.base):
                 self.base = less
         self.beside = tuple(name for name in self.beside if name in self.base.effects)
-        self.found = [one for one in self.found if one.effect["name"] in self.base.effects]
+        self.proposals = [one for one in self.proposals if one.effect["name"] in self.base.effects]
 
     def _joined(self, latest: str, name: str) -> dict[str, float]:
         """The values with the strength of a term given to the latest, where both are one equation."""
@@ -229,7 +234,7 @@ class TermSearch:
             parameters=self.base.parameters,
             view=characteristic_view(candidate.terms[0], self.models.preset, seen.typical),
             beside=self.beside,
-            terms=len(self.found) + 1,
+            terms=len(self.proposals) + 1,
             shapes=sum(term.fitted for term in candidate.terms),
             error=self.base.errors,
             unstable=self.base.unstable,

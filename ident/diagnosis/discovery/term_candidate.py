@@ -67,21 +67,23 @@ class TermCandidate:
         return len(self.terms), shapes, not interpretation(self.terms), len(text), text
 
 
-def term_candidates(found: Regression, units: Mapping[str, str]) -> tuple[tuple[TermCandidate, ...], int]:
+def term_candidates(regression: Regression, units: Mapping[str, str]) -> tuple[tuple[TermCandidate, ...], int]:
     """The terms and pairs with the largest predicted gain, and the number that was compared."""
-    classes = found.classes()
-    singles = [_single(found, group) for group in (*classes[: CRITERIA.discovery.classes], *_shaped(found, classes))]
-    pairs, count = _pairs(found, units)
-    return (*singles, *pairs), found.looked_at + count
+    classes = regression.classes()
+    singles = [
+        _single(regression, group) for group in (*classes[: CRITERIA.discovery.classes], *_shaped(regression, classes))
+    ]
+    pairs, count = _pairs(regression, units)
+    return (*singles, *pairs), regression.looked_at + count
 
 
-def _shaped(found: Regression, classes: Sequence[Sequence[int]]) -> list[Sequence[int]]:
+def _shaped(regression: Regression, classes: Sequence[Sequence[int]]) -> list[Sequence[int]]:
     """The best class of every kind with shapes that is not tried yet: a refit moves its shapes."""
-    seen = {found.terms[i].kind for group in classes[: CRITERIA.discovery.classes] for i in group}
+    seen = {regression.terms[i].kind for group in classes[: CRITERIA.discovery.classes] for i in group}
     more: list[Sequence[int]] = []
     for group in classes[CRITERIA.discovery.classes :]:
-        term = found.terms[group[0]]
-        if found.gains[group[0]] < CRITERIA.discovery.may_win * found.gains[classes[0][0]]:
+        term = regression.terms[group[0]]
+        if regression.gains[group[0]] < CRITERIA.discovery.may_win * regression.gains[classes[0][0]]:
             break
         if term.free_shapes and term.kind not in seen:
             seen.add(term.kind)
@@ -89,39 +91,39 @@ def _shaped(found: Regression, classes: Sequence[Sequence[int]]) -> list[Sequenc
     return more
 
 
-def _single(found: Regression, group: Sequence[int]) -> TermCandidate:
+def _single(regression: Regression, group: Sequence[int]) -> TermCandidate:
     """The plainest term of a class."""
-    terms = [found.terms[i] for i in group]
+    terms = [regression.terms[i] for i in group]
     best = min(
         range(len(group)), key=lambda i: (not interpretation([terms[i]]), terms[i].free_shapes, len(terms[i].text))
     )
     at = group[best]
-    strength, share = float(found.with_residual[at] / found.products[at, at]), float(found.gains[at])
+    strength, share = float(regression.with_residual[at] / regression.products[at, at]), float(regression.gains[at])
     others = tuple((term,) for i, term in enumerate(terms) if i != best)
     return TermCandidate((terms[best],), (1.0,), strength, share, others)
 
 
-def _pairs(found: Regression, units: Mapping[str, str]) -> tuple[list[TermCandidate], int]:
+def _pairs(regression: Regression, units: Mapping[str, str]) -> tuple[list[TermCandidate], int]:
     """Two places with one strength: terms whose strengths have one unit, one where the drive is and one elsewhere.
 
     The pairs with the largest predicted gain are returned, no two of them alike, and the number of all pairs.
     """
-    power = np.diag(found.products)
-    dimensions = np.unique([repr(_dimension(term, units)) for term in found.terms], return_inverse=True)[1]
-    plain = np.array([not term.shapes and not term.in_time and power[i] > 0 for i, term in enumerate(found.terms)])
-    driven = np.array([term.place in _DRIVE for term in found.terms])
+    power = np.diag(regression.products)
+    dimensions = np.unique([repr(_dimension(term, units)) for term in regression.terms], return_inverse=True)[1]
+    plain = np.array([not term.shapes and not term.in_time and power[i] > 0 for i, term in enumerate(regression.terms)])
+    driven = np.array([term.place in _DRIVE for term in regression.terms])
     rows, columns = np.flatnonzero(plain & driven), np.flatnonzero(plain & ~driven)
     of_rows, of_columns = np.nonzero(dimensions[rows, None] == dimensions[columns])
     i, j = np.tile(rows[of_rows], 2), np.tile(columns[of_columns], 2)
     signs = np.repeat([1.0, -1.0], len(of_rows))
-    both = power[i] + power[j] + 2 * signs * found.products[i, j]
+    both = power[i] + power[j] + 2 * signs * regression.products[i, j]
     sound = both > (1.0 - CRITERIA.discovery.same_class) * (power[i] + power[j])  # else the two are one class
-    with_residual = found.with_residual[i] + signs * found.with_residual[j]
-    share = found.share(np.where(sound, with_residual**2 / np.where(sound, both, 1.0), 0.0))
+    with_residual = regression.with_residual[i] + signs * regression.with_residual[j]
+    share = regression.share(np.where(sound, with_residual**2 / np.where(sound, both, 1.0), 0.0))
 
     def alike(k: int, other: int) -> bool:
         (a, b, s), (c, d, t) = ((i[n], j[n], signs[n]) for n in (k, other))
-        product = found.products
+        product = regression.products
         common = product[a, c] + t * product[a, d] + s * product[b, c] + s * t * product[b, d]
         return bool(abs(common) > CRITERIA.discovery.same_class * np.sqrt(both[k] * both[other]))
 
@@ -131,12 +133,12 @@ def _pairs(found: Regression, units: Mapping[str, str]) -> tuple[list[TermCandid
             break
         if not any(alike(k, other) for other in taken):
             taken.append(k)
-    return [_pair(found, (i[k], j[k]), signs[k], with_residual[k] / both[k], share[k]) for k in taken], len(i)
+    return [_pair(regression, (i[k], j[k]), signs[k], with_residual[k] / both[k], share[k]) for k in taken], len(i)
 
 
-def _pair(found: Regression, of: tuple[int, int], sign: float, strength: float, share: float) -> TermCandidate:
+def _pair(regression: Regression, of: tuple[int, int], sign: float, strength: float, share: float) -> TermCandidate:
     """Two terms, the second with a sign, in the order of their places."""
-    both = ((found.terms[of[0]], 1.0), (found.terms[of[1]], float(sign)))
+    both = ((regression.terms[of[0]], 1.0), (regression.terms[of[1]], float(sign)))
     terms, signs = zip(*sorted(both, key=lambda one: PLACES.index(one[0].place)), strict=True)
     return TermCandidate(terms, tuple(signs[0] * one for one in signs), float(signs[0] * strength), float(share))
 

@@ -106,6 +106,6 @@ def test_a_whole_search_comes_to_its_end_whatever_the_data_are(model, kind, full
     found = TermSearch(models, base, silent, given=(), asked=False, most=1).run()
     assert found.complete
     assert 0 <= found.left_out <= found.looked_at
-    for one in found.found:
+    for one in found.proposals:
         assert np.isfinite([one.strength, one.nats, one.bar, one.error["fit"]]).all()
         assert one.nats > one.bar

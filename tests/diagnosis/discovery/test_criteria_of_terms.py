@@ -223,7 +223,7 @@ def test_three_terms_are_proposed_at_most(monkeypatch):
 
     def one_more(self: TermSearch, curves: bool = False) -> bool:
         added.append(curves)
-        self.found.append(None)  # type: ignore[arg-type]
+        self.proposals.append(None)  # type: ignore[arg-type]
         return True
 
     monkeypatch.setattr(TermSearch, "_added", one_more)

@@ -51,16 +51,16 @@ def found(share: float) -> DiscoveryResult:
         effect={"name": "proposed_1"},
         error={"fit": 0.05, "verify": share},
     )
-    return DiscoveryResult(found=(last,), refit=cast(FittedModel, Leaving(share)))
+    return DiscoveryResult(proposals=(last,), refit=cast(FittedModel, Leaving(share)))
 
 
 def test_a_verify_error_above_the_catalogues_is_said_first_with_both() -> None:
     told = found(0.26).instead(cast(FittedModel, Leaving(0.16)), ("play", "dead_zone"))
-    against = told.found[-1].contradicted
+    against = told.proposals[-1].contradicted
     assert against is not None
     assert against.instead_of == ("play", "dead_zone")
     assert (against.before, against.after) == pytest.approx((0.16, 0.26), rel=0.05)
-    text = proposed_text(told.found)
+    text = proposed_text(told.proposals)
     assert text.startswith(
         "With R = R + s * (v**3) in place of play and dead zone the error on validation data rises from 16"
     )
@@ -70,13 +70,13 @@ def test_a_verify_error_above_the_catalogues_is_said_first_with_both() -> None:
 @pytest.mark.parametrize("share", [0.155, 0.10])
 def test_one_that_is_no_worse_only_says_what_it_stands_instead_of(share: float) -> None:
     told = found(share).instead(cast(FittedModel, Leaving(0.16)), ("play",))
-    assert told.found[-1].contradicted is None
-    assert told.found[-1].instead_of == ("play",)
-    assert proposed_text(told.found).startswith("In place of play, the search proposes: ")
+    assert told.proposals[-1].contradicted is None
+    assert told.proposals[-1].instead_of == ("play",)
+    assert proposed_text(told.proposals).startswith("In place of play, the search proposes: ")
 
 
 def test_without_runs_to_verify_nothing_is_known() -> None:
-    assert found(0.26).instead(cast(FittedModel, Leaving(0.16, ())), ("play",)).found[-1].contradicted is None
+    assert found(0.26).instead(cast(FittedModel, Leaving(0.16, ())), ("play",)).proposals[-1].contradicted is None
 
 
 def refused(equation: str, nats: float, *beside: str, fit: float = 0.3, verify: float | None = 0.4) -> DiscoveryResult:
@@ -118,8 +118,8 @@ def test_where_a_verify_run_cannot_be_followed_a_refused_term_tells_no_error_of_
 def test_what_the_terms_do_without_is_named_no_more() -> None:
     """Leak and asymmetry stood for a recorder that bends: with its term the model does as well without them."""
     named = ("entrained_air", "one_way_leakage", "gain_asymmetry")
-    term = replace(found(0.1).found[-1], beside=("entrained_air",))
-    needless = DiscoveryResult(found=(term,)).dispensable(named)
+    term = replace(found(0.1).proposals[-1], beside=("entrained_air",))
+    needless = DiscoveryResult(proposals=(term,)).dispensable(named)
     assert needless == ("one_way_leakage", "gain_asymmetry")
     before = Findings(
         added=named,
@@ -140,6 +140,6 @@ def test_what_the_terms_do_without_is_named_no_more() -> None:
     {"contradicted": Contradiction("proposed_1", 0.1, 0.2, 3.0)},
 ])  # fmt: skip
 def test_a_doubtful_term_takes_no_name_away(doubt: dict[str, Any]) -> None:
-    term = replace(found(0.1).found[-1], **doubt)
-    assert DiscoveryResult(found=(term,)).dispensable(("entrained_air",)) == ()
+    term = replace(found(0.1).proposals[-1], **doubt)
+    assert DiscoveryResult(proposals=(term,)).dispensable(("entrained_air",)) == ()
     assert DiscoveryResult().dispensable(("entrained_air",)) == ()

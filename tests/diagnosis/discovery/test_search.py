@@ -149,12 +149,12 @@ def test_what_stood_in_for_a_term_is_left_out_again():
     values = {models.preset.parameter(name).in_equations: value for name, value in fit.values.items()}
     base = models.refit(("gain_asymmetry",), {**models.off, **values})
     found = TermSearch(models, base, report=lambda _: None, given=()).run()
-    (term,) = found.found
+    (term,) = found.proposals
     assert "exp(-((x - xm) / d)**2)" in term.equation
     assert term.beside == ()
     assert term.error["fit"] == pytest.approx(NOISE, rel=0.03)
     kept = TermSearch(models, base, report=lambda _: None, given=("gain_asymmetry",)).run()  # the user's own stays
-    assert kept.found[0].beside == ("gain_asymmetry",)
+    assert kept.proposals[0].beside == ("gain_asymmetry",)
 
 
 def test_the_missing_characteristic_is_there_with_the_term_through_it():
@@ -257,7 +257,7 @@ def test_the_regression_is_that_of_all_terms_and_runs_at_once(monkeypatch):
         return [(one.equation, one.strength, one.share) for one in seen.candidates]
 
     together = candidates()
-    monkeypatch.setattr("ident.diagnosis.discovery.regressors._BLOCK", 7)
+    monkeypatch.setattr("ident.diagnosis.discovery.regressors._BATCH", 7)
     monkeypatch.setattr("ident.diagnosis.discovery.regression._RUNS_AT_ONCE", 5)
     for (text, strength, share), (other, same, left) in zip(together, candidates(), strict=True):
         assert text == other
