@@ -309,7 +309,7 @@ class Selection:
 
     most: int = 6
     """[effects] Added at most. Why: a test matrix does not distinguish more.
-    Test: test_diagnose.py::test_more_effects_than_there_are_places_for_are_refused"""
+    Test: test_criteria_of_ranking.py::test_more_than_six_effects_are_not_asked_for"""
     usual: int = 4
     """[effects] Added where the user says nothing. Why: machines of the trials lack up to three.
     Test: test_criteria_of_ranking.py::test_terms_are_searched_for_unless_a_small_limit_ended_the_selection"""

@@ -24,6 +24,9 @@ from ident.diagnosis.ranking import (
     rank_each,
 )
 from ident.effects.dead_zone import DEAD_ZONE
+from ident.errors import Unusable
+from ident.matrix import Actuator, Matrix
+from ident.workflows import diagnose
 
 
 @pytest.mark.parametrize(("effects", "contenders"), [(0, 10), (1, 8), (2, 6), (3, 5), (4, 5)])
@@ -185,3 +188,10 @@ def test_the_search_continues_from_the_two_next_best_sets():
 def test_the_four_most_probable_sets_of_effects_are_taken_to_longer_windows():
     judged: Any = [(float(-n), SimpleNamespace(effects=(str(n),))) for n in range(8)]
     assert [one.effects for _, one in _likeliest(judged)] == [(str(n),) for n in range(4)]
+
+
+@pytest.mark.parametrize(("most", "refused"), [(6, "-1 s"), (7, "7 effects")])
+def test_more_than_six_effects_are_not_asked_for(most, refused):
+    """Six are, and the time is looked at next."""
+    with pytest.raises(Unusable, match=refused):
+        diagnose(Matrix(Actuator("A"), ()), most=most, seconds=-1.0)
