@@ -89,7 +89,8 @@ def _evidence(what: str, stated: float, found: float, unit: str, error: float, u
 def _label(models: CandidateModels, fitted: FittedModel, run: Run, what: str) -> tuple[str, float, float, float]:
     """The best value of one label: its name, the stated value, the best value, and the error with it.
 
-    A ladder of values is tried, then the error is minimised between the neighbours of the best (Brent 1973).
+    A ladder of values, those of other runs among them, is tried; then the error is minimised between the neighbours of
+    the best (Brent 1973), and the value there is taken where the errors do not tie.
     """
     name = _LABELS[what]
     stated = conditions(run, models.matrix.actuator)[name]
@@ -107,9 +108,11 @@ def _label(models: CandidateModels, fitted: FittedModel, run: Run, what: str) ->
         return float(_errors(models, fitted, run, {name: np.array([value])})[0])
 
     near = {"xatol": CRITERIA.equality.tie * (upper - lower)}
-    between = scipy.optimize.minimize_scalar(error, bounds=(lower, upper), method="bounded", options=near)
-    least, found = min((float(errors[best]), float(tried[best])), (float(between.fun), float(between.x)))
-    return what, stated, found, least
+    with np.errstate(invalid="ignore", over="ignore"):  # an unstable model has an infinite error
+        between = scipy.optimize.minimize_scalar(error, bounds=(lower, upper), method="bounded", options=near)
+    if CRITERIA.equality.practically_equal * float(between.fun) < errors[best]:
+        return what, stated, float(between.x), float(between.fun)
+    return what, stated, float(tried[best]), float(errors[best])
 
 
 def _of_channel(models: CandidateModels, fitted: FittedModel, run: Run) -> list[tuple[str, float, float, float]]:

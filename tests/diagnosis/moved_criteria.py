@@ -77,11 +77,9 @@ class _Loader(importlib.machinery.SourceFileLoader):
 
     change: _Moved
 
-    def source_to_code(self, data: Any, path: Any, *, _optimize: int = -1) -> Any:
-        return compile(self.change.visit(ast.parse(data)), path, "exec", dont_inherit=True, optimize=_optimize)
-
     def get_code(self, _fullname: str) -> Any:
-        return self.source_to_code(Path(self.path).read_bytes(), self.path)
+        source = self.change.visit(ast.parse(Path(self.path).read_bytes()))
+        return compile(source, self.path, "exec", dont_inherit=True)
 
 
 class _Finder(importlib.abc.MetaPathFinder):

@@ -139,7 +139,7 @@ def test_two_runs_differ_by_a_third_and_beyond_a_chance_of_one_in_a_thousand(rat
     assert (_compared("a", estimates, 1) is not None) is differ
 
 
-@pytest.mark.parametrize(("error", "alone"), [(1.035, True), (1.065, False)])
+@pytest.mark.parametrize(("error", "alone"), [(1.04, True), (1.06, False)])
 def test_terms_alone_come_first_up_to_an_error_five_per_cent_larger(monkeypatch, error, alone):
     """Than that of terms in addition to an effect; without terms it leaves more."""
     named: Any = SimpleNamespace(

@@ -128,8 +128,9 @@ def _pairs(regression: Regression, units: Mapping[str, str]) -> tuple[list[TermC
         return bool(abs(common) > CRITERIA.discovery.same_class * np.sqrt(both[k] * both[other]))
 
     taken: list[int] = []
+    least = CRITERIA.discovery.may_win * share.max(initial=0.0)
     for k in map(int, np.argsort(-share, kind="stable")):
-        if len(taken) == CRITERIA.discovery.of_a_kind or not share[k] > CRITERIA.discovery.may_win * share.max():
+        if len(taken) == CRITERIA.discovery.of_a_kind or not share[k] > least:
             break
         if not any(alike(k, other) for other in taken):
             taken.append(k)
