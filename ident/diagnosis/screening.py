@@ -280,7 +280,8 @@ class _EffectResponses:
         """The trials that were simulated, the fit predicted with a share of the response of each, and the step to
         there."""
         shown = [i for i in range(len(self.trials)) if self._power(i) > 0]
-        yield from ((self.trials[i], *found) for i, found in zip(shown, self._after(shown), strict=True))
+        after = self._after(shown) if shown else ()
+        yield from ((self.trials[i], *found) for i, found in zip(shown, after, strict=True))
 
     def thresholds(self) -> list[_Trial]:
         """Strengths between two neighbours of which one does next to nothing and the other much."""

@@ -96,6 +96,13 @@ def test_three_effects_are_refitted_with_free_widths(monkeypatch):
     assert refitted == list("abc")
 
 
+def test_effects_of_which_no_run_shows_anything_promise_nothing():
+    """As of a machine that never moves where an effect would act."""
+    responses: Any = SimpleNamespace(power=np.zeros((2, 1)))
+    none = _EffectResponses(SimpleNamespace(), [_Trial("a", 0.1, {})], responses)  # type: ignore[arg-type]
+    assert [*none.predicted_fits()] == []
+
+
 @pytest.mark.parametrize(("growth", "found"), [(250.0, False), (350.0, True)])
 def test_a_threshold_lies_where_the_power_of_a_response_grows_three_hundredfold(growth, found):
     """Between two strengths a factor of three apart; those tried in between are a quarter apart."""
