@@ -28,33 +28,33 @@ def evidence(before: FittedModel, after: FittedModel) -> Evidence:
 
 def worth_adding(models: CandidateModels, less: FittedModel, more: FittedModel) -> bool:
     """Whether a model with more effects is worth them: it gains beyond chance, by a share that matters, everywhere."""
-    if not (_is_finite(less) and _is_finite(more)):
-        return _is_finite(more)
+    if not (finite_held_out(less) and finite_held_out(more)):
+        return finite_held_out(more)
     return comparison.worth_adding(evidence(less, more), partial(bar, models, less))
 
 
 def better(before: FittedModel, after: FittedModel) -> bool:
     """Whether the second of two models with as many effects is more likely, beyond chance."""
-    return _is_finite(after) and (not _is_finite(before) or comparison.better(evidence(before, after)))
+    return finite_held_out(after) and (not finite_held_out(before) or comparison.better(evidence(before, after)))
 
 
 def dominated(worse: FittedModel, best: FittedModel) -> bool:
     """Whether the first model is worse than the second beyond chance, by a share of its residual that matters."""
-    if worse is best or not _is_finite(best):
+    if worse is best or not finite_held_out(best):
         return False
-    return not _is_finite(worse) or comparison.dominated(evidence(best, worse))
+    return not finite_held_out(worse) or comparison.dominated(evidence(best, worse))
 
 
 def indistinguishable(first: FittedModel, second: FittedModel) -> bool:
     """Whether two models are indistinguishable."""
     return first is second or (
-        _is_finite(first) and _is_finite(second) and comparison.indistinguishable(evidence(first, second))
+        finite_held_out(first) and finite_held_out(second) and comparison.indistinguishable(evidence(first, second))
     )
 
 
 def both_probable(first: FittedModel, second: FittedModel) -> bool:
     """Whether each of two models, one of which is right, is more probable than chance."""
-    return _is_finite(first) and _is_finite(second) and comparison.both_probable(evidence(first, second))
+    return finite_held_out(first) and finite_held_out(second) and comparison.both_probable(evidence(first, second))
 
 
 def verified_change(effect: str, less: FittedModel, more: FittedModel) -> VerifyChange | None:
@@ -77,6 +77,6 @@ def bar(models: CandidateModels, base: FittedModel) -> float:
     return models.bars.of(base.effects, lambda: gain_by_chance(models, base, others))
 
 
-def _is_finite(model: FittedModel) -> bool:
-    """Whether the residual of the model is finite on every run."""
+def finite_held_out(model: FittedModel) -> bool:
+    """Whether the residual of the model is finite on all held-out data: it may diverge on what it was not fitted to."""
     return bool(np.isfinite(model.held_out.error))

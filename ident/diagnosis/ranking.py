@@ -15,6 +15,7 @@ from ident.diagnosis.candidate_models import CandidateModels
 from ident.diagnosis.criteria import CRITERIA
 from ident.diagnosis.fitted_model import FittedModel
 from ident.diagnosis.free_shapes import trial_from_everywhere
+from ident.diagnosis.model_comparison import finite_held_out
 from ident.diagnosis.screening import Prediction, predict
 from ident.diagnosis.tie_breaking import stable_minimum, stable_ranking
 from ident.parallel import each
@@ -186,7 +187,9 @@ def _confirmed(models: CandidateModels, base: FittedModel, candidate: Candidate,
     is_behind = candidate.score > CRITERIA.ranking.close_trial * best
     way = CRITERIA.estimation.coarse if is_behind else CRITERIA.estimation.full
     refit = models.refit((*base.effects, candidate.effect), candidate.trial.values, way=way)
-    return candidate.refitted(models, base, refit) if refit.finite else replace(candidate, trial=None)
+    if not (refit.finite and finite_held_out(refit)):
+        return replace(candidate, trial=None)
+    return candidate.refitted(models, base, refit)
 
 
 def _side_by_side(

@@ -162,3 +162,23 @@ def test_a_gain_by_chance_is_known_where_one_run_begins_in_motion_and_another_at
     residuals, free, candidates = zip(*parts, strict=True)
     bands = EnergyBands((Record(1.0, "a"), Record(1.0, "b")), (64, 64))
     assert bar(residuals, free, candidates, common_disturbance([Residuals(residuals, bands)])) > 0
+
+
+def diverging() -> Any:
+    """A refit that is sound on what it was fitted to and diverges on a stretch that was held out."""
+    sound = refit()
+    series = (np.full(N, 1e200), *sound.residuals_held_out.series[1:])
+    sound.held_out, sound.residuals_held_out = SimpleNamespace(score=np.inf, error=np.inf), Residuals(series, BANDS)
+    return sound
+
+
+def test_what_diverges_on_held_out_data_is_no_result_and_ends_no_ranking():
+    """Neither of an effect, nor of the model that it is added to: then any effect with a finite error is worth it."""
+    sound, bad = refit(missing=0.1), diverging()
+    for one in (sound, bad):
+        one.finite, one.local, one.values = True, SimpleNamespace(error=0.1), {}
+    models: Any = SimpleNamespace(refit=lambda *_, **_way: bad, is_shown=lambda _name: False)
+    trial = Candidate(SimpleNamespace(effect="a"), trial=bad)  # type: ignore[arg-type]
+    assert _confirmed(models, sound, trial, 0.1).refit is None
+    added = Candidate(SimpleNamespace(effect="a")).refitted(models, bad, sound)  # type: ignore[arg-type]
+    assert (added.worth_adding, added.evidence) == (True, None)
