@@ -78,5 +78,5 @@ def bar(models: CandidateModels, base: FittedModel) -> float:
 
 
 def finite_held_out(model: FittedModel) -> bool:
-    """Whether the residual of the model is finite on all held-out data: it may diverge on what it was not fitted to."""
+    """Whether the residual of the model is finite on all held-out data, on which it may diverge unseen."""
     return bool(np.isfinite(model.held_out.error))

@@ -1,4 +1,4 @@
-"""A cylinder, bellows or muscle whose pressure is known: pressure → position or speed of what it moves."""
+"""A cylinder, bellows or muscle whose pressure is known: pressure → position or speed of its load."""
 
 from ident.chain.chain import Chain
 from ident.presets.preset import Combined, Display, Preset, RequiredData, SearchPlan
