@@ -132,7 +132,7 @@ def test_a_shape_with_which_the_output_jumps_begins_at_places_a_fifth_apart():
 
 def test_a_part_behind_a_spring_begins_within_a_third_of_its_frequency(monkeypatch):
     """From nearly all of the mass that hangs there to none: ω √(1 − μ) is down to a quarter of what the record has."""
-    monkeypatch.setattr(initial_guesses, "resonances", lambda _runs: [1.0])
+    monkeypatch.setattr(initial_guesses, "resonance", lambda _runs: 1.0)
     base: Any = SimpleNamespace(fitness=SimpleNamespace(runs=()))
     begun = np.array(initial_guesses._below_resonance(base))
     for true in np.geomspace(0.25, 1.0, 50):
