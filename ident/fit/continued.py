@@ -75,7 +75,7 @@ class ContinuedIdentification(Identification):
         self.floors = noise_floors(self.matrix.runs, excited_band(self._runs), left_out)
 
     def _reaching(self, objective: Fitness) -> Fitness:
-        """The objective over a space that reaches as far as the start, which may lie beyond a bound that no user set."""
+        """The objective, its space reaching as far as the start, which may lie beyond a bound that no user set."""
         of_user = {self.preset.parameter(name).in_equations for name in of_model(self.settings, self.preset).bounds}
         of_user |= {p.in_equations for effect in self.preset.effects if effect.own for p in effect.added}
         names = [name for name in objective.space.names if name not in of_user]
