@@ -20,6 +20,15 @@ def resolution(samples: NDArray[np.float64]) -> float:
     return float(np.min(changes))
 
 
+def step_between(samples: NDArray[np.float64], low: float, high: float) -> float:
+    """The usual step of a reading (n,) between two of its values, in its unit: a thermistor's changes over its range.
+
+    0 where it has no two values there.
+    """
+    values = np.unique(samples[(samples >= low) & (samples <= high)])
+    return float(np.median(np.diff(values))) if len(values) > 1 else 0.0
+
+
 def noise_of(samples: NDArray[np.float64]) -> float:
     """The standard deviation of the white noise in a reading (n,), by its fourth differences where it bends least.
 

@@ -18,7 +18,7 @@ from scipy.ndimage import median_filter
 from ident.checks.at_rest import HELD, acting, held, spans
 from ident.checks.finding import Finding
 from ident.checks.setting_out import FAST, QUICK, REST, Motion
-from ident.resolution import resolution
+from ident.resolution import resolution, step_between
 from ident.run import BENCH, Run, Samples
 from ident.words.message import Message, message
 
@@ -72,6 +72,7 @@ def missing_inputs(run: Run) -> tuple[MissingInput, ...]:
         motion = Motion.of(y, samples, max(travel / 2**half, DIGITS * resolution(run.measured)), at_rest)
         begins = motion.starts(at_rest)
         begins = [k for k in begins if _turns(motion.way[k : k + AHEAD * samples], FAST * motion.quick) < SWINGS]
+        begins = [k for k in begins if _beyond_steps(run.measured, k, samples)]
         if _by_itself(inputs, begins, longest, samples):
             evidence = _evidence(run, motion, begins, at_rest)
             times = [begin / run.sample_rate for begin in begins]
@@ -103,6 +104,13 @@ def _quick(y: Samples, extent: float) -> int:
     while samples < LONGEST * len(y) and np.quantile(np.abs(y[samples:] - y[:-samples]), QUICK) < TRAVEL * extent:
         samples += 1 + samples // 4
     return samples
+
+
+def _beyond_steps(measured: Samples, begin: int, samples: int) -> bool:
+    """Whether an output that sets out goes more steps of its reading, as it reads there, than one that creeps."""
+    around = measured[max(0, begin - REST * samples) : begin + samples]
+    low, high = float(np.min(around)), float(np.max(around))
+    return high - low >= DIGITS * step_between(measured, low, high)
 
 
 def _turns(way: Samples, least: float) -> int:

@@ -117,3 +117,16 @@ def test_a_swing_that_stands_for_a_moment_at_each_turn_misses_no_input(damping):
     swings = scipy.signal.lfilter([fast], [1.0, fast - 1.0], swings)
     swings = swings + 0.003 * np.random.default_rng(68).standard_normal(len(swings))
     assert missing_inputs(Run("swings", "", RATE, {"command": lever, "displacement": swings})) == ()
+
+
+def test_a_thermometer_that_reads_in_wider_steps_when_hot_misses_no_input():
+    """A heater under held powers; a converter of 10 bits reads the voltage of a thermistor, steps of 0.1 to 0.5 K."""
+    power, t = np.repeat([0.25, 0.85, 0.5, 0.15, 1.0, 0.0], 1350), np.zeros(8100)
+    for k in range(1, len(t)):
+        t[k] = t[k - 1] + (60.0 * power[k - 1] - t[k - 1]) / 265.0
+    kelvin = 298.0 + t
+    share = np.round(1023.0 / (1.0 + np.exp(3950.0 * (1.0 / kelvin - 1.0 / 298.0)))) / 1023.0
+    read = 1.0 / (1.0 / 298.0 + np.log(1.0 / share - 1.0) / 3950.0) - 298.0
+    steps = np.diff(np.unique(read))
+    assert steps[-1] > 3.0 * steps[0]
+    assert missing_inputs(Run("heater", "", 0.5, {"command": power, "displacement": read}, hold="zoh")) == ()
