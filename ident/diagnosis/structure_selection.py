@@ -162,7 +162,8 @@ def _preferred(
 
     Where the first is improbable among them, the simplest of the most probable models comes before it. Where a
     parameter of the first is at its bound, a model with a smaller error and no parameter at a bound comes before it. So
-    does a simpler model whose error is not larger beyond chance, unless that model alone is unusual.
+    does a simpler model whose error is not larger beyond chance, unless that model alone is unusual. It is no simpler
+    where an effect of the first takes the place of what it lacks.
     """
     if probable.get(first.machine, 1.0) < CRITERIA.structure.improbable:
         most = max(probable.values())
@@ -174,7 +175,7 @@ def _preferred(
     simpler = [
         one
         for one in others
-        if one.parameters < first.parameters
+        if one.parameters < first.kept
         and one.error <= CRITERIA.equality.practically_equal * first.error
         and (one.machine in strange) <= (first.machine in strange)
         and not better(one.best, first.best)
@@ -354,6 +355,12 @@ class _JudgedStructure:
     def above_noise(self) -> bool:
         """Whether a simulation confirms it and its residual is above the noise."""
         return self.best.finite and self.models.residual_above_noise(self.best)
+
+    @property
+    def kept(self) -> int:
+        """The number of its parameters, less those whose place its effect takes: an arm's weight that of a spring."""
+        taken = {name for effect in self.best.effects for name in self.models.effects[effect].takes_over}
+        return self.parameters - len(taken & {p.in_equations for p in self.models.preset.parameters})
 
     @property
     def at_bound(self) -> bool:

@@ -19,6 +19,7 @@ _FILES = (
     "open_valve",
     "pressure_drive",
     "motor",
+    "sprung_motor",
     "position_servo",
     "two_tanks",
     "specimen",

@@ -41,7 +41,7 @@ PRESSURE_DRIVE = Preset(
         drive_scale="U",
     ),
     data=RequiredData(
-        command_unit="Pa",
+        command_units=("Pa",),
         area="Ap",
     ),
     display=Display(

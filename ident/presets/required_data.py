@@ -14,8 +14,8 @@ class RequiredData:
 
     driven_by: str = "command"
     """Channel that drives the model; the command where a run has none of that name."""
-    command_unit: str = ""
-    """SI unit of the command that drives such a machine; "" for any."""
+    command_units: tuple[str, ...] = ()
+    """SI units of a command that drives such a machine; () for any."""
     area: str = ""
     """Parameter that is the stated piston area, where the motion is one along a way."""
     compares: str = ""
@@ -28,6 +28,8 @@ class RequiredData:
     """Whether the motion of such a machine is an angle as a rule."""
     one_sided: bool = False
     """Whether command and output of such a machine stay on one side of zero, as a pump and a level do."""
+    rings: bool = False
+    """Whether the records of such a machine answer their commands with a damped oscillation."""
     needs: tuple[str, ...] = ()
     """What must be stated of the actuator, or measured."""
     conventions: tuple[Convention, ...] = ()

@@ -9,6 +9,7 @@ import numpy as np
 
 from ident.chain.disturbance import can_be_disturbed
 from ident.effects.needs import electric, one_sided
+from ident.effects.ringing import resonance
 from ident.errors import Unusable
 from ident.presets import PRESETS, Preset, preset
 from ident.run import BENCH, DISTURBANCES, MOTIONS, Run
@@ -62,6 +63,7 @@ def suited(runs: Sequence[Described], oil: bool = False) -> tuple[Preset, ...]:
     without_oil = electric(runs, oil)
     found = [known for known in PRESETS.values() if all(_allows(known, run) for run in runs)]
     found = [known for known in found if not (known.chain.has_oil and without_oil)]
+    found = [known for known in found if not known.data.rings or _ring(runs)]
     if not found:
         channels = ", ".join(sorted({name for run in runs for name in run.channels}))
         raise Unusable("no-model", f"no model is driven by and shows what the runs have: {channels}", "channels",
@@ -139,11 +141,17 @@ def _allows(model: Preset, run: Described) -> bool:
         return False
     if model.data.one_sided and not _one_sided(run):
         return False
-    if model.data.command_unit not in ("", run.units.get("command")):
+    if model.data.command_units and run.units.get("command") not in model.data.command_units:
         return False
     drives = {model.data.driven_by} | ({"displacement"} if model.data.driven_by == "velocity" else set())
     drives |= {"command"} if _by_force(model, run) or _by_motion(model, run) else set()
     return bool(drives & set(run.channels)) and run.output in model.chain.outputs and run.output not in drives
+
+
+def _ring(runs: Sequence[Described]) -> bool:
+    """Whether runs that were read answer their commands with a damped oscillation."""
+    read = [run for run in runs if isinstance(run, Run) and run.output in run.channels]
+    return resonance([run for run in read if run.use == "fit"] or read) is not None
 
 
 def _one_sided(run: Described) -> bool:

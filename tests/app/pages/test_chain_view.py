@@ -19,6 +19,7 @@ AT_LEAST = {
     "open_valve": 51,
     "pressure_drive": 38,
     "motor": 38,
+    "sprung_motor": 38,
     "position_servo": 40,
     "specimen": 18,
     "force_loop": 54,
@@ -27,8 +28,8 @@ AT_LEAST = {
 }
 LOOPS = {
     "qian2014": {"v", "y"}, "first_order": set(), "drive": set(), "open_valve": {"v"}, "motor": set(),
-    "pressure_drive": set(),
-    "position_servo": {"y"}, "two_tanks": set(), "specimen": set(), "force_loop": {"v", "y"}, "kononykhin": set(),
+    "pressure_drive": set(), "sprung_motor": set(), "position_servo": {"y"}, "two_tanks": set(), "specimen": set(),
+    "force_loop": {"v", "y"}, "kononykhin": set(),
     "strano": {"P", "v", "y"},
 }  # fmt: skip
 

@@ -1,0 +1,77 @@
+"""A motor against a spring, such as a moving coil, a throttle or a pendulum, as SciPy integrates it."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+import scipy
+
+from ident.diagnosis.structure_selection import choose_structure
+from ident.fit.settings import Settings
+from ident.matrix import Actuator, Matrix
+from ident.presets.suited import in_question
+from ident.run import Run
+from ident.workflows import diagnose, identify
+from tests.conftest import of_few_effects
+
+RATE, COUNT = 50.0, 500
+OMEGA, DAMPED, PUSH = 6.0, 1.5, 25.0  # rad/s, 1/s, rad/s² for each volt
+TURNING = {"command": "V", "displacement": "rad"}
+
+
+def machine(seed: int, weight: float = 0.0, units: dict[str, str] = TURNING, omega: float = OMEGA) -> Matrix:
+    """θ'' + DAMPED θ' + omega² θ = PUSH u under held volts, or `weight` sin θ for the spring; noise of 1 %."""
+    runs, t = [], np.arange(COUNT) / RATE
+    for number, use in enumerate(("fit", "fit", "verify")):
+        rng = np.random.default_rng([71, seed, number])
+        u = np.repeat(rng.uniform(-1.2, 1.2, COUNT // 50), 50)
+
+        def rates(now: float, at: np.ndarray, u: np.ndarray = u) -> list[float]:
+            back = weight * np.sin(at[0]) if weight else omega**2 * at[0]
+            return [at[1], PUSH * u[min(int(now * RATE + 1e-9), COUNT - 1)] - DAMPED * at[1] - back]
+
+        found = scipy.integrate.solve_ivp(rates, (0.0, t[-1]), [0.0, 0.0], t_eval=t, rtol=1e-7, max_step=1 / RATE)
+        y = found.y[0] + 0.01 * found.y[0].std() * rng.standard_normal(COUNT)
+        runs.append(Run(f"r{number}", "", RATE, {"command": u, "displacement": y}, units, hold="zoh", use=use))
+    return Matrix(Actuator("COIL"), tuple(runs))
+
+
+def named(matrix: Matrix) -> set[str]:
+    return {known.name for known in in_question(matrix.runs)}
+
+
+def test_a_mass_that_swings_about_the_place_that_a_voltage_holds_is_on_a_spring():
+    matrix = machine(1)
+    fit = identify(matrix, Settings(model=choose_structure(matrix).structures[0].machine))
+    assert fit.model == "sprung_motor"
+    assert fit.error["verify"] < 0.012
+    for name, value in {"k0": OMEGA**2, "c0": DAMPED, "Kt": PUSH}.items():
+        assert fit.values[name] / fit.values["m0"] == pytest.approx(value, rel=0.02)
+
+
+@pytest.mark.parametrize(
+    ("matrix", "is_named"),
+    [(machine(2), True), (machine(2, units={"command": "A", "displacement": "m"}), True),
+     (machine(2, units={"command": "N*m", "displacement": "rad"}), False), (machine(2, omega=0.0), False),
+     (machine(2, units={"command": "V", "velocity": "rad/s"}), False)],
+    ids=["volts", "amperes", "a-torque-drives-a-mass", "a-motor-that-integrates", "no-position"],
+)  # fmt: skip
+def test_it_is_in_question_where_a_voltage_or_a_current_makes_a_position_ring(matrix, is_named):
+    if "velocity" in matrix.runs[0].units:
+        spun = ({"command": run.command, "velocity": run.measured} for run in matrix.runs)
+        runs = (replace(run, channels=of, output="velocity") for run, of in zip(matrix.runs, spun, strict=True))
+        matrix = replace(matrix, runs=tuple(runs))
+    assert ("sprung_motor" in named(matrix)) is is_named
+
+
+def test_a_pendulum_is_a_motor_against_a_spring_that_its_weight_takes_the_place_of(full):
+    """A motor that integrates, with the same weight, has no fewer parameters: the weight is the spring."""
+    matrix = machine(3, weight=60.0)
+    with of_few_effects(full, "arm_gravity", "coulomb_friction", "dead_zone"):
+        choice = choose_structure(matrix)
+        assert choice.structures[0].machine == "sprung_motor"
+        found = diagnose(choice.matrix, settings=Settings(model="sprung_motor"), most=1, propose=False)
+    assert found.verdict.effects == ("arm_gravity",)
+    assert found.ladder[-1].error["verify"] < 0.015
