@@ -81,15 +81,15 @@ each sample need not slice, which counts references.
 
 @jit(nogil=True)
 def advance_groups(
-    code: int, groups: tuple[int, int], buffers: Array, u: Array, fm: Array, u_at: NDArray[np.int64],
+    code: int, wide: int, groups: tuple[int, int], buffers: Array, u: Array, fm: Array, u_at: NDArray[np.int64],
     fm_at: NDArray[np.int64], first: int, last: int, every: int, out: Array, lanes: int
 ) -> None:  # fmt: skip
-    """Advance a kernel of eight lanes over the groups of eight from one to before another, without Python in between.
+    """Advance a kernel of 8 or 16 lanes, `wide`, over groups of as many, from one to before another, without Python.
 
     `buffers` are those of sixteen lanes, one after the other; a step of all `lanes` is a row of `out`.
     """
     size = 16 * len(buffers) // lanes  # of a buffer
     for group in range(groups[0], groups[1]):
-        lane = 8 * group
+        lane = wide * group
         b = buffers[lane // 16 * size + lane % 16 :]
         advance_at(code, b, u, fm, u_at[lane:], fm_at[lane:], first, last, every, out[lane:], lanes)

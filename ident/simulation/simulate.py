@@ -18,6 +18,7 @@ from ident.run import Run
 from ident.simulation.filters import pack_filter
 from ident.simulation.inputs import fine, jump_share
 from ident.simulation.kernel import HELD, LANES, SHARE, WIDE, Kernel, constant, kernel
+from ident.simulation.lanes import Lanes
 from ident.simulation.machine_call import advance_groups
 from ident.time_budget import LONGEST_BATCH, check_time
 
@@ -83,32 +84,46 @@ class Simulation:
         forces = np.column_stack(measured).ravel() if measured[1:] else measured[0]
         force_at = inputs[built.measured[0]].begin if built.measured else command.begin
         lane_values |= {HELD: self._held(lanes), SHARE: command.share}
-        buffers, groups = self._packed(built, lane_values, lanes, inputs), -(-count * vectors // WIDE)
-        code, _kept = built.address(WIDE)
-        chunk = (
-            max(1, _CHUNK // (length * lanes)) * length
-        )  # blocks are simulated together, as far as memory stays small
-        for begin in range(0, samples, chunk):
-            end = min(begin + chunk, samples)
-            out = np.empty((end - begin) * lanes)
+        packed = self._packed(built, lane_values, lanes, inputs)
+        side_by_side = Lanes(packed, command.begin, force_at, count * vectors)
+        for begin, end in self._chunks(length, side_by_side):
+            out = np.empty((end - begin) * side_by_side.count)
+            code, _kept = built.address(side_by_side.wide)
 
-            def advance(share: NDArray[np.intp], begin: int = begin, end: int = end, out: Array = out) -> None:
-                at = command.begin, force_at
-                for some, first, last in _batches(share, begin, end, self.steps):
+            def advance(
+                share: NDArray[np.intp], of: Lanes = side_by_side, code: int = code, begin: int = begin,
+                end: int = end, out: Array = out,
+            ) -> None:  # fmt: skip
+                given = of.buffers, command.record, forces, of.command_at, of.force_at
+                for some, first, last in _batches(share, begin, end, self.steps * of.wide):
                     check_time()
-                    rows = out[(first - begin) * lanes :]
-                    ends = first * self.steps, (last - 1) * self.steps + 1
-                    advance_groups(code, some, buffers, command.record, forces, *at, *ends, self.steps, rows, lanes)
+                    rows, ends = out[(first - begin) * of.count :], (first * self.steps, (last - 1) * self.steps + 1)
+                    advance_groups(code, of.wide, some, *given, *ends, self.steps, rows, of.count)
                     if last < samples:  # on to the first step of what follows
                         check_time()
-                        rest, spare = (ends[1], last * self.steps), np.empty(lanes)
-                        advance_groups(code, some, buffers, command.record, forces, *at, *rest, 1 << 40, spare, lanes)
+                        rest, spare = (ends[1], last * self.steps), np.empty(of.count)
+                        advance_groups(code, of.wide, some, *given, *rest, 1 << 40, spare, of.count)
 
-            each(advance, np.array_split(np.arange(groups), min(groups, cores())))
-            rows = out.reshape(-1, lanes)[:, : count * vectors].reshape(-1, count, vectors)
+            each(advance, np.array_split(np.arange(side_by_side.groups), min(side_by_side.groups, cores())))
+            rows = out.reshape(-1, side_by_side.count)
             for first in range(begin, end, length):
                 last = min(first + length, end)
-                yield rows[first - begin : last - begin], first, last
+                shown = side_by_side.shown(rows[first - begin : last - begin], count * vectors)
+                yield shown.reshape(-1, count, vectors), first, last
+            if side_by_side.used > WIDE and self.start is not None and end < samples:
+                side_by_side = side_by_side.joined()
+
+    def _chunks(self, length: int, lanes: Lanes) -> Iterator[tuple[int, int]]:
+        """The samples that are simulated in one go, from one to before another, in blocks of `length`.
+
+        As many as memory near the core holds; where lanes may come together few at first, then twice as many each time.
+        """
+        samples, most = self.runs[0].length, max(1, _CHUNK // (length * lanes.count)) * length
+        begin, size = 0, most if self.start is None or lanes.used <= WIDE else length
+        while begin < samples:
+            end = min(begin + size, samples)
+            yield begin, end
+            begin, size = end, min(2 * size, most)
 
     def _kernel(self) -> Kernel:
         exponents = {
@@ -193,11 +208,13 @@ class Simulation:
 def _batches(groups: NDArray[np.intp], begin: int, end: int, steps: int) -> Iterator[tuple[tuple[int, int], int, int]]:
     """Groups of lanes and samples to be advanced in one go, from one to before another: between them time may be up.
 
+    `steps` are those of all lanes of a group in a sample.
+
     Mostly all of them at once; of long records, or many lanes, some groups after the other, each from the first sample
     to the last. However they are cut, a lane takes the same steps.
     """
     first, last = int(groups[0]), int(groups[-1]) + 1
-    samples = max(1, LONGEST_BATCH // (WIDE * steps))  # of one group
+    samples = max(1, LONGEST_BATCH // steps)  # of one group
     together = max(1, samples // max(end - begin, 1))
     for group in range(first, last, together):
         for sample in range(begin, end, samples):

@@ -195,17 +195,17 @@ def test_a_long_batch_is_cut_into_short_ones_and_gives_the_same(monkeypatch):
     values = {p.in_equations: p.value for p in MODEL.parameters}
     values["dead_zone__half_width"] = 1e-4
     together = _outputs(values)
-    batches: list[tuple[tuple[int, int], int, int]] = []
+    batches: list[tuple[int, int, int]] = []
     advance = simulate.advance_groups
 
-    def told(code, groups, *given):
-        batches.append((groups, *given[5:7]))
-        return advance(code, groups, *given)
+    def told(code, wide, groups, *given):
+        batches.append((wide * (groups[1] - groups[0]), *given[5:7]))
+        return advance(code, wide, groups, *given)
 
     monkeypatch.setattr(simulate, "advance_groups", told)
     monkeypatch.setattr(simulate, "LONGEST_BATCH", 4_000)
     cut = _outputs(values)
-    assert max((groups[1] - groups[0]) * (last - first) * simulate.WIDE for groups, first, last in batches) <= 4_000
+    assert max(lanes * (last - first) for lanes, first, last in batches) <= 4_000
     assert all(np.array_equal(cut[run], together[run]) for run in together)
 
 

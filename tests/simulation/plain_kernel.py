@@ -17,7 +17,7 @@ import pytest
 from numpy.typing import NDArray
 
 from ident.simulation import simulate
-from ident.simulation.kernel import LANES, WIDE, Kernel
+from ident.simulation.kernel import LANES, Kernel
 
 Array = NDArray[np.float64]
 CALLS: dict[str, Callable[..., Any]] = {
@@ -35,17 +35,17 @@ def plain_kernels() -> Iterator[None]:
 
 
 def advance_groups(
-    kernel: Kernel, groups: tuple[int, int], buffers: Array, u: Array, fm: Array, u_at: NDArray[np.int64],
+    kernel: Kernel, wide: int, groups: tuple[int, int], buffers: Array, u: Array, fm: Array, u_at: NDArray[np.int64],
     fm_at: NDArray[np.int64], first: int, last: int, every: int, out: Array, lanes: int
 ) -> None:  # fmt: skip
     """What :func:`ident.simulation.machine_call.advance_groups` does; a lane that repeats the one before is copied."""
     rows, b = out.reshape(-1, lanes), buffers.reshape(lanes // LANES, -1, LANES)
     begun, said = b.copy(), _code(kernel.lines)
-    for lane in range(WIDE * groups[0], WIDE * groups[1]):
+    for lane in range(wide * groups[0], wide * groups[1]):
         buffer, own = divmod(lane, LANES)
         before = (buffer, own - 1)
         if (
-            lane % WIDE
+            lane % wide
             and u_at[lane] == u_at[lane - 1]
             and np.array_equal(begun[buffer, :, own], begun[before[0], :, own - 1])
         ):
