@@ -88,30 +88,35 @@ def with_free_widths(
     """The best refit of a base with one of the effects and its widths free, where it improves on the `best` so far.
 
     Only effects whose prediction, from places along their ranges, comes near the error of the best are refitted, and
-    effects with a start of their own in the place of a spring.
+    effects with a start of their own in the place of a spring. A refit that cannot come below that error is given up.
     """
     names = with_widths(models, names)
     if not names:
         return None
-    free, asked = with_free_shapes(models, names, is_usual), CRITERIA.ranking.near_best * models.trial_error(best)
+    free, aim = with_free_shapes(models, names, is_usual), models.trial_error(best)
     promising = sorted(predict(free, base, names), key=lambda prediction: prediction.after.error)
     promising = [
         prediction
         for prediction in promising
-        if prediction.after.error < asked or springs(free, base, [prediction.effect])
+        if prediction.after.error < CRITERIA.ranking.near_best * aim or springs(free, base, [prediction.effect])
     ][: CRITERIA.free_widths.tried]
-    refits = [freed_refit(free, base, prediction) for prediction in promising]
+    refits = [freed_refit(free, base, prediction, aim) for prediction in promising]
     better = [refit for refit in refits if refit is not None and worth_adding(models, best, refit)]
     return stable_minimum(better, lambda refit: refit.held_out.score) if better else None
 
 
-def freed_refit(models: CandidateModels, base: FittedModel, prediction: Prediction) -> FittedModel | None:
+def freed_refit(
+    models: CandidateModels, base: FittedModel, prediction: Prediction, aim: float = np.inf
+) -> FittedModel | None:
     """The refit with an effect whose shapes are free, from the optimum on which two starts agree.
 
-    Shapes that the data do not determine are held at their usual values again; None where they determine none.
+    Shapes that the data do not determine are held at their usual values again; None where they determine none, or where
+    the first refit ends above `aim`, the error of a model that is known on the same records.
     """
-    best, name = trial_from_everywhere(models, base, prediction), prediction.effect
-    refit = models.converged(models.refit(best.effects, best.values)) if best.finite else best
+    best, name = trial_from_everywhere(models, base, prediction, aim), prediction.effect
+    if best.local.error > aim or not best.finite:
+        return None
+    refit = models.converged(models.refit(best.effects, best.values))
     while refit.finite and (loose := undetermined(refit, models.effects[name])):
         shape = tuple(replace(p, searched=p.searched and p.of_effect(name).in_equations not in loose)
                       for p in models.effects[name].shape)  # fmt: skip

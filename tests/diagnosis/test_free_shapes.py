@@ -126,6 +126,16 @@ def test_a_width_that_the_data_do_not_determine_is_not_freed():
     assert freed_refit(free, base, prediction) is None
 
 
+def test_a_refit_that_does_not_come_below_a_known_error_is_given_up():
+    """On trial, before every sample is taken; one that comes below it ends as one that nothing is asked of."""
+    free, base, prediction = refitted(Damper())
+    reached = freed_refit(free, base, prediction)
+    known = free.trial_error(reached)
+    again = freed_refit(free, base, prediction, 1.1 * known)
+    assert again.error == pytest.approx(reached.error, rel=CRITERIA.free_widths.agrees)
+    assert freed_refit(free, base, prediction, 0.9 * known) is None
+
+
 @pytest.mark.full
 def test_the_usual_width_is_found_as_any_other():
     """A damper whose friction builds up over a fifth of its motion's deviation."""
