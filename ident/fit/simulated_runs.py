@@ -332,9 +332,12 @@ class SimulatedRuns:
         if start.shape[1] == 1:
             return list(start[0])
         vectors = {name: np.repeat(value, start.shape[1]) for name, value in values.items()}
+        power = np.zeros(start.shape[1])
         with np.errstate(over="ignore", invalid="ignore"):
-            outputs = [rows[:, 0] for rows, _, _ in self.simulation((run,), vectors, steps, start).outputs()]
-            power = np.mean((run.measured[:, None] - np.concatenate(outputs)) ** 2, axis=0)
+            for rows, first, last in self.simulation((run,), vectors, steps, start).outputs():
+                power += np.sum((run.measured[first:last, None] - rows[:, 0]) ** 2, axis=0)
+                if np.all(rows == rows[:, :, :1]):  # what they began with is forgotten: the rest is the same for all
+                    break
         return list(start[0, np.argsort(np.where(np.isfinite(power), power, np.inf), kind="stable")])
 
     def _with_followers(self, start: Array, run: Run, values: Mapping[str, float]) -> Array:
