@@ -16,6 +16,11 @@ from ident.simulation.kernel import LANES, WIDE
 
 Array = NDArray[np.float64]
 Places = NDArray[np.int64]
+_MANY = 500_000
+"""Steps of all lanes of a simulation from which a kernel of sixteen lanes is worth its compilation. Why: such a
+simulation takes a millisecond less, and the compilation fifty, which a refit or two make good.
+
+Test: tests/simulation/test_lanes.py::test_a_kernel_of_sixteen_lanes_is_compiled_for_what_takes_many_steps"""
 
 
 @dataclass(frozen=True)
@@ -23,14 +28,15 @@ class Lanes:
     """Lanes that are simulated side by side: the first `used` of them, the others are spare.
 
     `buffers` are the kernel's buffers, those of sixteen lanes one after the other, flat; `command_at` and `force_at`
-    (lanes,) are where each lane begins in its inputs. `of` (shown,) is the lane that each output is read from, None
-    where that is the lane of its own number.
+    (lanes,) are where each lane begins in its inputs, `steps` those that each takes in all. `of` (shown,) is the lane
+    that each output is read from, None where that is the lane of its own number.
     """
 
     buffers: Array
     command_at: Places
     force_at: Places
     used: int
+    steps: int
     of: NDArray[np.intp] | None = None
 
     @property
@@ -40,8 +46,8 @@ class Lanes:
 
     @property
     def wide(self) -> int:
-        """The lanes of one group, those of a kernel: sixteen cost little more than eight."""
-        return WIDE if self.used <= WIDE else LANES
+        """The lanes of one group, those of a kernel: sixteen cost little more than eight, where there are as many."""
+        return LANES if self.used > WIDE and self.used * self.steps >= _MANY else WIDE
 
     @property
     def groups(self) -> int:
@@ -70,4 +76,4 @@ class Lanes:
         kept = np.pad(kept, (0, -len(kept) % LANES), mode="edge")
         buffers = columns[kept].reshape(-1, LANES, columns.shape[1]).transpose(0, 2, 1).ravel()
         read = np.array(of)[np.arange(self.used) if self.of is None else self.of]
-        return Lanes(buffers, self.command_at[kept], self.force_at[kept], len(first), read)
+        return Lanes(buffers, self.command_at[kept], self.force_at[kept], len(first), self.steps, read)

@@ -85,7 +85,7 @@ class Simulation:
         force_at = inputs[built.measured[0]].begin if built.measured else command.begin
         lane_values |= {HELD: self._held(lanes), SHARE: command.share}
         packed = self._packed(built, lane_values, lanes, inputs)
-        side_by_side = Lanes(packed, command.begin, force_at, count * vectors)
+        side_by_side = Lanes(packed, command.begin, force_at, count * vectors, samples * self.steps)
         for begin, end in self._chunks(length, side_by_side):
             out = np.empty((end - begin) * side_by_side.count)
             code, _kept = built.address(side_by_side.wide)

@@ -46,7 +46,7 @@ def alone(of: Simulation, vector: int) -> np.ndarray:
 
 @pytest.mark.parametrize("vectors", [12, 24, 40])
 def test_each_vector_is_what_it_is_alone_to_the_last_bit(vectors):
-    """Eight lanes or sixteen a kernel, and after lanes have come together, too."""
+    """In kernels of sixteen lanes as in those of eight, and after lanes have come together, too."""
     together = moving(vectors)
     found = outputs(together)
     assert np.std(found[:, 0]) > 0
@@ -67,6 +67,16 @@ def test_vectors_that_differ_in_their_first_states_alone_are_simulated_once_when
     outputs(moving(40))
     assert used[0] == 48
     assert used[-1] == 32
+
+
+@pytest.mark.parametrize(("samples", "wide"), [(1_000, 8), (SAMPLES, 16)])
+def test_a_kernel_of_sixteen_lanes_is_compiled_for_what_takes_many_steps(monkeypatch, samples, wide):
+    """A short simulation is over before it would be compiled."""
+    used: list[int] = []
+    monkeypatch.setattr(simulate, "advance_groups", lambda _code, wide, *_given: used.append(wide))
+    of = moving(24)
+    outputs(replace(of, runs=(of.runs[0].part(0, samples),)))
+    assert used[0] == wide
 
 
 def test_vectors_of_a_machine_that_forgets_no_first_state_stay_apart():
