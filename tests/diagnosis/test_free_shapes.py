@@ -132,7 +132,7 @@ def test_a_refit_that_does_not_come_below_a_known_error_is_given_up():
     reached = freed_refit(free, base, prediction)
     known = free.trial_error(reached)
     again = freed_refit(free, base, prediction, 1.1 * known)
-    assert again.error == pytest.approx(reached.error, rel=CRITERIA.free_widths.agrees)
+    assert again.error == pytest.approx(reached.error, rel=1.0 - CRITERIA.estimation.new_optimum)
     assert freed_refit(free, base, prediction, 0.9 * known) is None
 
 

@@ -165,21 +165,23 @@ def _rows(
     terms: Sequence[Term], beside: Sequence[Regressors], paths: Mapping[str, Sequence[Response]], runs: Sequence[int],
     sound: NDArray[np.bool_],
 ) -> Array:  # fmt: skip
-    """[T * φ, J, r] of some runs, one below the other; a batch of columns after the other.
+    """[T * φ, J, r] of some runs, one below the other; each batch of columns is put in its place, and held once.
 
     `sound` (terms,) becomes true for terms that are finite in one of these runs.
     """
-    todo = [(run, here) for run in runs for here in batches(terms)]
-    answers = iter(
-        each(lambda of: beside[of[0]].to([terms[i] for i in of[1]], paths[terms[of[1][0]].path][of[0]]), todo)
-    )
-    every = []
+    lengths = [len(beside[run].known) for run in runs]
+    ends = dict(zip(runs, np.cumsum(lengths), strict=True))
+    rows = np.empty((sum(lengths), len(terms) + beside[runs[0]].known.shape[1]))
+
+    def filled(of: tuple[int, list[int]]) -> tuple[list[int], NDArray[np.bool_]]:
+        run, here = of
+        found, finite = beside[run].to([terms[i] for i in here], paths[terms[here[0]].path][run])
+        rows[ends[run] - len(found) : ends[run], here] = found
+        return here, finite
+
+    for here, finite in each(filled, [(run, here) for run in runs for here in batches(terms)]):
+        sound[here] |= finite
     for run in runs:
         known = beside[run].known
-        rows = np.empty((len(known), len(terms) + known.shape[1]))
-        rows[:, len(terms) :] = known
-        for here in batches(terms):
-            rows[:, here], finite = next(answers)
-            sound[here] |= finite
-        every.append(rows)
-    return np.concatenate(every)
+        rows[ends[run] - len(known) : ends[run], len(terms) :] = known
+    return rows

@@ -2,16 +2,20 @@
 
 from __future__ import annotations
 
+import threading
+import tracemalloc
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
+from ident.diagnosis.discovery.regression import _rows
 from ident.diagnosis.discovery.regressors import Regressors
 from ident.diagnosis.discovery.term import Term
 from ident.fit.anchoring import Anchoring
 from ident.linear import LinearModel
 from ident.residuals.decimation import Response
+from tests.diagnosis.vary import vary
 
 N, RATE = 700, 50.0
 
@@ -40,3 +44,24 @@ def test_a_column_is_to_the_bit_what_it_is_alone(window):
     found = np.column_stack(alone)
     expected = (found - columns.basis @ (columns.basis.T @ found)) / columns.size
     assert np.array_equal(together, expected)
+
+
+def test_the_rows_of_a_regression_are_held_once(monkeypatch):
+    """Of a long record they are hundreds of megabytes; a copy of them, or of all answers, would be as many again."""
+    monkeypatch.setattr("ident.parallel._idle", lambda: threading.Semaphore(0))
+    vary(monkeypatch, "discovery", block=4)
+    terms = [SimpleNamespace(path=path) for path in ("w", "Q") for _ in range(20)]
+    answer = np.random.default_rng(0).standard_normal((10_000, 4))
+    record = SimpleNamespace(
+        known=np.ones((10_000, 3)), to=lambda of, path: (path * answer[:, : len(of)], [True] * len(of))
+    )
+    sound = np.zeros(len(terms), dtype=bool)
+    tracemalloc.start()
+    rows = _rows(terms, [record, record], {"w": [1.0, 2.0], "Q": [3.0, 4.0]}, range(2), sound)
+    peak = tracemalloc.get_traced_memory()[1]
+    tracemalloc.stop()
+    assert peak < 1.2 * rows.nbytes
+    assert sound.all()
+    expected = np.vstack([np.hstack([np.tile(w * answer, 5), np.tile(q * answer, 5), record.known])
+                          for w, q in ((1.0, 3.0), (2.0, 4.0))])  # fmt: skip
+    assert np.array_equal(rows, expected)
