@@ -92,19 +92,22 @@ def noise_test(residual: Residual, criteria: Criteria = CRITERIA) -> NoiseTest:
 
 
 def contradicts(change: VerifyChange, criteria: Criteria = CRITERIA) -> bool:
-    """Whether validation data contradict an effect: the error rises beyond chance, or the model is unstable there."""
+    """Whether validation data contradict an effect: the error rises beyond chance; its rise is infinite where the model
+    is unstable."""
     return change.rise > criteria.verification.deviations * change.std_error
 
 
 def shows_nothing(change: VerifyChange, criteria: Criteria = CRITERIA) -> bool:
     """Whether validation data show nothing of an effect that they would show if it acted as it was fitted.
 
-    The validation error does not fall beyond chance, with its mean or without; and its fall is beyond chance less than
-    the fall that is due. A mean that the model does not explain may hide an effect that the residual about it shows.
+    The validation error does not fall beyond chance, and its fall is beyond chance less than the fall that is `due` if
+    the effect acts. Where the mean of the output counts in the fit, `rise` and `due` are of the error with its mean, and
+    the error without its mean must not fall beyond chance either (`fall_without_mean`, 0 where the mean does not count):
+    a mean that the model does not explain may hide an effect that the residual about it shows.
     """
     deviations, fall = criteria.verification.deviations, -change.rise
     chance = deviations * change.std_error
-    is_shown_without_mean = change.tabled_fall > deviations * change.tabled_std_error
+    is_shown_without_mean = change.fall_without_mean > deviations * change.std_error_without_mean
     return not contradicts(change, criteria) and not is_shown_without_mean and fall <= chance < change.due - fall
 
 

@@ -74,7 +74,7 @@ class VerifyChange:
     """The error on validation data without an effect and with it, and the standard error of the difference.
 
     Where the mean counts, the errors `with_mean` decide, because they were fitted, and the standard error is of their
-    difference. `before` and `after` are the errors of eq. (17) that tables show, and `tabled_std_error` that of their
+    difference. `before` and `after` are the errors of eq. (17) that tables show, and `std_error_without_mean` that of their
     difference. `after` is None where the model is `unstable` on these runs with the effect, and was not without it.
     With `free_run` they are the errors of a free run with its mean, which rise beyond chance. `shown` is the size of
     the change of the model's output by the effect on these runs, as an error of the same kind.
@@ -88,7 +88,7 @@ class VerifyChange:
     free_run: bool = False
     with_mean: tuple[float, float] | None = None
     shown: float = 0.0
-    tabled_std_error: float = 0.0
+    std_error_without_mean: float = 0.0
 
     @property
     def due(self) -> float:
@@ -101,7 +101,7 @@ class VerifyChange:
         return first - float(np.sqrt(max(first**2 - self.shown**2, 0.0)))
 
     @property
-    def tabled_fall(self) -> float:
+    def fall_without_mean(self) -> float:
         """By how much the error without the mean falls, where the mean counts; 0 where it does not."""
         return 0.0 if self.with_mean is None or self.after is None else self.before - self.after
 
@@ -143,8 +143,10 @@ def verify_change(
     shown = _error(runs, [first - last for first, last in zip(*counted, strict=True)])
     if means is None:
         return VerifyChange(effect, *with_mean, std_error, shown=shown)
-    tabled, tabled_std_error = (_error(runs, before), _error(runs, after)), _error_of_difference(runs, before, after)
-    return VerifyChange(effect, *tabled, std_error, with_mean=with_mean, shown=shown, tabled_std_error=tabled_std_error)
+    return VerifyChange(
+        effect, _error(runs, before), _error(runs, after), std_error, with_mean=with_mean, shown=shown,
+        std_error_without_mean=_error_of_difference(runs, before, after),
+    )  # fmt: skip
 
 
 def _raised(residuals: Sequence[Array], means: Array) -> list[Array]:

@@ -73,9 +73,12 @@ SHOWS_NOTHING = VerifyChange("lag", 0.1, 0.0999, 0.001, shown=0.06)  # due if it
         (replace(SHOWS_NOTHING, std_error=0.02), ("lead", "lag")),  # nobody knows
         (replace(SHOWS_NOTHING, after=0.103), ("lead", "lag")),  # contradicted, which is said of what is named
         (replace(SHOWS_NOTHING, before=0.05, after=0.0499, with_mean=(0.1, 0.097)), ("lead", "lag")),
-        (replace(SHOWS_NOTHING, before=0.05, after=0.0499, with_mean=(0.1, 0.0999), tabled_std_error=0.001), ("lead",)),
         (
-            replace(SHOWS_NOTHING, before=0.05, after=0.02, with_mean=(0.1, 0.0999), tabled_std_error=0.001),
+            replace(SHOWS_NOTHING, before=0.05, after=0.0499, with_mean=(0.1, 0.0999), std_error_without_mean=0.001),
+            ("lead",),
+        ),
+        (
+            replace(SHOWS_NOTHING, before=0.05, after=0.02, with_mean=(0.1, 0.0999), std_error_without_mean=0.001),
             ("lead", "lag"),
         ),
     ],
