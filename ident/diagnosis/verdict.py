@@ -101,9 +101,9 @@ def shows_nothing(change: VerifyChange, criteria: Criteria = CRITERIA) -> bool:
     """Whether validation data show nothing of an effect that they would show if it acted as it was fitted.
 
     The validation error does not fall beyond chance, and its fall is beyond chance less than the fall that is `due` if
-    the effect acts. Where the mean of the output counts in the fit, `rise` and `due` are of the error with its mean, and
-    the error without its mean must not fall beyond chance either (`fall_without_mean`, 0 where the mean does not count):
-    a mean that the model does not explain may hide an effect that the residual about it shows.
+    the effect acts. Where the mean of the output counts in the fit, `rise` and `due` are of the error with its mean,
+    and the error without its mean must not fall beyond chance either (`fall_without_mean`, 0 where the mean does not
+    count): a mean that the model does not explain may hide an effect that the residual about it shows.
     """
     deviations, fall = criteria.verification.deviations, -change.rise
     chance = deviations * change.std_error

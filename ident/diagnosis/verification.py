@@ -74,8 +74,9 @@ class VerifyChange:
     """The error on validation data without an effect and with it, and the standard error of the difference.
 
     Where the mean counts, the errors `with_mean` decide, because they were fitted, and the standard error is of their
-    difference. `before` and `after` are the errors of eq. (17) that tables show, and `std_error_without_mean` that of their
-    difference. `after` is None where the model is `unstable` on these runs with the effect, and was not without it.
+    difference. `before` and `after` are the errors of eq. (17) that tables show, and `std_error_without_mean` is the
+    standard error of their difference. `after` is None where the model is `unstable` on these runs with the effect, and
+    was not without it.
     With `free_run` they are the errors of a free run with its mean, which rise beyond chance. `shown` is the size of
     the change of the model's output by the effect on these runs, as an error of the same kind.
     """
