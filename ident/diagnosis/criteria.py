@@ -268,13 +268,9 @@ class CrossValidationFolds:
     """[folds] A quarter of the runs is held out at a time. Why: the fit without a fold is close to the fit of all.
     Test: test_criteria_of_comparison.py::test_a_single_run_has_eight_stretches_and_many_runs_four_folds"""
     stretches: int = 8
-    """[folds] Of a single run, each held out in turn; half as many of two or three runs. Why: twice as many fits as for
-    many runs, and each stretch is longer than the machine's memory.
+    """[stretches] Of a single run, each held out in turn; half as many of each of two or three runs. Why: twice as many
+    fits as for many runs, and each stretch is longer than the machine's memory.
     Test: test_criteria_of_comparison.py::test_a_single_run_has_eight_stretches_and_many_runs_four_folds"""
-    turns: int = 2
-    """[stretches] Of a single run in each fold, half a record apart. Why: where its command is a sweep, a stretch is a
-    band of frequencies, and an effect that acts in one band would be known by no other fold.
-    Test: test_cross_validation.py::test_of_four_runs_whole_ones_are_left_out_of_fewer_stretches"""
     max_step: float = 0.01
     """[of an axis] Step over which one linearisation is trusted. Why: an effect that acts in jumps is far from linear
     beyond.

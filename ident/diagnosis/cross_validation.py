@@ -1,10 +1,10 @@
 """The residuals out of fold: the residuals of a refit on data that it was not fitted to.
 
-With four runs or more whole runs are held out in turn; with fewer, stretches: of a single run an eighth, in two parts;
-of two or three runs a quarter of each, another one of each. The parameters are fitted again without the data of one
-fold, and the refitted model is simulated there.
-From the optimum of all data one Gauss-Newton step leads to the optimum without a fold, exactly for a linear
-least-squares problem, so that sums of products of each segment of a record are all that a fit without a fold takes,
+With four runs or more whole runs are held out in turn; with fewer, stretches: an eighth of a single run, a quarter of
+each of two or three runs, and another one of each. The parameters are fitted again without the data of one fold, and
+the refitted model is simulated there. From the optimum of all data one Gauss-Newton step leads to the optimum without a
+fold, exactly for a linear least-squares problem, so that sums of products of each segment of a record are all that a
+fit without a fold takes,
 
     δ = −H⁻¹ g  from the other folds
 
@@ -167,17 +167,15 @@ def _of_long_steps(
 def fold_of_segments(number: int, segments: int, runs: int) -> Indices:
     """The fold of each segment of the run with a number, (segments,): one for all where whole runs are left out.
 
-    Whole runs are dealt out at random. Stretches are dealt out in turn, so that the data without a fold show what is
-    held out: two of a single run to each fold, and of two or three runs other parts of each. The frequency of a sweep,
-    and the level of a staircase, changes along the record.
+    Whole runs are dealt out at random. Of two or three runs a fold has another stretch of each: the frequency of a
+    sweep, and the level of a staircase, changes along the record, and other folds show them as well.
     """
     criteria = CRITERIA.cross_validation
     if runs >= CRITERIA.evidence.whole_runs:
         dealt = np.random.default_rng(0).permutation(runs) % criteria.folds
         return np.full(segments, dealt[number])
-    folds, turns = (criteria.stretches, criteria.turns) if runs == 1 else (criteria.stretches // 2, 1)
-    stretch = np.arange(segments) * min(turns * folds, segments) // segments
-    return np.asarray((stretch + number) % min(folds, segments), dtype=np.intp)
+    folds = min(criteria.stretches if runs == 1 else criteria.stretches // 2, segments)
+    return np.asarray((np.arange(segments) * folds // segments + number) % folds, dtype=np.intp)
 
 
 def _projected(run: NormalMatrices, used: Mask) -> Array:

@@ -175,7 +175,7 @@ def _preferred(
     simpler = [
         one
         for one in others
-        if one.parameters < first.kept
+        if one.parameters < first.irreplaceable
         and one.error <= CRITERIA.equality.practically_equal * first.error
         and (one.machine in strange) <= (first.machine in strange)
         and not better(one.best, first.best)
@@ -357,7 +357,7 @@ class _JudgedStructure:
         return self.best.finite and self.models.residual_above_noise(self.best)
 
     @property
-    def kept(self) -> int:
+    def irreplaceable(self) -> int:
         """The number of its parameters, less those whose place its effect takes: an arm's weight that of a spring."""
         taken = {name for effect in self.best.effects for name in self.models.effects[effect].takes_over}
         return self.parameters - len(taken & {p.in_equations for p in self.models.preset.parameters})

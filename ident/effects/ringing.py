@@ -6,8 +6,8 @@ the noise of y would damp and move the poles. A pair of poles exp(s) oscillates 
 between 0 and 1/√2, at |s|. Noise puts pairs near half the sample rate, and the poles of what is sampled too finely on
 the real axis: so pairs above 1.2 rad count not, and q is doubled while 100 means are left.
 
-What is a machine's shows twice, at one frequency: in two runs, or in two of one run and its two halves. What noise or
-dry friction makes of one run does not. Of several the least damped is the machine's.
+A resonance of the machine shows twice, at one frequency: in two runs, or in two of one run and its two halves. One that
+noise or dry friction feigns in one run does not. Of several the least damped is the machine's.
 """
 
 from __future__ import annotations

@@ -87,16 +87,16 @@ def test_residuals_out_of_fold_are_those_of_fits_without_each_fold(rng, count):
 
 
 def test_of_four_runs_whole_ones_are_left_out_of_fewer_stretches():
-    """Four folds of runs, eight of two stretches of a single one, four of one stretch of each of two or three."""
+    """Four folds of runs, eight stretches of a single one, four of two or three, another one of each in a fold."""
     assert {int(of) for number in range(4) for of in fold_of_segments(number, 32, 4)} == {0, 1, 2, 3}
     assert all(len(set(fold_of_segments(number, 32, 4).tolist())) == 1 for number in range(4))
-    assert fold_of_segments(0, 32, 1).tolist() == np.tile(np.repeat(np.arange(8), 2), 2).tolist()
+    assert fold_of_segments(0, 32, 1).tolist() == np.repeat(np.arange(8), 4).tolist()
     assert fold_of_segments(0, 32, 3).tolist() == np.repeat([0, 1, 2, 3], 8).tolist()
     assert fold_of_segments(2, 32, 3).tolist() == np.repeat([2, 3, 0, 1], 8).tolist()
 
 
-@pytest.mark.parametrize("count", [1, 2])
-def test_a_resonance_is_known_by_every_fold_of_a_sweep(rng, count):
+@pytest.mark.parametrize("count", [2, 3])
+def test_a_resonance_is_known_by_every_fold_of_two_sweeps(rng, count):
     """Of two parameters one hardly shows but in an eighth of each record, as a resonance does in a sweep."""
     data = []
     for run, J in records(rng, count):

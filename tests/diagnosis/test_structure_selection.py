@@ -214,7 +214,7 @@ def test_one_that_asks_beyond_its_bound_gives_way_to_one_that_does_not(first, ot
     def model(machine: str, error: float, at_bound: bool) -> SimpleNamespace:
         best = SimpleNamespace()
         return SimpleNamespace(
-            machine=machine, parameters=2, kept=2, error=error, best=best, with_effect=best, at_bound=at_bound
+            machine=machine, parameters=2, irreplaceable=2, error=error, best=best, with_effect=best, at_bound=at_bound
         )
 
     lag, motor = model("lag", 0.324, first), model("motor", 0.306, other)
@@ -233,13 +233,13 @@ def test_one_that_leaves_as_little_of_windows_has_to_be_as_likely(left, taken):
         no_windows = SimpleNamespace(horizon=None)
         best = SimpleNamespace(held_out=SimpleNamespace(error=0.03), residuals_held_out=residuals, fitness=no_windows)
         return SimpleNamespace(
-            machine=machine, parameters=parameters, kept=parameters, error=0.03, best=best, with_effect=best,
+            machine=machine, parameters=parameters, irreplaceable=parameters, error=0.03, best=best, with_effect=best,
             at_bound=False,
         )  # fmt: skip
 
     first, lag = model("open_valve", 6, 0.0), model("first_order", 2, left)
     assert _preferred(first, [first, lag], set(), {})[0].machine == taken
-    first.kept = 2  # its effect takes the place of four of them
+    first.irreplaceable = 2  # its effect takes the place of four of them
     assert _preferred(first, [first, lag], set(), {})[0].machine == "open_valve"
 
 
@@ -252,7 +252,7 @@ def test_an_improbable_machine_gives_way_to_the_most_probable(probabilities, tak
 
     def model(machine: str) -> SimpleNamespace:
         return SimpleNamespace(
-            machine=machine, parameters=2, kept=2, error=0.1, best=None, with_effect=None, at_bound=False
+            machine=machine, parameters=2, irreplaceable=2, error=0.1, best=None, with_effect=None, at_bound=False
         )
 
     first, lag, motor = (model(name) for name in ("open_valve", "first_order", "motor"))

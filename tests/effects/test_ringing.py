@@ -79,7 +79,7 @@ def rubbing(seed: int) -> Run:
 
 
 def test_a_load_behind_a_spring_is_seen_in_noise_and_dry_friction_is_none():
-    """Of one run, and of two; what friction makes of a linear equation differs from run to run."""
+    """Of one run, and of two; a linear equation bent by friction differs from run to run."""
     springs, dry = [loaded(seed) for seed in range(8)], [rubbing(seed) for seed in range(8)]
     assert sum(resonance([one]) is not None for one in springs) >= 7
     assert sum(resonance(pair) is not None for pair in zip(springs[::2], springs[1::2], strict=True)) == 4
