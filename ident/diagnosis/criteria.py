@@ -66,8 +66,9 @@ class Estimation:
     way, and of an effect that acts in jumps the next optimum lies behind the last.
     Test: test_criteria_of_estimation.py::test_a_refit_is_continued_five_times_at_most"""
     pair_shares: tuple[float, ...] = (1.0, 0.3, 0.03)
-    """[of the strength] Of the second of two effects when fitted alone, to start the pair from. Why: the first may take
-    over most of what the second explained alone.
+    """[of the strength] Of the second of two effects when fitted alone, to start the pair from; and of an equal part of
+    the strengths of several, to start them all from. Why: the first may take over most of what the second explained
+    alone.
     Test: test_criteria_of_estimation.py::test_a_pair_begins_with_all_of_the_second_effect_and_with_a_small_part"""
     simulation_excess: float = 1.03
     """[ratio of errors] Of a simulation over its linear prediction that is still a result. Why: a model that is not

@@ -14,6 +14,7 @@ from ident.diagnosis.candidate_models import CandidateModels
 from ident.diagnosis.criteria import CRITERIA
 from ident.diagnosis.fitted_model import FittedModel
 from ident.diagnosis.free_shapes import springs, with_free_widths, with_shapes_of
+from ident.diagnosis.joint_refit import joint_refit
 from ident.diagnosis.ladder import Ladder, score, without_effect
 from ident.diagnosis.model_comparison import better, worth_adding
 from ident.diagnosis.ranking import deepened, rank, rank_each
@@ -363,6 +364,20 @@ class Moves:
             if best is not None and worth_adding(self.models, selection.fitted, best):
                 return self.step(replace(selection, changes=selection.changes + 1), best)
         return None
+
+    def joint_refit(self, selection: Selection) -> Selection | None:
+        """Continue with what remains of all promising effects that are refitted at once, where that is noise alone.
+
+        One effect at a time leads to none of two that make up for each other. What is found at once was not judged
+        effect by effect: so it has to explain everything.
+        """
+        predictions = [candidate.prediction for candidate in selection.ranking]
+        refit = joint_refit(self.models, selection.base, predictions, self.most)
+        if refit is None or not refit.finite or not self.models.at_floor(refit):
+            return None
+        if not worth_adding(self.models, selection.fitted, refit):
+            return None
+        return self.step(replace(selection, changes=selection.changes + 1), refit)
 
     def pair_search(self, selection: Selection) -> Selection | None:
         """Continue from two finalists of the first ranking at once, where these are better beyond chance.

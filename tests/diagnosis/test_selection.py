@@ -31,6 +31,7 @@ class Judgement:
     worth_adding: bool
     base: Any = None
     worsens_part: bool = False
+    prediction: Any = None
 
     @property
     def score(self):
@@ -52,7 +53,7 @@ class Judged:
 
     effects = ("a", "b", "c")
     floor = 0.1
-    freed = spring = shown = worsening = ""
+    freed = spring = shown = worsening = together = ""
 
     def __init__(self, scores: dict[str, float], needed: set[str], far: str, late: str, off: str) -> None:
         self.off = off
@@ -159,6 +160,10 @@ class Judged:
         """The effect that does better with its widths free, where there is one."""
         return self.refit((self.freed,), {}) if self.freed in names else None
 
+    def joint_refit(self, _models, _base, _predictions, _most):
+        """What remains of all effects at once, where anything does."""
+        return self.refit(self.together, {}) if self.together else None
+
     def with_shapes_of(self, _models, _refit, _name):
         """The same models: what is free shows in their scores alone."""
         return self
@@ -173,7 +178,7 @@ class Judged:
 
     def stand_in(self, monkeypatch: pytest.MonkeyPatch) -> None:
         """For what a search asks of real refits."""
-        ranked = ("rank", "rank_each", "deepened", "with_free_widths", "with_shapes_of", "springs")
+        ranked = ("rank", "rank_each", "deepened", "joint_refit", "with_free_widths", "with_shapes_of", "springs")
         judged = ("worth_adding", "better")
         equal = (candidate, ("indistinguishable", "dominated")), (ambiguity, ("indistinguishable",))
         for module, names in ((moves, ranked + judged), *equal, (refitted_sets, ("both_probable",))):
@@ -228,6 +233,15 @@ def test_two_of_which_neither_helps_beside_what_stands_for_both_are_found(added)
     scores = {"": 1.0, "a": 0.5, "b": 0.52, "c": 0.9, "ab": 0.5, "ac": 0.5, "bc": 0.05}
     assert added(scores, needed={"a", "b", "c"}, late="c") == {"b", "c"}
     assert added({**scores, "b": 0.7}, needed={"a", "b", "c"}, late="c") == {"a"}  # b is improbable beside a
+
+
+@pytest.mark.parametrize(("left", "found"), [(0.05, {"b", "c"}), (0.2, {"a"})])
+def test_effects_that_are_found_only_all_at_once_have_to_explain_everything(added, monkeypatch, left, found):
+    """a stands for b and c, of which no search has a refit; what is found at once is taken where it leaves noise."""
+    monkeypatch.setattr(Judged, "together", "bc")
+    scores = {"": 1.0, "a": 0.5, "b": 0.9, "c": 0.9, "ab": 0.5, "ac": 0.5, "bc": left}
+    monkeypatch.setattr(Judged, "pair_trial", lambda self, *_: self.refit(("a",), {}))
+    assert added(scores, needed={"a", "b", "c"}, far="bc", late="bc") == found
 
 
 def test_an_effect_that_worsens_a_part_of_the_data_is_added_with_the_one_that_mends_it(monkeypatch):
