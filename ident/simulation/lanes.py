@@ -63,8 +63,8 @@ class Lanes:
 
         They hold the same numbers, and begin at the same place of the same inputs.
         """
-        columns = self.buffers.reshape(-1, len(self.buffers) // self.count, LANES).transpose(0, 2, 1)
-        columns = columns.reshape(self.count, -1)
+        by_sixteen = self.buffers.reshape(-1, len(self.buffers) // self.count, LANES)
+        columns = by_sixteen.transpose(0, 2, 1).reshape(self.count, -1)
         first: dict[tuple[bytes, int, int], int] = {}
         of = [
             first.setdefault((columns[i].tobytes(), int(self.command_at[i]), int(self.force_at[i])), len(first))
