@@ -25,6 +25,7 @@ from ident.effects import CATALOGUE
 from ident.effects.effect import Effect
 from ident.fit.given import effect_of
 from ident.fit.uncertainty import DETERMINED
+from ident.parallel import each
 from ident.parameter import Parameter, Starts
 
 _ALONG = (Starts.ALONG_RANGE, Starts.FINELY)
@@ -100,7 +101,7 @@ def with_free_widths(
         for prediction in promising
         if prediction.after.error < CRITERIA.ranking.near_best * aim or springs(free, base, [prediction.effect])
     ][: CRITERIA.free_widths.tried]
-    refits = [freed_refit(free, base, prediction, aim) for prediction in promising]
+    refits = each(lambda prediction: freed_refit(free, base, prediction, aim), promising)
     better = [refit for refit in refits if refit is not None and worth_adding(models, best, refit)]
     return stable_minimum(better, lambda refit: refit.held_out.score) if better else None
 

@@ -391,11 +391,17 @@ class Moves:
         if self.most < 2 or len(finalists) < 2:
             return None
         pairs, target = list(combinations(finalists, 2)), self.models.trial_error(selection.fitted)
-        trials: list[FittedModel] = []
-        for i, pair in enumerate(pairs):
-            self.report(Progress("trying pairs", i, len(pairs)))
-            trials.append(self.models.pair_trial(*pair, target))
-        return self._best_of(replace(selection, changes=selection.changes + 1), trials)
+        done = 0
+
+        def tried(pair: tuple[FittedModel, FittedModel]) -> FittedModel:
+            nonlocal done
+            trial = self.models.pair_trial(*pair, target)
+            done += 1
+            self.report(Progress("trying pairs", done, len(pairs)))
+            return trial
+
+        self.report(Progress("trying pairs", 0, len(pairs)))
+        return self._best_of(replace(selection, changes=selection.changes + 1), each(tried, pairs))
 
     def free_widths(self, selection: Selection) -> Selection | None:
         """Begin again with an effect whose widths are free, where it is better than any with the usual ones.
