@@ -139,6 +139,8 @@ def test_hidden_friction_and_weight_are_named(full):
     assert force.unit == "Pa"
     assert force.value == pytest.approx(8.0 / CYLINDER.area, rel=0.1)
     with of_few_effects(full, "arm_gravity", "coulomb_friction", "cubic_stiffness"):
-        hanging = replace(ARM, stiffness=1.0, weight=2.0).recorded(3, "rad")
+        hanging = replace(ARM, stiffness=1.0, weight=2.0, area=2.5e-5).recorded(3, "rad")
         found = diagnose(hanging, settings=Settings(model=""), most=1, propose=False)
     assert found.verdict.effects == ("arm_gravity",)
+    torque = found.ladder[-1].parameters["arm_gravity.torque"]
+    assert (torque.unit, torque.value) == ("Pa", pytest.approx(2.0 / 2.5e-5, rel=0.05))
