@@ -45,14 +45,16 @@ class Estimation:
     begin and terms are sought. Why: all effects take about a second, and 128 points about as much as one trial.
     Test: test_criteria_of_estimation.py::test_a_refit_takes_so_much_of_the_records"""
     global_points: int = 128
-    """[points] Of a Sobol sample of the whole search space. Why: a model has up to about ten parameters.
+    """[points] Of a Sobol sample of the whole search space. Why: they cost about as much as one trial; of models with
+    ten parameters no measurement of it is kept.
     Test: test_criteria_of_estimation.py::test_a_model_of_unknown_place_is_begun_from_the_four_best_of_128_points"""
     global_starts: int = 4
     """[points] Of these from which a refit begins. Why: the least error of a coarse sample is not always the best
-    start.
+    start; chosen by what it costs, and no measurement of it is kept.
     Test: test_criteria_of_estimation.py::test_a_model_of_unknown_place_is_begun_from_the_four_best_of_128_points"""
     leading: int = 8
-    """[refits] Of first steps, and of rough refits with terms, that are continued. Why: the rest is far behind.
+    """[refits] Of first steps, and of rough refits with terms, that are continued. Why: the rest is usually far behind;
+    chosen by what it costs, and no measurement of it is kept.
     Test: test_fitted_model.py::test_of_first_steps_the_eight_that_leave_least_go_on"""
     new_optimum: float = 0.99
     """[ratio of errors] Below which a refit is at another optimum than the one before. Why: refits of one optimum
@@ -134,8 +136,8 @@ class Screening:
     as shapes times strengths.
     Test: test_criteria_of_prediction.py::test_of_many_shapes_each_is_simulated_once"""
     strengths_of_many: tuple[float, ...] = (0.3,)
-    """[of the way to each bound] At which each of many shapes is simulated. Why: the middle of the range by its
-    logarithm.
+    """[of the way to each bound] At which each of many shapes is simulated. Why: scaled by two it reaches from a sixth
+    to over half of the range; weaker and stronger ones are left to the refit.
     Test: test_criteria_of_prediction.py::
     test_the_one_strength_of_many_shapes_can_be_scaled_from_a_sixth_to_over_half_of_the_range"""
     strengths_of_stop: tuple[float, ...] = (1.02, 1.08, 1.2, 1.4, 1.7)
@@ -181,8 +183,9 @@ class InitialGuesses:
     than the one before, about the resolution of a play in a sample.
     Test: test_criteria_of_prediction.py::test_a_shape_with_which_the_output_jumps_begins_at_places_a_fifth_apart"""
     hanging_shares: tuple[float, ...] = (0.1, 0.4, 0.7, 0.9)
-    """[of the moving mass] That may hang behind a spring, where the search for its frequency begins. Why: each place is
-    a third lower than the one before, and the refit follows a resonance over a fifth.
+    """[of the moving mass] That may hang behind a spring, where the search for its frequency begins. Why: the
+    frequencies that follow, down to a quarter of that of the record, lie within a third of one; over how much a refit
+    follows a resonance is not measured.
     Test: test_criteria_of_prediction.py::test_a_part_behind_a_spring_begins_within_a_third_of_its_frequency"""
     spring_shares: tuple[float, ...] = (0.3, 0.6)
     """[of the machine's spring] Share that an effect which is a spring at first has taken over. Why: from either share
@@ -212,7 +215,8 @@ class FreeWidths:
     and no model that explains the records does.
     Test: test_criteria_of_estimation.py::test_records_are_short_below_fifty_thousand_steps_of_eight_a_sample_at_most"""
     tried: int = 3
-    """[effects] Refitted with free widths, the best predictions first. Why: each is refitted from several places.
+    """[effects] Refitted with free widths, the best predictions first. Why: each is refitted from several places;
+    chosen by what it costs, and no measurement of it is kept.
     Test: test_criteria_of_prediction.py::test_three_effects_are_refitted_with_free_widths"""
 
 
@@ -222,7 +226,8 @@ class Ranking:
 
     contenders: int = 12
     """[candidates] Refitted on trial; of a large matrix two fewer for each effect of the model with a further one. Why:
-    the best is among the first twelve predictions, and each refit costs more the larger the model.
+    the best is usually among the first predictions, and each refit costs more the larger the model; chosen by what it
+    costs, and no measurement of it is kept.
     Test: test_criteria_of_ranking.py::test_of_a_large_matrix_fewer_are_tried_the_larger_the_model"""
     quick_steps: int = 200_000
     """[simulation steps] Of all runs below which a matrix is quick. Why: every prediction and every finalist can then
@@ -240,7 +245,8 @@ class Ranking:
     pair of lags in the place of which a trial is continued. Why: a trial takes only the beginnings of the records.
     Test: test_criteria_of_ranking.py::test_a_trial_in_the_place_of_an_effect_counts_within_five_per_cent"""
     multistart_finalists: int = 2
-    """[finalists] Refitted from other strengths, too. Why: they decide what is added.
+    """[finalists] Refitted from other strengths, too. Why: they decide what is added; chosen by what it costs, and no
+    measurement of it is kept.
     Test: test_criteria_of_ranking.py::test_the_best_two_finalists_are_begun_again"""
     strong_starts: tuple[float, ...] = (1.0, 0.6, 0.3)
     """[of the largest strength] From which a refit begins, too. Why: a fit that lacks the effect may have gone far
@@ -315,7 +321,8 @@ class Selection:
     """[effects] Added where the user says nothing. Why: machines of the trials lack up to three.
     Test: test_criteria_of_ranking.py::test_terms_are_searched_for_unless_a_small_limit_ended_the_selection"""
     exchanged: int = 3
-    """[effects] Up to which each is compared with all others in its place every time. Why: more take long.
+    """[effects] Up to which each is compared with all others in its place every time. Why: to compare more takes long;
+    chosen by what it costs, and no measurement of it is kept.
     Test: test_criteria_of_ranking.py::
     test_more_than_three_effects_are_compared_with_all_others_in_a_pass_of_their_own"""
     rounds: int = 3

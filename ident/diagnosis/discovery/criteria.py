@@ -33,11 +33,13 @@ class Discovery:
     differences between runs.
     Test: discovery/test_criteria_of_terms.py::test_six_runs_are_parted_into_those_that_search_choose_and_confirm"""
     classes: int = 6
-    """[classes] Of terms that are refitted. Why: the best is among the first.
+    """[classes] Of terms that are refitted. Why: the best is usually among the first; chosen by what it costs, and no
+    measurement of it is kept.
     Test: discovery/test_criteria_of_terms.py::test_the_six_best_classes_are_refitted"""
     of_a_kind: int = 4
     """[candidates] Of one kind that are refitted: pairs of terms, curves, and terms without shapes behind the leading
-    ones. Why: the best is among the first, and held-out data may prefer a plain term.
+    ones. Why: the best is usually among the first, and held-out data may prefer a plain term; chosen by what it costs,
+    and no measurement of it is kept.
     Test: discovery/test_criteria_of_terms.py::
     test_four_pairs_at_most_are_refitted_and_none_that_gains_less_than_half_of_the_best"""
     may_win: float = 0.5
