@@ -143,7 +143,7 @@ def _shift(measured: Array, model: Array) -> float:
 def _later(samples: Array, lag: float) -> Array:
     """Samples that come so many samples later."""
     places = np.arange(len(samples))
-    return np.interp(places - lag, places, samples)
+    return np.asarray(np.interp(places - lag, places, samples))
 
 
 def _errors(models: CandidateModels, fitted: FittedModel, run: Run, changed: Mapping[str, Array]) -> Array:
