@@ -23,6 +23,8 @@ from tests.fit.test_windows import cylinder
 from tests.presets.test_composed import force_loop
 from tests.presets.test_machines import motor, specimen
 from tests.presets.test_position_servo import servo
+from tests.presets.test_pressure_drive import CYLINDER
+from tests.presets.test_sprung_motor import machine as swinging
 from tests.presets.test_two_tanks import tanks
 from tests.short_form import short_form
 
@@ -100,6 +102,8 @@ MACHINES: dict[str, tuple[str, Callable[[], Matrix], tuple[str, ...]]] = {
     "a driven mass with an effect": ("drive", driven, ("coulomb_friction",)),
     "a motor": ("motor", lambda: motor(5), ()),
     "a motor with an effect": ("motor", lambda: motor(5, 1.0), ("dead_zone",)),
+    "a mass that a pressure drives": ("pressure_drive", lambda: CYLINDER.recorded(1), ()),
+    "a motor against a spring": ("sprung_motor", lambda: swinging(1), ()),
     "a servo": ("position_servo", lambda: servo(1), ()),
     "a motor as a cylinder": ("open_valve", lambda: motor(5), ()),
     "a specimen": ("specimen", lambda: specimen(4), ()),
