@@ -165,7 +165,7 @@ def _of_long_steps(
 
 
 def fold_of_segments(number: int, segments: int, runs: int) -> Indices:
-    """The fold of each segment of the run with a number, (segments,): one for all where whole runs are left out.
+    """The fold of each segment of the run with a number, (segments,): one for all where whole runs are held out.
 
     Whole runs are dealt out at random. Of two or three runs a fold has another stretch of each: the frequency of a
     sweep, and the level of a staircase, changes along the record, and other folds show them as well.

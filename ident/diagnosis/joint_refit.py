@@ -1,4 +1,4 @@
-"""All promising effects refitted at once, and those that are not needed left out: backward elimination.
+"""All promising effects refitted at once, and those that are not needed taken out: backward elimination.
 
 Where several effects act, and each makes up for a part of another, a fit with one of them lies far from the machine: by
 its sensitivities none of the others promises anything. With all of them free the refit leads to the machine, and there
@@ -25,8 +25,8 @@ def joint_refit(
     """The model with at most so many effects in addition to `base` that remain of all promising ones; None where fewer
     than two promise anything.
 
-    `predictions` are those of the effects that `base` lacks, best first. Effects are left out as long as the error on
-    the beginnings of the records stays within what is worth a refit of the least on the way.
+    `predictions` are those of the effects that `base` lacks, best first. Effects are taken out as long as the error on
+    the beginnings of the records stays within `ranking.promising` of the least on the way.
     """
     promising = _together(models, base, predictions)
     if len(promising) < 2:
@@ -44,20 +44,20 @@ def joint_refit(
 def _together(models: CandidateModels, base: FittedModel, predictions: Sequence[Prediction]) -> list[Prediction]:
     """The best predictions that are worth a refit and that one chain can hold."""
     found: list[Prediction] = []
-    for one in predictions:
-        worth = one.reduction > CRITERIA.ranking.promising
-        if worth and models.fit_together((*base.effects, *(other.effect for other in found), one.effect)):
-            found.append(one)
+    for prediction in predictions:
+        worth = prediction.reduction > CRITERIA.ranking.promising
+        if worth and models.fit_together((*base.effects, *(other.effect for other in found), prediction.effect)):
+            found.append(prediction)
     return found[: CRITERIA.ranking.contenders]
 
 
 def _begun(models: CandidateModels, base: FittedModel, promising: Sequence[Prediction]) -> FittedModel:
     """The refit with all of them, from the share of the strengths that leads farthest: each predicts to act alone."""
-    effects, values = (*base.effects, *(one.effect for one in promising)), dict(base.values)
-    for one in promising:
-        names = (p.in_equations for p in models.effects[one.effect].added)
-        values |= {name: one.starts[0][name] for name in names if name in one.starts[0]}
-    strengths = [models.strength(one.effect) for one in promising]
+    effects, values = (*base.effects, *(prediction.effect for prediction in promising)), dict(base.values)
+    for prediction in promising:
+        names = (p.in_equations for p in models.effects[prediction.effect].added)
+        values |= {name: prediction.starts[0][name] for name in names if name in prediction.starts[0]}
+    strengths = [models.strength(prediction.effect) for prediction in promising]
     first_steps = [
         models.refit(
             effects, {**values, **{name: share / len(promising) * values[name] for name in strengths}},
@@ -65,7 +65,7 @@ def _begun(models: CandidateModels, base: FittedModel, promising: Sequence[Predi
         )
         for share in CRITERIA.estimation.pair_shares
     ]  # fmt: skip
-    return _refit(models, effects, stable_minimum(first_steps, lambda one: one.local.error).values)
+    return _refit(models, effects, stable_minimum(first_steps, lambda refit: refit.local.error).values)
 
 
 def _refit(models: CandidateModels, effects: Iterable[str], values: Mapping[str, float]) -> FittedModel:

@@ -366,10 +366,10 @@ class Moves:
         return None
 
     def joint_refit(self, selection: Selection) -> Selection | None:
-        """Continue with what remains of all promising effects that are refitted at once, where that is noise alone.
+        """Continue with the effects that remain of all promising ones refitted at once, where the residual is noise.
 
-        One effect at a time leads to none of two that make up for each other. What is found at once was not judged
-        effect by effect: so it has to explain everything.
+        One effect at a time leads to none of two that make up for each other. Effects found at once were not judged
+        one by one: so they have to explain everything.
         """
         predictions = [candidate.prediction for candidate in selection.ranking]
         refit = joint_refit(self.models, selection.base, predictions, self.most)

@@ -202,7 +202,7 @@ def _side_by_side(
 
 
 def _predictions(models: CandidateModels, base: FittedModel, names: Sequence[str], report: Report) -> list[Prediction]:
-    """What every effect promises, the best first."""
+    """The predictions of all effects, the best first."""
     report(Progress("predicting", 0, 1))
     found = stable_ranking(predict(models, base, sorted(names, key=models.simplicity)), lambda one: one.after.score)
     first = tuple(Expected(one.effect, base.error * one.remaining) for one in found[: CRITERIA.ranking.finalists])

@@ -3,7 +3,7 @@
 Forward: the best effect of the ranking is added while it improves the model beyond chance; backward: effects that
 became redundant are taken out. Then each added effect is compared with all others in its place: a better one is
 exchanged for it, and effects that are indistinguishable from it are its alternatives. Where all of this ends above the
-noise, the search continues from what remains of all promising effects at once, from the next best sets, from strong
+noise, the search continues from all promising effects at once, from the next best sets, from strong
 effects, and from pairs of effects in the place of one; then it begins again with an effect whose widths are free.
 """
 

@@ -10,8 +10,8 @@ UPPER_OVERFLOW = Effect(
     meaning="the upper tank overflows an edge at the level 1/g, partly into the lower tank",
     strength=Parameter("inverse_level", "g", "1/m", 0.0, 1e3, 0.0, "inverse of the level of the edge", of_motion=True),
     texts=(
-        "ho = ho + ro * hb * max(g * h - 1, 0)",
-        "hi = hi + si * ro * hb * max(g * h - 1, 0)",
+        "ho = ho + ro * hb * max(g * hu - 1, 0)",
+        "hi = hi + si * ro * hb * max(g * hu - 1, 0)",
     ),
     units={"ho": "m", "hi": "m"},
     shape=(

@@ -158,7 +158,8 @@ def test_terms_alone_come_first_up_to_an_error_five_per_cent_larger(monkeypatch,
 @pytest.mark.parametrize(("probability", "first"), [(0.0085, False), (0.0115, True)])
 def test_the_most_probable_machine_comes_first_where_the_usual_one_is_improbable(probability, first):
     one, other = (
-        SimpleNamespace(machine=name, parameters=3, error=0.1, at_bound=False, with_effect=None) for name in "ab"
+        SimpleNamespace(machine=name, parameters=3, irreplaceable=3, error=0.1, at_bound=False, with_effect=None)
+        for name in "ab"
     )
     chosen, _ = _preferred(one, [one, other], (), {"a": probability, "b": 1.0 - probability})  # type: ignore[arg-type, list-item]
     assert (chosen is one) is first

@@ -88,7 +88,7 @@ def test_three_effects_are_refitted_with_free_widths(monkeypatch):
     predictions = [SimpleNamespace(effect=name, after=SimpleNamespace(error=0.1)) for name in "abcde"]
     for name, made in {
         "with_widths": lambda _models, names: list(names), "with_free_shapes": lambda models, *_: models,
-        "predict": lambda *_: predictions, "freed_refit": lambda _m, _b, one: refitted.append(one.effect),
+        "predict": lambda *_: predictions, "freed_refit": lambda _m, _b, one, _aim: refitted.append(one.effect),
     }.items():  # fmt: skip
         monkeypatch.setattr(free_shapes, name, made)
     models: Any = SimpleNamespace(trial_error=lambda _: 1.0)

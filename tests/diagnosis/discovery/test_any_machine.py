@@ -10,6 +10,8 @@ import pytest
 
 from ident.diagnosis.discovery.candidate_terms import places_of, terms_of_runs
 from ident.diagnosis.discovery.search import TermSearch, _built
+from ident.diagnosis.discovery.term import CURVE, STATE
+from ident.diagnosis.discovery.term_to_effect import STRENGTH
 from ident.presets import PRESETS
 from ident.progress import silent
 from tests.diagnosis.discovery.any_machine import KINDS, MACHINES, models_of, records, simulated
@@ -27,6 +29,11 @@ def test_the_machines_are_every_preset_of_stages_and_twenty_more():
     }
     assert len(MACHINES) == 32
     assert len(set(MACHINES)) == len(MACHINES)
+
+
+def test_no_signal_of_a_machine_bears_the_name_of_a_number_of_a_term():
+    """A term whose threshold h is a level of the machine could not be made an effect, and was left out in silence."""
+    assert not {name for name, preset in PRESETS.items() if {STRENGTH, CURVE, STATE} & {*preset.chain.units}}
 
 
 def test_a_term_adds_to_signals_alone():

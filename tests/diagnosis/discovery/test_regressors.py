@@ -9,13 +9,13 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from ident.diagnosis.discovery import regressors
 from ident.diagnosis.discovery.regression import _rows
 from ident.diagnosis.discovery.regressors import Regressors
 from ident.diagnosis.discovery.term import Term
 from ident.fit.anchoring import Anchoring
 from ident.linear import LinearModel
 from ident.residuals.decimation import Response
-from tests.diagnosis.vary import vary
 
 N, RATE = 700, 50.0
 
@@ -49,7 +49,7 @@ def test_a_column_is_to_the_bit_what_it_is_alone(window):
 def test_the_rows_of_a_regression_are_held_once(monkeypatch):
     """Of a long record they are hundreds of megabytes; a copy of them, or of all answers, would be as many again."""
     monkeypatch.setattr("ident.parallel._idle", lambda: threading.Semaphore(0))
-    vary(monkeypatch, "discovery", block=4)
+    monkeypatch.setattr(regressors, "_BATCH", 4)
     terms = [SimpleNamespace(path=path) for path in ("w", "Q") for _ in range(20)]
     answer = np.random.default_rng(0).standard_normal((10_000, 4))
     record = SimpleNamespace(
