@@ -11,7 +11,6 @@ from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.linalg import lapack
 
 Array = NDArray[np.float64]
 
@@ -21,6 +20,8 @@ def linear_filter(numerator: Sequence[float] | Array, denominator: Sequence[floa
 
     The numbers of :func:`scipy.signal.lfilter`, but for rounding.
     """
+    from scipy.linalg import lapack  # noqa: PLC0415 - a record is read without SciPy
+
     b, a = (np.asarray(of, np.float64) / denominator[0] for of in (numerator, denominator))
     driven = np.convolve(signal, b)[: len(signal)]
     diagonals = np.repeat(a[:, None], len(signal), axis=1)
