@@ -6,8 +6,9 @@ the noise of y would damp and move the poles. A pair of poles exp(s) oscillates 
 between 0 and 1/√2, at |s|. Noise puts pairs near half the sample rate, and the poles of what is sampled too finely on
 the real axis: so pairs above 1.2 rad count not, and q is doubled while 100 means are left.
 
-A resonance of the machine shows twice, at one frequency: in two runs, or in two of one run and its two halves. One that
-noise or dry friction feigns in one run does not. Of several the least damped is the machine's.
+A resonance of the machine shows twice, at one frequency: in two runs, or in one of several runs and both of its halves;
+of a single run, in two of the run and its halves. One that noise or dry friction feigns in one run does not. Of several
+the least damped is the machine's.
 """
 
 from __future__ import annotations
@@ -45,7 +46,15 @@ def resonance(runs: Iterable[Run]) -> float | None:
     driven = [run for run in runs if "command" in run.channels]
     if len(driven) == 1:
         return shown_twice([_of(driven[0], part) for part in (WHOLE, *HALVES)])
-    return shown_twice([_of(run, WHOLE) for run in driven])
+    found = shown_twice([_of(run, WHOLE) for run in driven])
+    throughout = (shown_throughout(*(_of(run, part) for part in (WHOLE, *HALVES))) for run in driven)
+    return found if found is not None else next((one for one in throughout if one is not None), None)
+
+
+def shown_throughout(whole: Sequence[Mode], *halves: Sequence[Mode]) -> float | None:
+    """The frequency of the least damped mode of a run that each of its halves shows, too, or None."""
+    found = [mode for mode in whole if all(any(_alike(mode, other) for other in half) for half in halves)]
+    return min(found)[1] if found else None
 
 
 def shown_twice(of: Sequence[Sequence[Mode]]) -> float | None:
@@ -53,9 +62,14 @@ def shown_twice(of: Sequence[Sequence[Mode]]) -> float | None:
     found = [
         (max(one[0], other[0]), float(np.sqrt(one[1] * other[1])))
         for number, modes in enumerate(of) for one in modes for others in of[:number] for other in others
-        if abs(np.log(one[1] / other[1])) < ALIKE
+        if _alike(one, other)
     ]  # fmt: skip
     return min(found)[1] if found else None
+
+
+def _alike(one: Mode, other: Mode) -> bool:
+    """Whether two modes have one frequency."""
+    return abs(float(np.log(one[1] / other[1]))) < ALIKE
 
 
 def _of(run: Run, part: int) -> list[Mode]:
