@@ -4,6 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import ParamSpec, TypeVar
+
+Given = ParamSpec("Given")
+Outcome = TypeVar("Outcome")
 
 
 @dataclass(frozen=True)
@@ -39,3 +43,19 @@ Report = Callable[[Progress], None]
 
 def silent(progress: Progress) -> None:
     """Report nothing."""
+
+
+def counted(
+    function: Callable[Given, Outcome], stage: str, total: Callable[[], int], report: Report
+) -> Callable[Given, Outcome]:  # fmt: skip
+    """The function, which reports after each call how many calls of the `total` by then are done."""
+    done = 0
+
+    def reporting(*given: Given.args, **named: Given.kwargs) -> Outcome:
+        nonlocal done
+        outcome = function(*given, **named)
+        done += 1
+        report(Progress(stage, done, total()))
+        return outcome
+
+    return reporting

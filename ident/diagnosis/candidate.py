@@ -13,7 +13,7 @@ from ident.diagnosis.evidence import comparison
 from ident.diagnosis.evidence.comparison import Evidence
 from ident.diagnosis.evidence.criteria import EVIDENCE_CRITERIA, OF_SHOWN
 from ident.diagnosis.fitted_model import FittedModel
-from ident.diagnosis.model_comparison import bar, dominated, evidence, finite_held_out, indistinguishable
+from ident.diagnosis.model_comparison import bar, dominated, evidence, finite_everywhere, indistinguishable
 from ident.diagnosis.screening import Prediction
 from ident.diagnosis.tie_breaking import stable_ranking
 
@@ -53,7 +53,7 @@ class Candidate:
 
     def refitted(self, models: CandidateModels, base: FittedModel, refit: FittedModel) -> Candidate:
         """The candidate with a refit on all records, and the evidence for it against the model without the effect."""
-        if not (base.finite and finite_held_out(base)):
+        if not finite_everywhere(base):
             return replace(self, refit=refit, evidence=None, worth_adding=True, worsens_part=False)
         found, criteria = evidence(base, refit), OF_SHOWN if models.is_shown(self.effect) else EVIDENCE_CRITERIA
         limit = partial(bar, models, base)

@@ -45,10 +45,12 @@ def _together(models: CandidateModels, base: FittedModel, predictions: Sequence[
     """The best predictions that are worth a refit and that one chain can hold."""
     found: list[Prediction] = []
     for prediction in predictions:
+        if len(found) == CRITERIA.ranking.contenders:
+            break
         worth = prediction.reduction > CRITERIA.ranking.promising
         if worth and models.fit_together((*base.effects, *(other.effect for other in found), prediction.effect)):
             found.append(prediction)
-    return found[: CRITERIA.ranking.contenders]
+    return found
 
 
 def _begun(models: CandidateModels, base: FittedModel, promising: Sequence[Prediction]) -> FittedModel:

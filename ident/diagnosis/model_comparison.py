@@ -80,3 +80,8 @@ def bar(models: CandidateModels, base: FittedModel) -> float:
 def finite_held_out(model: FittedModel) -> bool:
     """Whether the residual of the model is finite on all held-out data, on which it may diverge unseen."""
     return bool(np.isfinite(model.held_out.error))
+
+
+def finite_everywhere(model: FittedModel) -> bool:
+    """Whether the residual of the model is finite on the data that it was fitted to and on all held-out data."""
+    return model.finite and finite_held_out(model)

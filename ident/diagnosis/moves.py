@@ -23,7 +23,7 @@ from ident.diagnosis.selection import Selection
 from ident.diagnosis.tie_breaking import stable_minimum
 from ident.errors import TimeIsUp
 from ident.parallel import each
-from ident.progress import Progress, Report
+from ident.progress import Progress, Report, counted
 
 
 @dataclass
@@ -316,16 +316,12 @@ class Moves:
         if not self.above_floor(selection):
             return None
         names = [candidate.effect for candidate in selection.ranking[: CRITERIA.selection.global_restarts]]
-        done = 0
 
         def restarted(name: str) -> list[FittedModel]:
-            nonlocal done
-            refits = self.models.global_starts((*selection.base.effects, name))
-            done += 1
-            self.report(Progress("searching further", done, len(names)))
-            return refits
+            return self.models.global_starts((*selection.base.effects, name))
 
-        trials = (refit for refits in each(restarted, names) for refit in refits)
+        restarts = each(counted(restarted, "searching further", lambda: len(names), self.report), names)
+        trials = (refit for refits in restarts for refit in refits)
         return self._best_of(selection, self.models.leading(trials, self.models.trial_error(selection.fitted)))
 
     def _best_of(self, selection: Selection, trials: Sequence[FittedModel]) -> Selection | None:
@@ -391,17 +387,13 @@ class Moves:
         if self.most < 2 or len(finalists) < 2:
             return None
         pairs, target = list(combinations(finalists, 2)), self.models.trial_error(selection.fitted)
-        done = 0
+        self.report(Progress("trying pairs", 0, len(pairs)))
 
         def tried(pair: tuple[FittedModel, FittedModel]) -> FittedModel:
-            nonlocal done
-            trial = self.models.pair_trial(*pair, target)
-            done += 1
-            self.report(Progress("trying pairs", done, len(pairs)))
-            return trial
+            return self.models.pair_trial(*pair, target)
 
-        self.report(Progress("trying pairs", 0, len(pairs)))
-        return self._best_of(replace(selection, changes=selection.changes + 1), each(tried, pairs))
+        trials = each(counted(tried, "trying pairs", lambda: len(pairs), self.report), pairs)
+        return self._best_of(replace(selection, changes=selection.changes + 1), trials)
 
     def free_widths(self, selection: Selection) -> Selection | None:
         """Begin again with an effect whose widths are free, where it is better than any with the usual ones.

@@ -15,11 +15,11 @@ from ident.diagnosis.candidate_models import CandidateModels
 from ident.diagnosis.criteria import CRITERIA
 from ident.diagnosis.fitted_model import FittedModel
 from ident.diagnosis.free_shapes import trial_from_everywhere
-from ident.diagnosis.model_comparison import finite_held_out
+from ident.diagnosis.model_comparison import finite_everywhere
 from ident.diagnosis.screening import Prediction, predict
 from ident.diagnosis.tie_breaking import stable_minimum, stable_ranking
 from ident.parallel import each
-from ident.progress import Expected, Progress, Report
+from ident.progress import Expected, Progress, Report, counted
 
 Item = TypeVar("Item")
 _AGAIN = "starting again"  # from other strengths: the stage of a report
@@ -103,18 +103,13 @@ def _counted(
     stage: str, items: Sequence[Sequence[Item]], function: Callable[[FittedModel, Item], Candidate], report: Report
 ) -> Callable[[FittedModel, Item], Candidate]:  # fmt: skip
     """The function, which reports each item that it is through with, of those there are by then."""
-    done = 0
 
-    def counted(base: FittedModel, item: Item) -> Candidate:
-        nonlocal done
-        made = function(base, item)
-        done += 1
-        report(Progress(stage, done, sum(map(len, items))))
-        return made
+    def total() -> int:
+        return sum(map(len, items))
 
     if any(items):
-        report(Progress(stage, 0, sum(map(len, items))))
-    return counted
+        report(Progress(stage, 0, total()))
+    return counted(function, stage, total, report)
 
 
 def _that_count(
@@ -187,7 +182,7 @@ def _confirmed(models: CandidateModels, base: FittedModel, candidate: Candidate,
     is_behind = candidate.score > CRITERIA.ranking.close_trial * best
     way = CRITERIA.estimation.coarse if is_behind else CRITERIA.estimation.full
     refit = models.refit((*base.effects, candidate.effect), candidate.trial.values, way=way)
-    if not (refit.finite and finite_held_out(refit)):
+    if not finite_everywhere(refit):
         return replace(candidate, trial=None)
     return candidate.refitted(models, base, refit)
 

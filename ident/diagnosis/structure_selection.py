@@ -19,7 +19,7 @@ from ident.diagnosis.criteria import CRITERIA
 from ident.diagnosis.evidence.comparison import common_disturbance, gain
 from ident.diagnosis.evidence.probability import structure_probabilities
 from ident.diagnosis.fitted_model import FittedModel
-from ident.diagnosis.model_comparison import better, evidence, finite_held_out
+from ident.diagnosis.model_comparison import better, evidence, finite_everywhere
 from ident.diagnosis.operating_point import at_operating_point
 from ident.diagnosis.ranking import rank
 from ident.effects import CATALOGUE
@@ -112,7 +112,7 @@ def _compared(
 
 def _probabilities(compared: Sequence[_JudgedStructure]) -> dict[str, float]:
     """The probability of each compared model, by its machine; each model with its effect if it has one."""
-    sound = [model for model in compared if model.best.finite and finite_held_out(model.best)]
+    sound = [model for model in compared if finite_everywhere(model.best)]
     if len(sound) < 2:
         return {}
     sound.sort(key=lambda model: -model.error)  # the reference has the largest error
@@ -147,7 +147,7 @@ def _with_an_effect_each(
 def _gains_half(first: _JudgedStructure, larger: _JudgedStructure) -> bool:
     """Whether a model with an effect gains half of all that can be gained in addition to the first model with its
     own."""
-    if not (larger.best.finite and finite_held_out(larger.best) and finite_held_out(first.best)):
+    if not (finite_everywhere(larger.best) and finite_everywhere(first.best)):
         return False
     found = evidence(first.best, larger.best)
     return found.gain > CRITERIA.evidence.reaches * found.most

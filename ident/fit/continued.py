@@ -80,9 +80,7 @@ class ContinuedIdentification(Identification):
         of_user |= {p.in_equations for effect in self.preset.effects if effect.own for p in effect.added}
         names = [name for name in objective.space.names if name not in of_user]
         space = reaching(objective.space, self._begins_at(objective.space), names)
-        if isinstance(objective, SimulatedFitness):
-            return replace(objective, space=space)
-        assert isinstance(objective, LinearFitness)
+        assert isinstance(objective, SimulatedFitness | LinearFitness)
         return replace(objective, space=space)
 
     def _over(self, runs: tuple[Run, ...]) -> Fitness:
