@@ -237,7 +237,7 @@ class Ranking:
     """[ratio of predicted errors] To the best, of a contender for a further effect. Why: a prediction is that far off.
     Test: test_criteria_of_ranking.py::test_a_further_effect_is_tried_where_it_promises_within_a_third_of_the_best"""
     finalists: int = 5
-    """[candidates] Refitted to every sample, told as soon as they are predicted, and tried two at a time. Why: the
+    """[candidates] Refitted to every sample, reported as soon as they are predicted, and tried two at a time. Why: the
     table shows the first five in full.
     Test: test_criteria_of_ranking.py::test_of_a_large_matrix_fewer_are_tried_the_larger_the_model"""
     close_trial: float = 1.05

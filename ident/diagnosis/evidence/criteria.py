@@ -48,7 +48,7 @@ class EvidenceCriteria:
     Test: test_criteria_of_evidence.py::test_the_bar_is_of_two_hundred_surrogates"""
     chance: float = 0.05
     """[1] Probability that chance passes the bar, or that a difference exceeds its limit by chance; a less probable
-    effect is not said to stand beside a named one. Why: the custom of the field; it is corrected for the number of
+    effect is not named as an alternative. Why: the custom of the field; it is corrected for the number of
     candidates, because the bar is for the largest gain.
     Test: test_criteria_of_evidence.py::test_the_worse_of_two_models_is_as_improbable_as_chance_at_twelve_nats"""
     correlation_times: float = 10.0
