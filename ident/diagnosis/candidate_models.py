@@ -297,17 +297,16 @@ class CandidateModels:
         return self.floor is not None and is_noise(self._above(self.floor, error))
 
     def residual_above_noise(self, refit: FittedModel) -> bool:
-        """Whether the error is still above the noise: its floor, or where that is not known, its lack of memory."""
+        """Whether the residual is more than noise: above its floor, or where no repeats tell that, predicted."""
         return not is_noise(self.residual(refit))
 
     def residual(self, refit: FittedModel) -> Residual:
-        """The error of a refit, with its noise floor; where that is not known, with the memory of its residual."""
-        if self.floor is not None:
-            return self._above(self.floor, refit.error)
-        outputs = refit.fitness.outputs(refit.point)
-        residuals = [refit.fitness.left(run, outputs[run.id]) for run in self.runs]
-        memory = [float(np.corrcoef(r[1:], r[:-1])[0, 1]) for r in residuals]
-        return Residual(refit.error, None, correlation=float(np.median(memory)))
+        """The error of a refit with its noise floor, and where repeats do not tell it, with the
+        share of the residual that the commands predict."""
+        found = Residual(refit.error, None) if self.floor is None else self._above(self.floor, refit.error)
+        if (found.floor is not None and is_noise(found)) or self.floors.in_band or not refit.stable:
+            return found
+        return replace(found, predicted=refit.predicted_share)
 
     def _above(self, floor: float, error: float) -> Residual:
         return Residual(error, floor, self.floors.spread(sum(run.length for run in self.runs)))

@@ -9,6 +9,7 @@ import numpy as np
 
 from ident.cached import cached_property
 from ident.diagnosis.criteria import CRITERIA
+from ident.diagnosis.cross_validation import is_sweep
 from ident.diagnosis.evidence.energy_bands import EnergyBands, Record
 from ident.noise.floor import Floors
 from ident.noise.periodic import fundamental
@@ -22,6 +23,11 @@ class ComparedRecords:
 
     runs: tuple[Run, ...]
     floors: Callable[[], Floors]
+
+    @cached_property
+    def swept(self) -> bool:
+        """Whether the command of a run is a sweep."""
+        return any("command" in run.channels and is_sweep(run.command) for run in self.runs)
 
     @cached_property
     def bands(self) -> EnergyBands:

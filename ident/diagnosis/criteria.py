@@ -96,10 +96,6 @@ class Noise:
     """[of the floor] By which an error on the records of a bench may exceed it. Why: the error of a reading that stands
     still lasts long.
     Test: test_criteria_of_estimation.py::test_an_error_is_noise_within_each_margin"""
-    noise_correlation: float = 0.5
-    """[correlation] Of neighbouring residuals that noise may have where no floor is known. Why: above it the residual
-    has a memory.
-    Test: test_criteria_of_estimation.py::test_an_error_is_noise_within_each_margin"""
 
 
 @dataclass(frozen=True)

@@ -1,10 +1,10 @@
 """The residuals out of fold: the residuals of a refit on data that it was not fitted to.
 
-With four runs or more whole runs are held out in turn; with fewer, stretches: an eighth of a single run, a quarter of
-each of two or three runs, and another one of each. The parameters are fitted again without the data of one fold, and
-the refitted model is simulated there. From the optimum of all data one Gauss-Newton step leads to the optimum without a
-fold, exactly for a linear least-squares problem, so that sums of products of each segment of a record are all that a
-fit without a fold takes,
+With four runs or more whole runs are held out in turn; with fewer, stretches: an eighth of a single run, the same
+quarter of each of two or three runs, and where a command is a sweep another quarter of each. The parameters are fitted
+again without the data of one fold, and the refitted model is simulated there. From the optimum of all data one
+Gauss-Newton step leads to the optimum without a fold, exactly for a linear least-squares problem, so that sums of
+products of each segment of a record are all that a fit without a fold takes,
 
     δ = −H⁻¹ g  from the other folds
 
@@ -90,17 +90,19 @@ def scored(error: float, offset: float, weight: float) -> float:
 
 
 def out_of_fold(
-    point: Array, here: Local, simulate: Simulate, seen: Callable[[int, Array], Array], lengths: Sequence[int]
-) -> list[Array]:
+    point: Array, here: Local, simulate: Simulate, seen: Callable[[int, Array], Array], lengths: Sequence[int],
+    swept: bool = False,
+) -> list[Array]:  # fmt: skip
     """The residuals (n,) of each run, each sample by a model that was fitted without its fold; means and all.
 
     The nuisance parameter of a record, its mean, is estimated from the whole record.
 
     `point` is the optimum of the unit cube, `here` the objective there; `seen` is what the objective sees of the
-    residual of the run with a number. Where no model without a fold is better on the other folds than the optimum of
-    all data, that one stands in for it.
+    residual of the run with a number; `swept`: a command is a sweep. Where no model without a fold is better on the
+    other folds than the optimum of all data, that one stands in for it.
     """
-    folds = [fold_of_segments(number, len(run.blocks), len(here.runs)) for number, run in enumerate(here.runs)]
+    runs = len(here.runs)
+    folds = [fold_of_segments(number, len(run.blocks), runs, swept) for number, run in enumerate(here.runs)]
     of_samples = [of[np.arange(n) * len(of) // n] for of, n in zip(folds, lengths, strict=True)]
     found, means = [np.full(length, np.nan) for length in lengths], np.zeros(len(lengths))
 
@@ -164,18 +166,35 @@ def _of_long_steps(
     return found
 
 
-def fold_of_segments(number: int, segments: int, runs: int) -> Indices:
+def is_sweep(command: Array) -> bool:
+    """Whether a command (n,) is a sweep: from each of eight stretches to the next its median frequency does not fall,
+    or does not rise, and at one end of the record it is at least twice that at the other.
+
+    Half of a stretch's spectral power lies below its median frequency.
+    """
+    medians = []
+    for stretch in np.array_split(command, CRITERIA.cross_validation.stretches):
+        moved = (stretch - stretch.mean()) * np.hanning(len(stretch))
+        power = np.cumsum(np.abs(np.fft.rfft(moved)) ** 2)
+        medians.append(np.searchsorted(power, power[-1] / 2) / len(stretch))
+    steps, ends = np.diff(medians), (medians[0], medians[-1])
+    return bool((np.all(steps >= 0) or np.all(steps <= 0)) and min(ends) > 0 and max(ends) >= 2 * min(ends))
+
+
+def fold_of_segments(number: int, segments: int, runs: int, swept: bool = False) -> Indices:
     """The fold of each segment of the run with a number, (segments,): one for all where whole runs are held out.
 
-    Whole runs are dealt out at random. Of two or three runs a fold has another stretch of each: the frequency of a
-    sweep, and the level of a staircase, changes along the record, and other folds show them as well.
+    Whole runs are dealt out at random. Of two or three runs a fold has the same stretch of each, so that runs in two
+    directions balance one another. Of a sweep a stretch is a band of frequencies: there a fold has another stretch of
+    each, and the other folds show that band.
     """
     criteria = CRITERIA.cross_validation
     if runs >= CRITERIA.evidence.whole_runs:
         dealt = np.random.default_rng(0).permutation(runs) % criteria.folds
         return np.full(segments, dealt[number])
     folds = min(criteria.stretches if runs == 1 else criteria.stretches // 2, segments)
-    return np.asarray((np.arange(segments) * folds // segments + number) % folds, dtype=np.intp)
+    first = number if swept and runs > 1 else 0
+    return np.asarray((np.arange(segments) * folds // segments + first) % folds, dtype=np.intp)
 
 
 def _projected(run: NormalMatrices, used: Mask) -> Array:

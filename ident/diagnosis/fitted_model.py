@@ -13,8 +13,10 @@ from ident.cached import cached_property
 from ident.diagnosis.compared_records import ComparedRecords
 from ident.diagnosis.criteria import CRITERIA
 from ident.diagnosis.cross_validation import OutOfFold, out_of_fold
+from ident.diagnosis.evidence.blocks import BlockMean
 from ident.diagnosis.evidence.comparison import Residuals
 from ident.diagnosis.evidence.free_run import FreeRun, adds_up
+from ident.diagnosis.evidence.model_error import predicted_share
 from ident.diagnosis.parameter_estimate import ParameterEstimate
 from ident.fit.fitness import Local
 from ident.fit.levenberg_marquardt import Way
@@ -51,7 +53,9 @@ class FittedModel:
     def held_out(self) -> OutOfFold:
         """Its residuals on stretches, or on whole runs, that were held out of the fit in turn."""
         lengths = [run.length for run in self.fitness.runs]
-        return self._residuals(out_of_fold(self.point, self.local, self._left_of, self._seen, lengths))
+        return self._residuals(
+            out_of_fold(self.point, self.local, self._left_of, self._seen, lengths, self.records.swept)
+        )
 
     @cached_property
     def residuals_held_out(self) -> Residuals:
@@ -64,6 +68,13 @@ class FittedModel:
         every = range(len(self.fitness.runs))
         fitted = self._residuals(next(self._left_of([self.point], every)))
         return Residuals(fitted.residuals, self.records.bands, fitted.levels)
+
+    @cached_property
+    def predicted_share(self) -> BlockMean:
+        """The share of its residual that the commands predict: above zero where it lacks an effect."""
+        outputs, runs = self.fitness.outputs(self.point), self.fitness.runs
+        residuals = [self.fitness.left(run, outputs[run.id]) for run in runs]
+        return predicted_share(residuals, [run.command for run in runs], [outputs[run.id] for run in runs])
 
     @cached_property
     def free_run(self) -> FreeRun:

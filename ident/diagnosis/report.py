@@ -109,6 +109,7 @@ def _text(selection: Selection, steps: Rungs, findings: Findings, floor: float |
         [name for name in findings.at_bound if name not in unconfirmed], fewer,
         steps[-1][1].unstable.get("verify", ()), verdict.probabilities, verdict.group_probabilities, selection.limit,
         [unconfirmed[name] for name in verdict.unconfirmed],
+        verdict.noise_test is not None and verdict.noise_test.predicted is not None,
     )  # fmt: skip
 
 

@@ -95,7 +95,7 @@ def verdict_text(
     against: Sequence[Contradiction] = (), complete: bool = True, described: Callable[[str], str] = title,
     bounded: Sequence[str] = (), fewer: tuple[float, Sequence[str]] | None = None, unstable: Sequence[str] = (),
     probabilities: Mapping[str, float] = MappingProxyType({}), group_probabilities: Sequence[float] = (),
-    limit: int | None = None, unconfirmed: Sequence[VerifyChange] = (),
+    limit: int | None = None, unconfirmed: Sequence[VerifyChange] = (), asked: bool = False,
 ) -> str:  # fmt: skip
     """The verdict in a few sentences, contradictions first.
 
@@ -105,7 +105,8 @@ def verdict_text(
     these effects; `unstable` are the validation runs on which the model is unstable with them. `probabilities` has the
     effects, "nothing" and something "unlisted", `group_probabilities` has one for each group. `limit` is the largest
     number of effects, where it ended the search. `unconfirmed` are the changes of the validation error by added effects
-    that are not named.
+    that are not named. `asked`: whether the commands predict a part of the residual
+    decided whether it is noise.
     """
     named = _described_once(described)
     found = [one.message(named(one.effect)) for one in against]
@@ -125,8 +126,8 @@ def verdict_text(
         found.append(message("verdict.unconfirmed", before=before))
     elif unexplained:
         found.append(message("verdict.none", before=before))
-    elif floor is None:
-        found.append(message("verdict.white", before=before))
+    elif asked:
+        found.append(_probable("verdict.unpredicted", "nothing", probabilities, before=before))
     else:
         found.append(_probable("verdict.nothing", "nothing", probabilities, before=before))
     found += [_shows_nothing(named(change.effect), change) for change in unconfirmed]
@@ -136,7 +137,7 @@ def verdict_text(
         found.append(message("verdict.others", others=others))
     found += [message("verdict.label", run=one.run, what=one.what, evidence=one.evidence) for one in suspects]
     if unexplained:
-        found += _remaining(complete, limit, probabilities, in_band, floor)
+        found += _remaining(complete, limit, probabilities, in_band, floor, asked)
     return said(found)
 
 
@@ -162,20 +163,24 @@ def _falls(
 
 
 def _remaining(
-    complete: bool, limit: int | None, probabilities: Mapping[str, float], in_band: bool, floor: float | None
+    complete: bool, limit: int | None, probabilities: Mapping[str, float], in_band: bool, floor: float | None,
+    predicted: bool,
 ) -> Iterator[Message]:  # fmt: skip
-    """The messages that the error is above the noise floor, and why the residual may be noise or a further effect."""
+    """The messages that the residual is more than noise, and why a part of it may be noise or a further effect."""
     examined = complete and limit is None
     yield _probable("verdict.unlisted" if examined else "verdict.remains", "unlisted", probabilities)
     if limit is not None:
         yield message("verdict.limited", limit=limit)
+    if predicted:
+        yield message("verdict.predicted")
     if not in_band:
         yield message("verdict.not_repeated_floor_unknown" if floor is None else "verdict.not_repeated")
 
 
 _PROBABLE: Mapping[str, str] = {
     "effect": "effect.probable", "verdict.nothing": "verdict.nothing_probable",
-    "verdict.unlisted": "verdict.unlisted_probable", "verdict.remains": "verdict.remains_probable",
+    "verdict.unpredicted": "verdict.unpredicted_probable", "verdict.unlisted": "verdict.unlisted_probable",
+    "verdict.remains": "verdict.remains_probable",
 }  # fmt: skip
 """For each message the message with a probability."""
 

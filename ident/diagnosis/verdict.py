@@ -15,18 +15,20 @@ noise. A *group* are effects that the data cannot tell apart. The verdict stands
   contradicted; or no noise floor is known and a named strength ended at the bound of its search;
 * *found*: none of these.
 
-A test of the residual's size, and of its memory where no floor is known, decides whether it is noise; the verdict
-follows this test. The probability that something unlisted acts follows from the gains of the refitted models: the two
-may differ. Validation data are not part of a probability: an effect that they contradict may have a large one.
+The residual is noise where its size is that of the noise floor. Where no command was repeated the floor is not known
+in the band of the command; there it is also noise where the commands predict nothing of it. The verdict follows this
+test. The probability that something unlisted acts follows from the gains of the refitted models, and from this test.
+Validation data are not part of a probability: an effect that they contradict may have a large one.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from itertools import takewhile
 
 from ident.diagnosis.criteria import CRITERIA, Criteria
+from ident.diagnosis.evidence.blocks import BlockMean
 from ident.diagnosis.evidence.probability import NOTHING, Probabilities, SetGains, probabilities
 from ident.diagnosis.result import Explanation, NoiseTest, Suspect, Verdict
 from ident.diagnosis.verification import Contradiction, Standing, VerifyChange
@@ -39,14 +41,16 @@ class Residual:
     """The error on the estimation data, and its noise floor.
 
     `floor` is the error that noise alone makes, None where it is not known, and `spread` its relative standard
-    deviation. `correlation` is the correlation of neighbouring residuals, which decides where no floor is known.
-    `excess` is the share of the floor by which the error may exceed it, None for the usual share; a bench has its own.
+    deviation. A floor from a spectrum above the band of the command is a lower bound: then `predicted`, the share of
+    the residual that the commands predict, decides where the error is above the floor. It is None where repeats tell
+    the floor. `excess` is the share of the floor by which the error may exceed it, None for the usual share; a bench
+    has its own.
     """
 
     error: float
     floor: float | None
     spread: float = 0.0
-    correlation: float = 0.0
+    predicted: BlockMean | None = None
     excess: float | None = None
 
 
@@ -76,19 +80,24 @@ class Findings:
 
 
 def is_noise(residual: Residual, criteria: Criteria = CRITERIA) -> bool:
-    """Whether the error is noise alone: below its limit, or where no floor is known, without memory."""
+    """Whether the residual is noise alone: below its limit, or no more predicted by the commands than chance is."""
     test = noise_test(residual, criteria)
-    return residual.error < test.limit if test.correlation is None else not test.correlation > test.limit
+    below = test.limit is not None and test.error < test.limit
+    return below or (test.predicted is not None and test.predicted <= (test.predicted_limit or 0.0))
 
 
 def noise_test(residual: Residual, criteria: Criteria = CRITERIA) -> NoiseTest:
-    """The error and its limit, the floor and a margin for its own error and for chance; without a floor the correlation
-    of neighbouring residuals and its limit."""
-    if residual.floor is None:
-        return NoiseTest(residual.error, criteria.noise.noise_correlation, correlation=residual.correlation)
-    margin = criteria.evidence.floor_margin if residual.excess is None else 1.0 + residual.excess
-    limit = (margin + criteria.noise.floor_deviations * residual.spread) * residual.floor
-    return NoiseTest(residual.error, limit, floor=residual.floor)
+    """The error and its limit, the floor and a margin for its own error and for chance; the predicted share and its
+    limit, the share that matters and a margin for chance."""
+    share, limit = residual.predicted, None
+    if residual.floor is not None:
+        margin = criteria.evidence.floor_margin if residual.excess is None else 1.0 + residual.excess
+        limit = (margin + criteria.noise.floor_deviations * residual.spread) * residual.floor
+    if share is None:
+        return NoiseTest(residual.error, limit, residual.floor)
+    return NoiseTest(
+        residual.error, limit, residual.floor, share.mean, criteria.evidence.share + share.bound(criteria.evidence)
+    )
 
 
 def contradicts(change: VerifyChange, criteria: Criteria = CRITERIA) -> bool:
@@ -123,7 +132,7 @@ def conclude(findings: Findings, criteria: Criteria = CRITERIA) -> Verdict:
     contradicted = tuple(change.effect for change in findings.verify if contradicts(change, criteria))
     against = tuple(name for name in contradicted if name not in findings.dispensable)
     groups = _groups(findings, unconfirmed)
-    of_sets = None if findings.set_gains is None else probabilities(findings.set_gains, criteria.evidence)
+    of_sets = _probabilities(findings, criteria)
     return Verdict(
         effects=named,
         standing=_standing(findings, named, against, bool(contradicted), criteria),
@@ -140,6 +149,16 @@ def conclude(findings: Findings, criteria: Criteria = CRITERIA) -> Verdict:
         probabilities={} if of_sets is None else of_sets.named,
         group_probabilities=() if of_sets is None else tuple(_of_group(group, of_sets, named) for group in groups),
     )
+
+
+def _probabilities(findings: Findings, criteria: Criteria) -> Probabilities | None:
+    """The probabilities of the sets of effects; beyond a set whose residual is noise nothing can be gained."""
+    if findings.set_gains is None:
+        return None
+    added, sets = frozenset(findings.added), findings.set_gains
+    if not _unexplained(findings, criteria) and added in sets.gains:
+        sets = replace(sets, most=min(sets.most, sets.gains[added]))
+    return probabilities(sets, criteria.evidence)
 
 
 def _probability(

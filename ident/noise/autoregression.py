@@ -8,6 +8,8 @@ sample, so that half the logarithm of the ratio of two powers of ν is in nats w
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -19,28 +21,63 @@ _FLAT = 1e-12  # of the largest: a combination of past values that does not move
 
 def prediction_errors(residual: Array) -> Array:
     """ν (n,) of a residual (n,), zero at its first p samples; not a number where it is infinite."""
-    n = len(residual)
-    order = min(_ORDER, n // 10)
-    found = np.zeros(n)
-    if not order:
-        return found
     level = residual - residual.mean()
-    size = float(np.abs(level).max())
+    size = float(np.abs(level).max(initial=0.0))
     if not 0 < size < np.inf:
-        return np.full(n, 0.0 if size == 0 else np.nan)
-    level /= size
-    steps = np.diff(level, prepend=level[0])
-    scaled = steps / max(float(np.abs(steps).max()), _FLAT)
-    gram, cross = np.zeros((order, order)), np.zeros(order)
-    blocks = [slice(first, min(first + _BLOCK, n)) for first in range(order, n, _BLOCK)]
-    for block in blocks:
-        past = _past(level, scaled, order, block)
-        gram += past.T @ past
-        cross += past.T @ steps[block]
-    a = np.linalg.lstsq(gram, cross, rcond=_FLAT)[0]
-    for block in blocks:
-        found[block] = steps[block] - _past(level, scaled, order, block) @ a
-    return size * found
+        return np.full(len(residual), 0.0 if size == 0 else np.nan)
+    return size * Autoregression.of(level / size).errors(level / size)
+
+
+@dataclass(frozen=True)
+class Autoregression:
+    """The equation that predicts a series from its own past: `coefficients` (p,) of the last value and of the steps
+    that led there, over their `scale`."""
+
+    coefficients: Array
+    scale: float
+
+    @classmethod
+    def of(cls, series: Array) -> Autoregression:
+        """The equation of a series (n,) without its mean, by least squares."""
+        n = len(series)
+        order, steps = min(_ORDER, n // 10), _steps(series)
+        scale = max(float(np.abs(steps).max(initial=0.0)), _FLAT)
+        gram, cross, scaled = np.zeros((order, order)), np.zeros(order), steps / scale
+        for block in _slices(order, n):
+            past = _past(series, scaled, order, block)
+            gram += past.T @ past
+            cross += past.T @ steps[block]
+        return cls(np.linalg.lstsq(gram, cross, rcond=_FLAT)[0] if order else cross, scale)
+
+    @property
+    def polynomial(self) -> Array:
+        """A(q) (p + 1,), with which the errors are Σ A_j y[k−j]: 1 is all there is where there is no past."""
+        order = len(self.coefficients)
+        found = np.zeros(order + 1)
+        found[0] = 1.0
+        if order:
+            of_steps = np.append(self.coefficients[:0:-1] / self.scale, 0.0)
+            found[1] = -1.0 - self.coefficients[0]
+            found[1:] += np.diff(of_steps, prepend=0.0) * -1.0
+        return found
+
+    def errors(self, series: Array) -> Array:
+        """The part (n,) of a series (n,) that this equation does not predict from the past; zero at its first p
+        samples."""
+        order, found, steps = len(self.coefficients), np.zeros(len(series)), _steps(series)
+        scaled = steps / self.scale
+        for block in _slices(order, len(series)):
+            found[block] = steps[block] - _past(series, scaled, order, block) @ self.coefficients
+        return found
+
+
+def _steps(series: Array) -> Array:
+    return np.diff(series, prepend=series[:1])
+
+
+def _slices(order: int, n: int) -> list[slice]:
+    """The blocks of the samples that have a past; none where there is no order."""
+    return [slice(first, min(first + _BLOCK, n)) for first in range(order, n, _BLOCK)] if order else []
 
 
 def _past(level: Array, steps: Array, order: int, block: slice) -> Array:

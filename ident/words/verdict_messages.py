@@ -101,11 +101,15 @@ VERDICT: Mapping[str, str] = {
         "With {named} the error on estimation data falls further, but validation data show nothing of it: the error "
         "there is {before:error} without it and {after:error} with it, and would be {due:error} if it acted. Either it "
         "only imitates something else, or the machine was different in these runs.",
-    "verdict.white":
-        "Nothing seems to be missing: the residual, {before:error}, is white. The noise floor is not known.",
+    "verdict.unpredicted":
+        "Nothing seems to be missing: the command predicts nothing of the residual, {before:error}.",
+    "verdict.unpredicted_probable":
+        "Nothing seems to be missing (probability {probability:probability}): the command predicts nothing of the "
+        "residual, {before:error}.",
     "verdict.nothing": "Nothing is missing: the error of {before:error} is measurement noise.",
     "verdict.nothing_probable":
         "Nothing is missing (probability {probability:probability}): the error of {before:error} is measurement noise.",
+    "verdict.predicted": "The command predicts a part of the residual, so the residual is not noise alone.",
     "verdict.none": "No effect in the library lowers the error of {before:error} by more than chance.",
     "verdict.missing_input":
         "An input is not recorded: {evidence}. No effect was looked for: any effect would only imitate this input. "

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from ident.diagnosis.cross_validation import OutOfFold, bounded_step, fold_of_segments, out_of_fold
+from ident.diagnosis.cross_validation import OutOfFold, bounded_step, fold_of_segments, is_sweep, out_of_fold
 from ident.fit.fitness import Local, local
 from ident.fit.normal_matrices import NormalMatrices, normal_matrices_of
 from ident.noise.effective_sample_size import independent_samples
@@ -87,12 +87,13 @@ def test_residuals_out_of_fold_are_those_of_fits_without_each_fold(rng, count):
 
 
 def test_of_four_runs_whole_ones_are_left_out_of_fewer_stretches():
-    """Four folds of runs, eight stretches of a single one, four of two or three, another one of each in a fold."""
+    """Four folds of runs, eight stretches of a single one, four of two or three, of sweeps another one of each."""
     assert {int(of) for number in range(4) for of in fold_of_segments(number, 32, 4)} == {0, 1, 2, 3}
     assert all(len(set(fold_of_segments(number, 32, 4).tolist())) == 1 for number in range(4))
     assert fold_of_segments(0, 32, 1).tolist() == np.repeat(np.arange(8), 4).tolist()
     assert fold_of_segments(0, 32, 3).tolist() == np.repeat([0, 1, 2, 3], 8).tolist()
-    assert fold_of_segments(2, 32, 3).tolist() == np.repeat([2, 3, 0, 1], 8).tolist()
+    assert fold_of_segments(2, 32, 3).tolist() == np.repeat([0, 1, 2, 3], 8).tolist()
+    assert fold_of_segments(2, 32, 3, swept=True).tolist() == np.repeat([2, 3, 0, 1], 8).tolist()
 
 
 @pytest.mark.parametrize("count", [2, 3])
@@ -104,8 +105,21 @@ def test_a_resonance_is_known_by_every_fold_of_two_sweeps(rng, count):
         y = J @ [0.3, -0.2] + 0.1 * rng.standard_normal(N)
         data.append((replace(run, channels={"command": y, "displacement": y}), J))
     point, here = fitted(data)
-    found = out_of_fold(point, here, left_of(data), less_mean, [N] * count)
+    found = out_of_fold(point, here, left_of(data), less_mean, [N] * count, swept=True)
     assert all(np.std(residual) < 0.11 for residual in found)
+
+
+def test_only_a_sweep_is_one(rng):
+    """Up, down, slow and in noise; not noise, a sine, steps, a multisine, a staircase, nor a command that rests."""
+    t = np.arange(4000) / 100.0
+    up = np.sin(2 * np.pi * (0.3 * t + 0.04 * t**2))
+    slow = np.sin(2 * np.pi * 0.2 * 40.0 / np.log(20.0) * (20.0 ** (t / 40.0) - 1))
+    assert all(map(is_sweep, (up, up[::-1], 3.0 * slow + 7.0, up + 0.1 * rng.standard_normal(4000))))
+    noise = np.convolve(rng.standard_normal(4000), np.ones(30) / 30, "same")
+    multisine = sum(np.sin(2 * np.pi * k * t / 8 + k**2) for k in range(1, 12))
+    steps, staircase = np.sign(np.sin(0.7 * t)), np.floor(t / 4)
+    others = (noise, np.sin(3 * t), multisine, steps, staircase, np.zeros(4000), np.ones(8), t)
+    assert not any(map(is_sweep, others))
 
 
 def test_the_errors_are_those_of_the_residuals_with_offsets_beside_the_zero(rng):

@@ -104,6 +104,18 @@ def test_where_the_noise_floor_was_measured_is_said_where_it_is_not_that_of_the_
     assert ("The noise floor was measured" in text) is (not in_band and floor is not None)
 
 
+def test_where_no_command_was_repeated_it_is_said_whether_the_command_predicts_the_residual():
+    probable = {"nothing": 0.9, "unlisted": 0.05}
+    noise = verdict_text((), (), (), False, {"fit": 0.07}, 0.07, in_band=False, floor=0.05, asked=True)
+    assert noise == "Nothing seems to be missing: the command predicts nothing of the residual, 7.00 %."
+    with_probability = verdict_text(
+        (), (), (), False, {"fit": 0.07}, 0.07, in_band=False, floor=0.05, asked=True, probabilities=probable
+    )
+    assert with_probability.startswith("Nothing seems to be missing (probability 90 %): the command predicts nothing")
+    missing = verdict_text((), (), (), True, {"fit": 0.07}, 0.07, in_band=False, floor=0.05, asked=True)
+    assert "The command predicts a part of the residual, so the residual is not noise alone." in missing
+
+
 @pytest.mark.parametrize("against", [True, False])
 def test_a_verdict_says_what_an_effect_does_once(against):
     models = family(matrix(Actuator("ANY")))

@@ -8,12 +8,14 @@ from dataclasses import replace
 import pytest
 
 from ident.diagnosis.criteria import Criteria
+from ident.diagnosis.evidence.blocks import BlockMean
 from ident.diagnosis.evidence.criteria import EVIDENCE_CRITERIA
 from ident.diagnosis.evidence.probability import NOTHING, SetGains
 from ident.diagnosis.report import group_of
 from ident.diagnosis.verdict import Findings, Residual, conclude, is_noise
 from ident.diagnosis.verification import VerifyChange
 
+NOT_PREDICTED, PREDICTED = BlockMean(0.01, 0.02, 20), BlockMean(0.1, 0.02, 20)
 NOISE, FAR = Residual(0.0101, 0.01, spread=0.001), Residual(0.02, 0.01, spread=0.001)
 FALLS, RISES = VerifyChange("lead", 0.1, 0.09, 0.001), VerifyChange("lead", 0.1, 0.103, 0.001)
 LEAD = Findings(added=("lead",), residual=NOISE, verify=(FALLS,))
@@ -29,9 +31,9 @@ LEAD = Findings(added=("lead",), residual=NOISE, verify=(FALLS,))
         (replace(LEAD, verify=(replace(RISES, std_error=0.002),)), "found", False),  # 1.5 standard errors
         (replace(LEAD, verify=(VerifyChange("lead", 0.1, None),)), "contradicted", False),  # unstable with it
         (replace(LEAD, at_bound=("lead",)), "found", False),
-        (replace(LEAD, at_bound=("lead",), residual=Residual(0.01, None, correlation=0.1)), "stand_in", False),
+        (replace(LEAD, at_bound=("lead",), residual=Residual(0.01, None, predicted=NOT_PREDICTED)), "stand_in", False),
         (replace(LEAD, added=("lead", "lag"), dispensable=("lag",), at_bound=("lag",),
-                 residual=Residual(0.01, None, correlation=0.1)), "found", False),
+                 residual=Residual(0.01, None, predicted=NOT_PREDICTED)), "found", False),
         (Findings(residual=NOISE), "nothing", False),
         (Findings(residual=FAR), "nothing", True),
         (replace(LEAD, dispensable=("lead",)), "nothing", False),
@@ -43,13 +45,28 @@ def test_how_a_verdict_stands(found, standing, unexplained):
 
 
 def test_the_numbers_that_decide_whether_the_residual_is_noise_stand_in_the_verdict():
-    """The error and its limit, two per cent and three deviations above the floor; without a floor the correlation."""
+    """The error and its limit, two per cent and three deviations above the floor; without repeats what is predicted."""
     test = conclude(replace(LEAD, residual=FAR)).noise_test
-    assert (test.error, test.floor, test.correlation) == (0.02, 0.01, None)
+    assert (test.error, test.floor, test.predicted) == (0.02, 0.01, None)
     assert test.limit == pytest.approx((1.02 + 3 * 0.001) * 0.01)
-    without = conclude(replace(LEAD, residual=Residual(0.02, None, correlation=0.7))).noise_test
-    assert (without.correlation, without.limit, without.floor) == (0.7, 0.5, None)
+    without = conclude(replace(LEAD, residual=Residual(0.02, None, predicted=PREDICTED))).noise_test
+    assert (without.predicted, without.limit, without.floor) == (0.1, None, None)
+    assert without.predicted_limit == pytest.approx(
+        0.01 + 0.02 * 1.729, rel=1e-3
+    )  # Student's t of 19 degrees of freedom
     assert conclude(replace(LEAD, residual=None)).noise_test is None
+
+
+def test_beyond_effects_whose_residual_is_noise_nothing_unlisted_is_probable():
+    """The floor of the spectrum would leave a gain of 40 nats."""
+    gains = SetGains({NOTHING: 0.0, frozenset({"lead"}): 60.0}, most=100.0)
+    coloured = Residual(0.02, 0.01, predicted=NOT_PREDICTED)
+    verdict = conclude(replace(LEAD, residual=coloured, set_gains=gains))
+    assert verdict.standing == "found"
+    assert verdict.probabilities["unlisted"] < 0.05
+    missing = conclude(replace(LEAD, residual=replace(coloured, predicted=PREDICTED), set_gains=gains))
+    assert missing.standing == "stand_in"
+    assert missing.probabilities["unlisted"] > 0.9
 
 
 def test_what_only_a_dispensable_effect_was_contradicted_by_is_a_stand_in():
@@ -105,8 +122,10 @@ def test_an_effect_of_which_validation_data_show_nothing_is_named_where_a_later_
         (Residual(0.01021, 0.01), False),
         (Residual(0.0104, 0.01, spread=0.007), True),  # 2 % and three deviations
         (Residual(0.0124, 0.01, excess=0.25), True),
-        (Residual(0.01, None, correlation=0.4), True),
-        (Residual(0.01, None, correlation=0.6), False),
+        (Residual(0.01, None), False),  # nobody knows
+        (Residual(0.02, 0.01, predicted=NOT_PREDICTED), True),
+        (Residual(0.02, 0.01, predicted=PREDICTED), False),
+        (Residual(0.01, 0.01, predicted=PREDICTED), True),
     ],
 )
 def test_an_error_is_noise_up_to_its_floor_and_chance(residual, noise):
@@ -131,7 +150,10 @@ def test_a_group_is_told_once_and_never_with_what_is_dispensable():
 
 
 def test_two_lags_that_are_named_are_as_probable_as_both_together():
-    """By hand: ln w = η G − κ k, and with something unlisted η λ (60 − G) − κ_u more, + δ with effects."""
+    """By hand: ln w = η G − κ k, and with something unlisted η λ (58 − G) − κ_u more, + δ with effects.
+
+    The residual of the two is noise: nothing can be gained beyond their 58 nats, whatever the floor promises.
+    """
     c = EVIDENCE_CRITERIA
     gains = SetGains({NOTHING: 0.0, frozenset({"lag"}): 40.0, frozenset({"lag", "delay"}): 58.0}, most=60.0)
     found = Findings(added=("lag", "delay"), lag_pairs=(("lag", "delay", "lead"),), residual=NOISE, set_gains=gains)
@@ -139,7 +161,7 @@ def test_two_lags_that_are_named_are_as_probable_as_both_together():
     charged = (c.unlisted_prior, *[c.unlisted_prior - c.unlisted_beside_listed] * 2)
     left = [
         math.exp(c.learning_rate * c.unlisted_share * most - charge)
-        for most, charge in zip((60.0, 20.0, 2.0), charged, strict=True)
+        for most, charge in zip((58.0, 18.0, 0.0), charged, strict=True)
     ]
     unlisted = [w * more for w, more in zip(alone, left, strict=True)]
     both = (alone[2] + unlisted[2]) / (sum(alone) + sum(unlisted))
