@@ -1,0 +1,116 @@
+"""How much of a residual the command predicts: a model of the model's error (Ljung 1999, section 16.6).
+
+Noise of any colour is predicted by its own past alone. A missing effect answers to the command. So the residual e of a
+fitted model is predicted by features of the command u, of the model's output y and of the slope of y: each of them, its
+size, its sign, its square and its cube with the sign kept, their products, and all of these behind first-order lags,
+
+    A(q) e = Σ c_j A(q) φ_j + ν      φ_j the features, ν white
+
+with A(q) the autoregression of what the features leave of e (Cochrane and Orcutt 1949): so ν has no memory, and the
+coefficients c are efficient whatever the colour of the noise. Their penalty is that which makes A(q) e most likely
+(MacKay 1992). Each record is cut into stretches; the odd ones predict the even ones, and the even ones the odd ones.
+The share of the power of A(q) e that is predicted there has its error from blocks of all records in a row. It is above
+zero where a command has a part in the residual.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from itertools import combinations
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.optimize import minimize_scalar
+
+from ident.diagnosis.criteria import EPSILON
+from ident.diagnosis.evidence.blocks import BlockMean, block_ratio
+from ident.diagnosis.evidence.criteria import EVIDENCE_CRITERIA, EvidenceCriteria
+from ident.linear_filter import linear_filter
+from ident.noise.autoregression import Autoregression
+
+Array = NDArray[np.float64]
+
+
+def predicted_share(
+    residuals: Sequence[Array], commands: Sequence[Array], outputs: Sequence[Array],
+    criteria: EvidenceCriteria = EVIDENCE_CRITERIA,
+) -> BlockMean:  # fmt: skip
+    """The share of the power of the whitened residuals (n,) of some runs that their commands predict out of fold."""
+    total = sum(map(len, residuals))
+    every = max(1, -(-total // criteria.model_error_samples))
+    runs = [tuple(_averaged(signal, every) for signal in run) for run in zip(residuals, commands, outputs, strict=True)]
+    whitened = [_whitened(*run, criteria) for run in runs]
+    e, rows = np.concatenate([e for e, _ in whitened]), np.concatenate([rows for _, rows in whitened], axis=1)
+    fold = np.concatenate([np.arange(len(e)) * criteria.enough_blocks // max(len(e), 1) % 2 for e, _ in whitened])
+    penalty, predicted = _most_likely_penalty(rows, e), np.zeros(len(e))
+    for held_out in (0, 1):
+        seen = fold != held_out
+        predicted[~seen] = _coefficients(rows[:, seen], e[seen], penalty) @ rows[:, ~seen]
+    return block_ratio([e**2 - (e - predicted) ** 2], [e**2], criteria)
+
+
+def _averaged(signal: Array, every: int) -> Array:
+    """The means of so many neighbouring samples each."""
+    return signal[: len(signal) // every * every].reshape(-1, every).mean(axis=1)
+
+
+def _whitened(residual: Array, command: Array, output: Array, criteria: EvidenceCriteria) -> tuple[Array, Array]:
+    """The innovations (n,) of a residual over their deviation, and the features (features, n) behind the same
+    filter."""
+    rows = np.array([_scaled(row) for row in _features(command, output, criteria)])
+    e = _scaled(residual)
+    noise = e - _coefficients(rows, e, _most_likely_penalty(rows, e)) @ rows
+    polynomial = Autoregression.of(noise).polynomial
+    innovations, behind = _filtered(polynomial, e), np.array([_filtered(polynomial, row) for row in rows])
+    return innovations / (innovations.std() or 1.0), behind
+
+
+def _filtered(polynomial: Array, signal: Array) -> Array:
+    """The signal behind a polynomial in z⁻¹, from the first sample on that has a whole past."""
+    return np.convolve(signal, polynomial)[len(polynomial) - 1 : len(signal)]
+
+
+def _features(command: Array, output: Array, criteria: EvidenceCriteria) -> list[Array]:
+    """The features, each as it is and behind lags of 4, 16, 64 … samples, of which a record holds ten."""
+    signals = [_scaled(signal) for signal in (command, output, np.gradient(output) if len(output) > 1 else output)]
+    found = [part for s in signals for part in (s, np.abs(s), np.sign(s), s * np.abs(s), s * s * s)]
+    found += [product for a, b in combinations(signals, 2) for product in (a * b, a * np.sign(b), b * np.sign(a))]
+    longest = max(len(output) / criteria.correlation_times, 1.0)
+    lags = np.exp2(2.0 * np.arange(1, int(np.log2(longest) / 2) + 1))
+    return found + [_lagged(one, lag) for lag in lags for one in found]
+
+
+def _lagged(signal: Array, lag: float) -> Array:
+    """The signal behind a first-order lag of so many samples."""
+    kept = float(np.exp(-1 / lag))
+    return linear_filter(np.array([1 - kept]), np.array([1.0, -kept]), signal)
+
+
+def _scaled(signal: Array) -> Array:
+    centred = signal - signal.mean()
+    return centred / (centred.std() or 1.0)
+
+
+def _most_likely_penalty(rows: Array, e: Array) -> float:
+    """The penalty on the squares of the coefficients that makes e (n,) most likely (MacKay 1992).
+
+    −2 ln p = n ln(Σ e² − Σ z²/(d + λ)) + Σ ln(1 + d/λ)      d the eigenvalues of Φ Φᵀ, z Φ e in their directions
+    """
+    d, directions = np.linalg.eigh(rows @ rows.T)
+    d, z = np.maximum(d, 0.0), directions.T @ (rows @ e)
+    power, largest = float(e @ e), float(d.max(initial=0.0))
+    if not power > 0 or not largest > 0:
+        return 1.0
+
+    def unlikely(logarithm: float) -> float:
+        penalty = float(np.exp(logarithm))
+        remaining = max(power - float(np.sum(z**2 / (d + penalty))), EPSILON * power)
+        return len(e) * float(np.log(remaining)) + float(np.sum(np.log1p(d / penalty)))
+
+    bounds = np.log(largest) + np.log(EPSILON) / 2, np.log(largest) - np.log(EPSILON) / 2
+    return float(np.exp(minimize_scalar(unlikely, bounds=bounds, method="bounded").x))
+
+
+def _coefficients(rows: Array, e: Array, penalty: float) -> Array:
+    gram = rows @ rows.T
+    return np.asarray(np.linalg.solve(gram + penalty * np.eye(len(gram)), rows @ e))
