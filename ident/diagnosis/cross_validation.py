@@ -172,11 +172,13 @@ def is_sweep(command: Array) -> bool:
 
     Half of a stretch's spectral power lies below its median frequency.
     """
-    medians = []
+    medians: list[float] = []
+    if len(command) < CRITERIA.cross_validation.stretches:
+        return False
     for stretch in np.array_split(command, CRITERIA.cross_validation.stretches):
         moved = (stretch - stretch.mean()) * np.hanning(len(stretch))
         power = np.cumsum(np.abs(np.fft.rfft(moved)) ** 2)
-        medians.append(np.searchsorted(power, power[-1] / 2) / len(stretch))
+        medians.append(float(np.searchsorted(power, power[-1] / 2)) / len(stretch))
     steps, ends = np.diff(medians), (medians[0], medians[-1])
     return bool((np.all(steps >= 0) or np.all(steps <= 0)) and min(ends) > 0 and max(ends) >= 2 * min(ends))
 
