@@ -303,8 +303,10 @@ class CandidateModels:
     def residual(self, refit: FittedModel) -> Residual:
         """The error of a refit with its noise floor, and where repeats do not tell it, with the
         share of the residual that the commands predict."""
-        found = Residual(refit.error, None) if self.floor is None else self._above(self.floor, refit.error)
-        if (found.floor is not None and is_noise(found)) or self.floors.in_band or not refit.stable:
+        floor = self.floor
+        found = Residual(refit.error, None) if floor is None else self._above(floor, refit.error)
+        may_be_coloured = floor is None or refit.error < CRITERIA.noise.colour * floor
+        if self.floors.in_band or is_noise(found) or not may_be_coloured or not refit.stable:
             return found
         return replace(found, predicted=refit.predicted_share)
 

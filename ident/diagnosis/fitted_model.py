@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ident.cached import cached_property
+from ident.diagnosis.auxiliary_channels import auxiliary_channels
 from ident.diagnosis.compared_records import ComparedRecords
 from ident.diagnosis.criteria import CRITERIA
 from ident.diagnosis.cross_validation import OutOfFold, out_of_fold
@@ -71,10 +72,15 @@ class FittedModel:
 
     @cached_property
     def predicted_share(self) -> BlockMean:
-        """The share of its residual that the commands predict: above zero where it lacks an effect."""
-        outputs, runs = self.fitness.outputs(self.point), self.fitness.runs
-        residuals = [self.fitness.left(run, outputs[run.id]) for run in runs]
-        return predicted_share(residuals, [run.command for run in runs], [outputs[run.id] for run in runs])
+        """The share of its residual that the inputs predict: above zero where it lacks an effect."""
+        fitness, runs = self.fitness, self.fitness.runs
+        outputs = fitness.outputs(self.point)
+        inputs = ("command", *auxiliary_channels(fitness.preset, fitness.matrix.runs, runs))
+        return predicted_share(
+            [fitness.left(run, outputs[run.id]) for run in runs],
+            [[run.channels[name] for name in inputs] for run in runs],
+            [outputs[run.id] for run in runs],
+        )
 
     @cached_property
     def free_run(self) -> FreeRun:

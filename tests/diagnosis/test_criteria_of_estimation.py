@@ -10,9 +10,9 @@ import numpy as np
 import pytest
 import scipy.stats
 
+from ident.diagnosis.auxiliary_channels import _varies
 from ident.diagnosis.candidate_models import CandidateModels
 from ident.diagnosis.criteria import CRITERIA
-from ident.diagnosis.discovery.auxiliary_channels import _varies
 from ident.diagnosis.undetermined import _with_fewer_steps
 from ident.diagnosis.verdict import Residual, is_noise
 from ident.fit.levenberg_marquardt import levenberg_marquardt

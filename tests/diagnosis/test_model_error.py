@@ -35,7 +35,7 @@ def test_noise_of_any_colour_is_predicted_no_more_often_than_by_chance(colour):
     for seed in range(20):
         rng = np.random.default_rng([31, seed])
         u, y = moved(rng)
-        passed += predicted_share([noise(rng, colour)], [u], [y]).above(0.0, EVIDENCE_CRITERIA)
+        passed += predicted_share([noise(rng, colour)], [[u]], [y]).above(0.0, EVIDENCE_CRITERIA)
     assert passed <= 3
 
 
@@ -56,34 +56,55 @@ def test_an_effect_that_is_missing_is_predicted_of_a_residual_that_is_mostly_noi
     u, y = moved(rng)
     effect = lfilter([0.1], [1.0, -0.9], missing_effect(missing, u, y))
     effect *= 0.5 / effect.std()
-    found = predicted_share([effect + noise(rng, colour)], [u], [y])
+    found = predicted_share([effect + noise(rng, colour)], [[u]], [y])
     assert found.above(0.0, EVIDENCE_CRITERIA)
 
 
 def test_several_runs_of_different_lengths_are_predicted_together():
     rng = np.random.default_rng(33)
-    runs = [moved(rng, n) for n in (700, 1100, 900)]
+    runs = [moved(rng, n) for n in (300, 2600, 900)]
     residuals = [0.7 * y**2 / y.var() + noise(rng, "white", len(y)) for _, y in runs]
-    assert predicted_share(residuals, *zip(*runs, strict=True)).above(0.0, EVIDENCE_CRITERIA)
+    assert predicted_share(residuals, [[u] for u, _ in runs], [y for _, y in runs]).above(0.0, EVIDENCE_CRITERIA)
+
+
+def test_an_effect_that_is_as_large_as_the_level_of_an_input_is_predicted_from_several_runs():
+    """Friction of a seal at four pressures, of which the model has the mean."""
+    rng = np.random.default_rng(38)
+    residuals, inputs, outputs = [], [], []
+    for level in (-1.5, -0.5, 0.5, 1.5):
+        u, y = moved(rng, 800)
+        residuals.append(0.5 * level * np.sign(np.gradient(y)) + noise(rng, "white", 800))
+        inputs.append([u, np.full(800, 5.0 + level)])
+        outputs.append(y)
+    assert predicted_share(residuals, inputs, outputs).above(0.01, EVIDENCE_CRITERIA)
+
+
+def test_an_effect_of_a_second_input_is_predicted_where_it_is_given():
+    rng = np.random.default_rng(37)
+    u, y = moved(rng)
+    pressure = lfilter([0.01], [1.0, -0.99], rng.standard_normal(N))
+    residual = [noise(rng, "white") + 0.5 * pressure / pressure.std() * np.sign(np.gradient(y))]
+    assert predicted_share(residual, [[u, pressure]], [y]).above(0.01, EVIDENCE_CRITERIA)
+    assert not predicted_share(residual, [[u]], [y]).above(0.01, EVIDENCE_CRITERIA)
 
 
 @pytest.mark.parametrize("residual", [np.zeros(400), np.full(400, 0.3), np.zeros(3)])
 def test_nothing_is_predicted_of_a_residual_that_does_not_move(residual):
     u, y = moved(np.random.default_rng(34), len(residual))
-    assert not predicted_share([residual], [u], [y]).above(0.0, EVIDENCE_CRITERIA)
+    assert not predicted_share([residual], [[u]], [y]).above(0.0, EVIDENCE_CRITERIA)
 
 
 def test_a_command_and_an_output_that_do_not_move_predict_nothing():
     rng, still = np.random.default_rng(35), np.ones(500)
-    assert not predicted_share([noise(rng, "white", 500)], [still], [still]).above(0.0, EVIDENCE_CRITERIA)
+    assert not predicted_share([noise(rng, "white", 500)], [[still]], [still]).above(0.0, EVIDENCE_CRITERIA)
 
 
 def test_long_records_are_averaged_to_twenty_thousand_samples(monkeypatch):
     """Of 25,000 samples two make one, of 19,000 one; the first 32 have no whole past."""
     lengths: list[int] = []
     monkeypatch.setattr(model_error, "_most_likely_penalty", lambda _, e: lengths.append(len(e)) or 1.0)
-    monkeypatch.setattr(model_error, "_features", lambda u, *_: [u])
+    monkeypatch.setattr(model_error, "_features", lambda moving, *_: [moving[0]])
     rng = np.random.default_rng(36)
     for n in (19_000, 25_000):
-        predicted_share([rng.standard_normal(n)], [rng.standard_normal(n)], [np.zeros(n)])
+        predicted_share([rng.standard_normal(n)], [[rng.standard_normal(n)]], [np.zeros(n)])
     assert lengths == [19_000, 19_000 - 32, 12_500, 12_500 - 32]

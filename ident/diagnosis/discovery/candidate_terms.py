@@ -10,10 +10,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ident.chain.conditions import CONDITIONS
+from ident.diagnosis.auxiliary_channels import auxiliary_channels, units_of
 from ident.diagnosis.candidate_models import CandidateModels
 from ident.diagnosis.criteria import EPSILON
 from ident.diagnosis.discovery import free_curves
-from ident.diagnosis.discovery.auxiliary_channels import auxiliary_channels, units_of
 from ident.diagnosis.discovery.compressibility_terms import OIL
 from ident.diagnosis.discovery.regression import regression
 from ident.diagnosis.discovery.run_data import RunData, run_data, signal_paths
@@ -74,7 +74,16 @@ def terms_of_runs(
         varied = [name for name in _VARIED if np.ptp(typical[name]) > 0]
         names = _distinct(names, typical)
         there = _there(preset, places, names, typical)
-        library = TermLibrary(places, there, typical, units, models.band, shortest, varied, auxiliary_channels(models))
+        library = TermLibrary(
+            places,
+            there,
+            typical,
+            units,
+            models.band,
+            shortest,
+            varied,
+            auxiliary_channels(models.preset, models.matrix.runs, models.runs),
+        )
         drawn = free_curves.free_curves(library) if curves else []
         terms = [hat for curve in drawn for hat in curve.hats()] if curves else list(library.terms())
     responses = _responses(models, values, list(dict.fromkeys(term.path for term in terms)), runs)

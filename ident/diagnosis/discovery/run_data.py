@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 
 from ident.chain.chain import linear_model
 from ident.chain.conditions import conditions
+from ident.diagnosis.auxiliary_channels import channels_of
 from ident.diagnosis.criteria import CRITERIA
-from ident.diagnosis.discovery.auxiliary_channels import channels_of
 from ident.diagnosis.fitted_model import FittedModel
 from ident.fit.anchoring import Anchoring
 from ident.fit.responses import Sensitivities

@@ -1,7 +1,7 @@
-"""How much of a residual the command predicts: a model of the model's error (Ljung 1999, section 16.6).
+"""How much of a residual the inputs predict: a model of the model's error (Ljung 1999, section 16.6).
 
-Noise of any colour is predicted by its own past alone. A missing effect answers to the command. So the residual e of a
-fitted model is predicted by features of the command u, of the model's output y and of the slope of y: each of them, its
+Noise of any colour is predicted by its own past alone. A missing effect answers to an input. So the residual e of a
+fitted model is predicted by features of the inputs u, of the model's output y and of the slope of y: each of them, its
 size, its sign, its square and its cube with the sign kept, their products, and all of these behind first-order lags,
 
     A(q) e = Σ c_j A(q) φ_j + ν      φ_j the features, ν white
@@ -10,7 +10,7 @@ with A(q) the autoregression of what the features leave of e (Cochrane and Orcut
 coefficients c are efficient whatever the colour of the noise. Their penalty is that which makes A(q) e most likely
 (MacKay 1992). Each record is cut into stretches; the odd ones predict the even ones, and the even ones the odd ones.
 The share of the power of A(q) e that is predicted there has its error from blocks of all records in a row. It is above
-zero where a command has a part in the residual.
+zero where an input has a part in the residual.
 """
 
 from __future__ import annotations
@@ -32,14 +32,20 @@ Array = NDArray[np.float64]
 
 
 def predicted_share(
-    residuals: Sequence[Array], commands: Sequence[Array], outputs: Sequence[Array],
+    residuals: Sequence[Array], inputs: Sequence[Sequence[Array]], outputs: Sequence[Array],
     criteria: EvidenceCriteria = EVIDENCE_CRITERIA,
 ) -> BlockMean:  # fmt: skip
-    """The share of the power of the whitened residuals (n,) of some runs that their commands predict out of fold."""
+    """The share of the power of the whitened residuals (n,) of some runs that their inputs predict out of fold."""
     total = sum(map(len, residuals))
     every = max(1, -(-total // criteria.model_error_samples))
-    runs = [tuple(_averaged(signal, every) for signal in run) for run in zip(residuals, commands, outputs, strict=True)]
-    whitened = [_whitened(*run, criteria) for run in runs]
+    slopes = [np.gradient(y) if len(y) > 1 else y for y in outputs]
+    moving = [(*given, y, v) for given, y, v in zip(inputs, outputs, slopes, strict=True)]
+    of_all_runs = [_alike([_averaged(signal, every) for signal in of]) for of in zip(*moving, strict=True)]
+    lags = _lags(min(map(len, residuals)) / every, criteria)
+    whitened = [
+        _whitened(_averaged(residual, every), _features(of, lags))
+        for residual, *of in zip(residuals, *of_all_runs, strict=True)
+    ]
     e, rows = np.concatenate([e for e, _ in whitened]), np.concatenate([rows for _, rows in whitened], axis=1)
     fold = np.concatenate([np.arange(len(e)) * criteria.enough_blocks // max(len(e), 1) % 2 for e, _ in whitened])
     penalty, predicted = _most_likely_penalty(rows, e), np.zeros(len(e))
@@ -54,15 +60,23 @@ def _averaged(signal: Array, every: int) -> Array:
     return signal[: len(signal) // every * every].reshape(-1, every).mean(axis=1)
 
 
-def _whitened(residual: Array, command: Array, output: Array, criteria: EvidenceCriteria) -> tuple[Array, Array]:
-    """The innovations (n,) of a residual over their deviation, and the features (features, n) behind the same
-    filter."""
-    rows = np.array([_scaled(row) for row in _features(command, output, criteria)])
-    e = _scaled(residual)
-    noise = e - _coefficients(rows, e, _most_likely_penalty(rows, e)) @ rows
+def _alike(signals: Sequence[Array]) -> list[Array]:
+    """A signal of all runs less its mean and over its deviation, both those of all runs: runs may differ in level."""
+    every = np.concatenate(signals)
+    mean, size = float(every.mean()), float(every.std()) or 1.0
+    return [(signal - mean) / size for signal in signals]
+
+
+def _whitened(residual: Array, features: Sequence[Array]) -> tuple[Array, Array]:
+    """The innovations (n,) of a residual over their deviation, and the features (features, n) behind the same filter
+    and over the same deviation."""
+    e, rows = residual - residual.mean(), np.array([feature - feature.mean() for feature in features])
+    size = float(e.std()) or 1.0
+    noise = e / size - _coefficients(rows, e / size, _most_likely_penalty(rows, e / size)) @ rows
     polynomial = Autoregression.of(noise).polynomial
     innovations, behind = _filtered(polynomial, e), np.array([_filtered(polynomial, row) for row in rows])
-    return innovations / (innovations.std() or 1.0), behind
+    size = float(innovations.std()) if len(innovations) and innovations.any() else 1.0
+    return innovations / size, behind / size
 
 
 def _filtered(polynomial: Array, signal: Array) -> Array:
@@ -70,13 +84,15 @@ def _filtered(polynomial: Array, signal: Array) -> Array:
     return np.convolve(signal, polynomial)[len(polynomial) - 1 : len(signal)]
 
 
-def _features(command: Array, output: Array, criteria: EvidenceCriteria) -> list[Array]:
-    """The features, each as it is and behind lags of 4, 16, 64 … samples, of which a record holds ten."""
-    signals = [_scaled(signal) for signal in (command, output, np.gradient(output) if len(output) > 1 else output)]
+def _lags(samples: float, criteria: EvidenceCriteria) -> Array:
+    """Lags of 4, 16, 64 … samples, of which a record holds ten."""
+    return np.exp2(2.0 * np.arange(1, int(np.log2(max(samples / criteria.correlation_times, 1.0)) / 2) + 1))
+
+
+def _features(signals: Sequence[Array], lags: Array) -> list[Array]:
+    """The features of the inputs, the output and its slope, each as it is and behind the lags."""
     found = [part for s in signals for part in (s, np.abs(s), np.sign(s), s * np.abs(s), s * s * s)]
     found += [product for a, b in combinations(signals, 2) for product in (a * b, a * np.sign(b), b * np.sign(a))]
-    longest = max(len(output) / criteria.correlation_times, 1.0)
-    lags = np.exp2(2.0 * np.arange(1, int(np.log2(longest) / 2) + 1))
     return found + [_lagged(one, lag) for lag in lags for one in found]
 
 
@@ -84,11 +100,6 @@ def _lagged(signal: Array, lag: float) -> Array:
     """The signal behind a first-order lag of so many samples."""
     kept = float(np.exp(-1 / lag))
     return linear_filter(np.array([1 - kept]), np.array([1.0, -kept]), signal)
-
-
-def _scaled(signal: Array) -> Array:
-    centred = signal - signal.mean()
-    return centred / (centred.std() or 1.0)
 
 
 def _most_likely_penalty(rows: Array, e: Array) -> float:

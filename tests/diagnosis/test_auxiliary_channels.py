@@ -12,8 +12,8 @@ from functools import cache
 import numpy as np
 import pytest
 
+from ident.diagnosis.auxiliary_channels import auxiliary_channels
 from ident.diagnosis.candidate_models import CandidateModels
-from ident.diagnosis.discovery.auxiliary_channels import auxiliary_channels
 from ident.diagnosis.result import Diagnosis
 from ident.fit.identification import Identification
 from ident.fit.settings import Settings
@@ -23,6 +23,12 @@ from ident.workflows import diagnose, identify
 
 RATE, DAMPING, LEAST, BY_PRESSURE, NOISE = 100.0, 300.0, 2.0, 1e-5, 0.05
 BAR = 1e5
+
+
+def found(matrix: Matrix, settings: Settings) -> tuple[str, ...]:
+    """The auxiliary channels of the model of some settings."""
+    models = CandidateModels.of(matrix, settings)
+    return auxiliary_channels(models.preset, matrix.runs, models.runs)
 
 
 def pushed(bar: float, seed: int, use: str = "fit") -> Run:
@@ -89,13 +95,13 @@ def test_friction_that_grows_with_a_recorded_pressure_is_proposed():
 
 def test_what_the_machine_answers_is_no_term():
     matrix = seals()
-    assert auxiliary_channels(CandidateModels.of(matrix, Settings(model="specimen"))) == ("pressure_a",)
+    assert found(matrix, Settings(model="specimen")) == ("pressure_a",)
     steady = [replace(run, channels={**run.channels, "pressure_a": np.full(run.length, BAR)}) for run in matrix.runs]
     same = replace(matrix, runs=tuple(steady))
-    assert auxiliary_channels(CandidateModels.of(same, Settings(model="specimen"))) == ()
+    assert found(same, Settings(model="specimen")) == ()
     commanded = [
         replace(run, output="displacement", channels={**run.channels, "command": run.channels["displacement"]})
         for run in matrix.runs
     ]
     loop = replace(matrix, runs=tuple(commanded))
-    assert auxiliary_channels(CandidateModels.of(loop, Settings(model="first_order"))) == ()
+    assert found(loop, Settings(model="first_order")) == ()

@@ -6,25 +6,26 @@ the channels of its surroundings count; the only response of a machine that is m
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ident.chain.channels import READABLE, unmeasured
-from ident.diagnosis.candidate_models import CandidateModels
 from ident.diagnosis.criteria import EPSILON
+from ident.presets import Preset
 from ident.run import MOTIONS, Run
 
 _SURROUNDS = ("supply_pressure", "vertical_load", "temperature")
 _FORCES = ("force", "drive_force")
 
 
-def auxiliary_channels(models: CandidateModels) -> tuple[str, ...]:
-    """The channels that every run has, other than the input and the output of the model, and that vary."""
-    moved, runs = models.preset.data.driven_by in MOTIONS, models.matrix.runs
+def auxiliary_channels(preset: Preset, every: Sequence[Run], fitted: Sequence[Run]) -> tuple[str, ...]:
+    """The channels that every run of a matrix has, other than the input and the output of the model, and that vary in
+    the fitted runs."""
+    moved = preset.data.driven_by in MOTIONS
     free = [name for name in READABLE if name not in _FORCES] if moved else _SURROUNDS
-    return tuple(name for name in free if unmeasured({name}, runs) is None and _varies(name, models.runs))
+    return tuple(name for name in free if unmeasured({name}, every) is None and _varies(name, fitted))
 
 
 def channels_of(run: Run) -> Mapping[str, NDArray[np.float64]]:
@@ -37,6 +38,6 @@ def units_of(run: Run) -> Mapping[str, str]:
     return {name: run.units.get(name, "1") for name in channels_of(run)}
 
 
-def _varies(name: str, runs: tuple[Run, ...]) -> bool:
+def _varies(name: str, runs: Sequence[Run]) -> bool:
     every = np.concatenate([run.channels[name] for run in runs])
     return bool(np.std(every) > EPSILON * np.abs(every).max(initial=0.0))
