@@ -80,6 +80,7 @@ class FittedModel:
             [fitness.left(run, outputs[run.id]) for run in runs],
             [[run.channels[name] for name in inputs] for run in runs],
             [outputs[run.id] for run in runs],
+            max(int(min(run.sample_rate for run in runs) * np.pi / (2 * fitness.band)), 1),  # four samples a period
         )
 
     @cached_property

@@ -99,12 +99,16 @@ def test_a_command_and_an_output_that_do_not_move_predict_nothing():
     assert not predicted_share([noise(rng, "white", 500)], [[still]], [still]).above(0.0, EVIDENCE_CRITERIA)
 
 
-def test_long_records_are_averaged_to_twenty_thousand_samples(monkeypatch):
-    """Of 25,000 samples two make one, of 19,000 one; the first 32 have no whole past."""
+def test_long_records_are_shortened_to_twenty_thousand_samples(monkeypatch):
+    """Of 25,000 samples two make one, or two thirds of each of twelve stretches stand for it where the band is wide.
+
+    The first 32 samples of a part have no whole past.
+    """
     lengths: list[int] = []
     monkeypatch.setattr(model_error, "_most_likely_penalty", lambda _, e: lengths.append(len(e)) or 1.0)
     monkeypatch.setattr(model_error, "_features", lambda moving, *_: [moving[0]])
     rng = np.random.default_rng(36)
-    for n in (19_000, 25_000):
-        predicted_share([rng.standard_normal(n)], [[rng.standard_normal(n)]], [np.zeros(n)])
-    assert lengths == [19_000, 19_000 - 32, 12_500, 12_500 - 32]
+    for n, most_averaged in ((19_000, 9), (25_000, 9), (30_000, 1)):
+        predicted_share([rng.standard_normal(n)], [[rng.standard_normal(n)]], [np.zeros(n)], most_averaged)
+    assert lengths[:4] == [19_000, 19_000 - 32, 12_500, 12_500 - 32]
+    assert lengths[4:] == [1666] * 12 + [12 * (1666 - 32)]

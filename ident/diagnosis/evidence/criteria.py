@@ -132,9 +132,9 @@ class EvidenceCriteria:
     Test: test_criteria_of_evidence.py::
     test_a_gain_improves_that_is_worth_a_parameter_and_passes_the_bar_or_half_of_what_can_be_gained"""
     model_error_samples: int = 20_000
-    """[samples] Of all records together in the model of the error; longer ones are averaged over neighbouring samples.
+    """[samples] Of all records together in the model of the error; longer ones are averaged, or cut into parts.
     Why: a share of one in a thousand shows in so many, and it takes a third of a second.
-    Test: test_model_error.py::test_long_records_are_averaged_to_twenty_thousand_samples"""
+    Test: test_model_error.py::test_long_records_are_shortened_to_twenty_thousand_samples"""
     unlisted_prior: float = 6.5
     """[1] Fall of the logarithm of a model's weight with something unlisted. Why: fitted to the training seeds of
     docs/decisions/evidence.md, with true effects taken off the list.

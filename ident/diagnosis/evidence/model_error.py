@@ -32,20 +32,20 @@ Array = NDArray[np.float64]
 
 
 def predicted_share(
-    residuals: Sequence[Array], inputs: Sequence[Sequence[Array]], outputs: Sequence[Array],
+    residuals: Sequence[Array], inputs: Sequence[Sequence[Array]], outputs: Sequence[Array], most_averaged: int = 1,
     criteria: EvidenceCriteria = EVIDENCE_CRITERIA,
 ) -> BlockMean:  # fmt: skip
-    """The share of the power of the whitened residuals (n,) of some runs that their inputs predict out of fold."""
-    total = sum(map(len, residuals))
-    every = max(1, -(-total // criteria.model_error_samples))
+    """The share of the power of the whitened residuals (n,) of some runs that their inputs predict out of fold.
+
+    At most `most_averaged` neighbouring samples of a long record make one. Where that leaves too many, parts of the
+    record stand for it.
+    """
     slopes = [np.gradient(y) if len(y) > 1 else y for y in outputs]
-    moving = [(*given, y, v) for given, y, v in zip(inputs, outputs, slopes, strict=True)]
-    of_all_runs = [_alike([_averaged(signal, every) for signal in of]) for of in zip(*moving, strict=True)]
-    lags = _lags(min(map(len, residuals)) / every, criteria)
-    whitened = [
-        _whitened(_averaged(residual, every), _features(of, lags))
-        for residual, *of in zip(residuals, *of_all_runs, strict=True)
-    ]
+    runs = [(r, *given, y, v) for r, given, y, v in zip(residuals, inputs, outputs, slopes, strict=True)]
+    parts = _shortened(runs, most_averaged, criteria)
+    of_all_runs = [_alike(signal) for signal in list(zip(*parts, strict=True))[1:]]
+    lags = _lags(min(len(part[0]) for part in parts), criteria)
+    whitened = [_whitened(part[0], _features(of, lags)) for part, *of in zip(parts, *of_all_runs, strict=True)]
     e, rows = np.concatenate([e for e, _ in whitened]), np.concatenate([rows for _, rows in whitened], axis=1)
     fold = np.concatenate([np.arange(len(e)) * criteria.enough_blocks // max(len(e), 1) % 2 for e, _ in whitened])
     penalty, predicted = _most_likely_penalty(rows, e), np.zeros(len(e))
@@ -53,6 +53,23 @@ def predicted_share(
         seen = fold != held_out
         predicted[~seen] = _coefficients(rows[:, seen], e[seen], penalty) @ rows[:, ~seen]
     return block_ratio([e**2 - (e - predicted) ** 2], [e**2], criteria)
+
+
+def _shortened(
+    runs: Sequence[tuple[Array, ...]], most_averaged: int, criteria: EvidenceCriteria
+) -> list[tuple[Array, ...]]:  # fmt: skip
+    """The signals of runs averaged over neighbouring samples, and where that leaves too many the first part of each of
+    twelve stretches of each run."""
+    total, most = sum(len(run[0]) for run in runs), criteria.model_error_samples
+    every = max(1, min(-(-total // most), most_averaged))
+    averaged = [tuple(_averaged(signal, every) for signal in run) for run in runs]
+    if total <= every * most:
+        return averaged
+    share = every * most / total
+    stretches = [
+        tuple(zip(*(np.array_split(signal, criteria.enough_blocks) for signal in run), strict=True)) for run in averaged
+    ]
+    return [tuple(signal[: int(len(signal) * share)] for signal in stretch) for of in stretches for stretch in of]
 
 
 def _averaged(signal: Array, every: int) -> Array:
