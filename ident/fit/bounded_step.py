@@ -16,8 +16,10 @@ def bounded_step(point: Array, H: Array, g: Array) -> Array:
     """−H⁻¹ g on the axes that it leaves in the unit cube; the axis that would leave it farthest stays at its bound, and
     so on with the others. Zero where H is not finite."""
     step = np.zeros(len(point))
-    if not np.all(np.isfinite(H)):
-        return step
+    for i in range(len(point)):
+        for j in range(len(point)):
+            if not np.isfinite(H[i, j]):
+                return step
     largest = 1e-300
     for i in range(len(point)):
         largest = max(largest, H[i, i])
@@ -73,7 +75,7 @@ def bounded_steps(point: Array, H: Array, g: Array) -> Array:
     """The step of each of n problems from one point (p,), of H (n, p, p) and g (n, p): (n, p)."""
     steps = np.empty_like(g)
     for i in range(len(g)):
-        step = bounded_step(point, H[i], g[i])
+        step = bounded_step(point, np.ascontiguousarray(H[i]), np.ascontiguousarray(g[i]))
         for j in range(len(step)):
             steps[i, j] = step[j]
     return steps

@@ -154,8 +154,8 @@ class Sensitivities:
         Z = np.array([columns.Z for columns in known])
         cross = np.zeros((len(runs), Z.shape[1], changes))
         power = np.zeros((len(runs), changes))
-        for rows, first, last in shown:
-            _add(rows, Z[:, :, first:last], cross, power)
+        for rows, first, _ in shown:
+            _add(rows, Z, first, cross, power)
         sound = power < _LARGEST  # false where it is not a number
         cross, power = np.where(sound[:, None], cross, 0.0), np.where(sound, power, 0.0)
         free = np.arange(len(self.strides), Z.shape[1] - 1)
@@ -168,10 +168,11 @@ class Sensitivities:
 
 
 @jit(fastmath=True, nogil=True)
-def _add(rows: Array, Z: Array, cross: Array, power: Array) -> None:
+def _add(rows: Array, Z: Array, begin: int, cross: Array, power: Array) -> None:
     """Add to `cross` (runs, q, n) and `power` (runs, n) what the changes d give over the samples of a block.
 
-    `rows` (samples, runs, 1+n) holds the model's output, then the changed ones; `Z` (runs, q, samples). The changes lie
+    `rows` (samples, runs, 1+n) holds the model's output, then the changed ones; `Z` (runs, q, n) is of whole records,
+    of which the block starts at sample `begin`. The changes lie
     side by side in memory, and so they stay: a product of matrices sums them with what is read once.
     """
     samples, runs, lanes = rows.shape
@@ -185,7 +186,7 @@ def _add(rows: Array, Z: Array, cross: Array, power: Array) -> None:
                     change = rows[t, run, j + 1] - base
                     d[t - first, j] = change
                     power[run, j] += change * change
-            sums = np.dot(np.ascontiguousarray(Z[run, :, first:last]), d[: last - first])
+            sums = np.dot(np.ascontiguousarray(Z[run, :, begin + first : begin + last]), d[: last - first])
             for i in range(len(sums)):
                 for j in range(lanes - 1):
                     cross[run, i, j] += sums[i, j]

@@ -25,11 +25,14 @@ from ident.simulation.machine_call import advance_from
 Array = NDArray[np.float64]
 Whole = NDArray[np.int64]
 LANES = 16
-COMMAND, DISPLACEMENT, FORCE, INTERACTION, POSITION, SPEED, ACCELERATION = range(7)
-"""The columns of `rows`: of its command and of what a kernel shows; the last four where a specimen joins actuators."""
+COMMAND, DISPLACEMENT, FORCE, INTERACTION, POSITION, SPEED, ACCELERATION = map(np.int64, range(7))
+"""The columns of `rows`: of its command and of what a kernel shows; the last four where a specimen joins actuators.
+
+NumPy's integers have one type, and each of Python's constants one of its own, for which a function is compiled anew.
+"""
 ROWS = 7
 _NEVER = 1 << 40  # steps between rows that a kernel writes: the loop reads the buffer itself
-_inlined = jit(nogil=True, forceinline=True)  # a call passes all that a rig holds, which takes longer than its work
+_inlined = jit(nogil=True, inline="always")  # a call passes all that a rig holds, which takes longer than its work
 
 
 class Rig(NamedTuple):
@@ -305,4 +308,4 @@ def advance_under(first: int, last: int, rig: Any) -> Any:
 def read(k: int, rig: Any) -> None:
     """d(k) and y(k) of the one system there is, for controllers that are no sampled linear ones."""
     advance_machines(k, rig)
-    _ask(k, 0, rig)
+    _ask(k, np.int64(0), rig)

@@ -73,9 +73,8 @@ def rig_of(
     coupling, masses = np.zeros((3, parts, parts)), np.zeros((2, count))
     if joint:
         coupling = joint[0].coupling[[2, 1, 0]]
-        masses = np.array(
-            [[one.moved_mass(case), case.physical.mass] for one, case in zip(machines, cases, strict=True)]
-        ).T
+        moved = [one.moved_mass(case) for one, case in zip(machines, cases, strict=True)]
+        masses = np.array([moved, [case.physical.mass for case in cases]])
     return steppers, Rig(
         **kernels, part=np.arange(count) % parts, spare=np.zeros(LANES), delay=delay,
         held=np.zeros((n + int(delay.max()), count)),

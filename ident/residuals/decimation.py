@@ -62,7 +62,7 @@ class Response:
         D = np.array([model.D[0] for model in models])
         scaled = LinearModel.of((A * scale / scale[:, None])[None], B[None], C[:1], D[:1])
         known = discretise(scaled, rate, "linear")
-        return cls(known.phi[0], known.gamma[0, 0], known.gamma[0, 1], C, D, scale)
+        return cls(np.ascontiguousarray(known.phi[0]), known.gamma[0, 0], known.gamma[0, 1], C, D, scale)
 
     def only(self, count: int) -> Response:
         """The first `count` of the models."""
@@ -84,7 +84,8 @@ def _respond(phi: Array, gamma0: Array, gamma1: Array, C: Array, D: Array, first
     out = np.zeros((samples, width, m))
     state, following = np.zeros((n, width)), np.zeros((n, width))
     for i in range(n):
-        state[i] += first[i]
+        for b in range(width):
+            state[i, b] = first[i]
     for k in range(samples):
         for j in range(m):
             for b in range(width):

@@ -102,20 +102,23 @@ def _run(p, area, supply, vertical, gain, command, fine, rate, spring, damping):
             for stage in range(4):
                 share = part + (0.0 if stage == 0 else (1.0 if stage == 3 else 0.5)) / fine
                 r = command[k] + share * (command[last] - command[k])
-                if stage == 0:
-                    at[:] = state
-                elif stage == 1:
-                    at[:] = state + 0.5 * h * k1
-                elif stage == 2:
-                    at[:] = state + 0.5 * h * k2
-                else:
-                    at[:] = state + h * k3
+                for j in range(5):
+                    if stage == 0:
+                        at[j] = state[j]
+                    elif stage == 1:
+                        at[j] = state[j] + 0.5 * h * k1[j]
+                    elif stage == 2:
+                        at[j] = state[j] + 0.5 * h * k2[j]
+                    else:
+                        at[j] = state[j] + h * k3[j]
                 u = gain * (r - at[4]) if gain > 0.0 else r
                 load = side * limit + spring * at[4] + damping * at[3]
                 into = k1 if stage == 0 else (k2 if stage == 1 else (k3 if stage == 2 else k4))
                 _rates(p, area, Ps, load, u, at[0], at[1], at[2], at[3], stuck, into)
             before = state[3]
-            state += h / 6.0 * (k1 + 2.0 * k2 + 2.0 * k3 + k4)
+            for j in range(5):
+                slopes = k1[j] + 2.0 * k2[j] + 2.0 * k3[j] + k4[j]
+                state[j] += h / 6.0 * slopes
             if stuck != 0.0:
                 state[3] = 0.0
             elif before != 0.0 and state[3] * before < 0.0:  # it stops within the step, and stays or turns
@@ -130,8 +133,8 @@ def respond(machine, command, gain=0.0, supply=SUPPLY, vertical=0.0, fine=FINE, 
     """The machine from rest. `command` (n,) in V where the gain (V/m) is 0, else in m; supply (Pa) and vertical load
     (N) are numbers or records."""
     n = len(command)
-    wide = [np.ascontiguousarray(np.broadcast_to(np.asarray(x, float), (n,))) for x in (supply, vertical)]
-    columns = _run(np.array(machine), AREA, *wide, float(gain), command, fine, rate, spring, damping)
+    wide = [np.array(np.broadcast_to(np.asarray(x, float), (n,))) for x in (supply, vertical)]  # of one type
+    columns = _run(np.array(machine), AREA, *wide, float(gain), np.array(command, float), fine, rate, spring, damping)
     return Shown(*columns.T)
 
 
