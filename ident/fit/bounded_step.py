@@ -16,10 +16,8 @@ def bounded_step(point: Array, H: Array, g: Array) -> Array:
     """−H⁻¹ g on the axes that it leaves in the unit cube; the axis that would leave it farthest stays at its bound, and
     so on with the others. Zero where H is not finite."""
     step = np.zeros(len(point))
-    for i in range(len(point)):
-        for j in range(len(point)):
-            if not np.isfinite(H[i, j]):
-                return step
+    if not _is_finite(H):
+        return step
     largest = 1e-300
     for i in range(len(point)):
         largest = max(largest, H[i, i])
@@ -52,6 +50,16 @@ def bounded_step(point: Array, H: Array, g: Array) -> Array:
         for i in range(worst, count):
             free[i] = free[i + 1]
     return step
+
+
+@jit(nogil=True)
+def _is_finite(H: Array) -> bool:
+    """What ``np.all(np.isfinite(H))`` says, which takes longer to compile."""
+    for i in range(len(H)):
+        for j in range(len(H)):
+            if not np.isfinite(H[i, j]):
+                return False
+    return True
 
 
 @jit(nogil=True)
