@@ -24,10 +24,19 @@ IN_ONE_GO = {
 TEXT = {".py", ".md", ".toml", ".lock", ".yaml", ".yml", ".html", ".css", ".js", ".mjs", ".ini", ".mako", ""}
 
 
+TYPE_CHECKER = """import gc
+gc.disable()
+gc.enable = lambda: None
+from mypy.__main__ import console_entry
+console_entry()
+"""
+"""Mypy without Python's collector, which searches trees that only grow: a fifth of its time."""
+
+
 def run(*arguments: str, **environment: str) -> None:
-    """Run a module of this Python in the checkout; fail with its output."""
+    """Run this Python in the checkout; fail with its output."""
     own = {**os.environ, **environment}
-    called = [sys.executable, "-m", *arguments]
+    called = [sys.executable, *arguments]
     done = subprocess.run(called, cwd=ROOT, env=own, capture_output=True, text=True, check=False)
     assert done.returncode == 0, f"{' '.join(arguments)}\n{done.stdout}{done.stderr}"
 
@@ -44,12 +53,12 @@ def tracked() -> list[Path]:
 
 def test_lint():
     """Ruff finds nothing."""
-    run("ruff", "check", "--quiet", ".")
+    run("-m", "ruff", "check", "--quiet", ".")
 
 
 def test_format():
     """Every file is laid out as `ruff format` lays it out."""
-    run("ruff", "format", "--check", "--quiet", ".")
+    run("-m", "ruff", "format", "--check", "--quiet", ".")
 
 
 def test_types(full):
@@ -59,9 +68,9 @@ def test_types(full):
     """
     kept = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "servoident-tests"
     if full:
-        run("mypy", "--cache-dir", str(kept / "mypy"))
+        run("-c", TYPE_CHECKER, "--cache-dir", str(kept / "mypy"))
     else:
-        run("mypy", "--cache-dir", str(kept / "mypy-short"), MYPYPATH=str(ROOT / "tests" / "typed"))
+        run("-c", TYPE_CHECKER, "--cache-dir", str(kept / "mypy-short"), MYPYPATH=str(ROOT / "tests" / "typed"))
 
 
 def test_source_files_are_short():

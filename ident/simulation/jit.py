@@ -61,7 +61,7 @@ def in_turns(function: Any, text: Callable[[], str]) -> Any:
     return function
 
 
-class _Kept(NullCache):
+class _Kept(NullCache):  # type: ignore[misc]  # to the type checker a class of numba is any
     """What numba asks for the machine code of a function, and tells what it compiled."""
 
     def __init__(self, function: Any) -> None:
