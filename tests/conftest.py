@@ -10,7 +10,7 @@ import logging
 import os
 import sys
 import threading
-from collections.abc import Callable, Collection, Iterator
+from collections.abc import Callable, Collection, Generator, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -23,6 +23,7 @@ from tests.dearest import (  # noqa: F401  hooks
     pytest_runtest_teardown,
     pytest_terminal_summary,
 )
+from tests.first_collects import after_the_first
 from tests.rounding import rounded_otherwise
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -37,6 +38,13 @@ os.environ["PYTHONWARNINGS"] = "error::RuntimeWarning"
 # What is imported and collected stays, and with all tests in memory each search of the collector through everything
 # takes a tenth of a second and more.
 gc.set_threshold(1_000_000, 20, 50)
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_collection(session: pytest.Session) -> Generator[None, object, object]:
+    """One worker compiles what all of them collect."""
+    with after_the_first(Path(__file__)) if hasattr(session.config, "workerinput") else contextlib.nullcontext():
+        return (yield)
 
 
 def pytest_collection_finish() -> None:
