@@ -190,10 +190,7 @@ def all_cores(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(parallel, "_idle", lambda: helpers)
 
 
-FEW = {
-    "backlash", "coulomb_friction", "dead_zone", "gain_asymmetry", "null_bias", "pressure_flow", "quadratic_damping",
-    "sensor_lag",
-}  # fmt: skip
+FEW = {"coulomb_friction", "dead_zone", "quadratic_damping", "sensor_lag"}
 
 
 def rank_only(own: pytest.MonkeyPatch, names: Collection[str]) -> None:
@@ -208,7 +205,7 @@ def rank_only(own: pytest.MonkeyPatch, names: Collection[str]) -> None:
 
 @contextlib.contextmanager
 def of_few_effects(full: bool, *beside: str) -> Iterator[None]:
-    """In the short form a diagnosis ranks eight effects of the catalogue, of several places, and those named `beside`.
+    """In the short form a diagnosis ranks four effects of the catalogue, of three places, and those named `beside`.
 
     The whole catalogue takes several times as long, and half a minute where its kernels have to be compiled. Of the
     runs that a lab could make next it weighs a few: what is proposed of all of them is said in tests/design.

@@ -40,7 +40,7 @@ class Older:
 
 @pytest.fixture(scope="module", params=short_form(["before", "revision_0004"], "before"))
 def older(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory, full: bool) -> Iterator[Older]:
-    """Each of them, on a data folder of its own; in the short form eight effects are ranked."""
+    """Each of them, on a data folder of its own; in the short form four effects are ranked."""
     folder, data = STORED / request.param, Path(tmp_path_factory.mktemp("older"))
     for name in ("servoident", "queue"):
         with sqlite3.connect(data / f"{name}.sqlite") as database:

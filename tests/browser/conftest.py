@@ -39,7 +39,7 @@ def browser_type_launch_args() -> dict[str, object]:
 
 @pytest.fixture(scope="package")
 def site(tmp_path_factory: pytest.TempPathFactory, full: bool) -> Iterator[Service]:
-    """A service for all tests of this folder, no longer; in the short form with short searches and eight effects."""
+    """A service for all tests of this folder, no longer; in the short form with short searches and four effects."""
     with process(tmp_path_factory.mktemp("site"), "" if full else LITTLE) as service:
         yield service
 

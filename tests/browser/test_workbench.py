@@ -24,7 +24,7 @@ SEARCH = 1_200_000  # ms, for a search on 40 000 samples
 
 @pytest.fixture(scope="module")
 def site(tmp_path_factory: pytest.TempPathFactory, full: bool) -> Iterator[Service]:
-    """The demo, as a new user starts it; in the short form its diagnoses rank eight effects."""
+    """The demo, as a new user starts it; in the short form its diagnoses rank four effects."""
     data, first = tmp_path_factory.mktemp("demo"), "" if full else LITTLE
     with command("demo", "--port", free_port(), "--data", data, until="token=", first=first) as line:
         yield Service.that_said(line)

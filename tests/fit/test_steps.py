@@ -10,6 +10,7 @@ from ident.matrix import Actuator, Matrix
 from ident.presets.description import described
 from ident.run import Run
 from ident.workflows import diagnose, identify
+from tests.conftest import of_few_effects
 from tests.short_form import short_form
 
 RATE, GAIN, LAG, DEAD = 100.0, 3.5, 0.3, 0.5
@@ -44,10 +45,10 @@ def test_a_lag_much_slower_than_the_power_of_a_step_is_within_its_bounds():
     assert fit.values["Kv"] == pytest.approx(GAIN, rel=0.005)
 
 
-@pytest.mark.usefixtures("few_effects")
 @pytest.mark.parametrize("seed", short_form([2, 3, 4], 2))
-def test_a_dead_zone_shows_in_steps_of_different_height_with_an_honest_error(seed):
-    found = diagnose(steps(seed, DEAD), settings=Settings(model="motor"), most=1)
+def test_a_dead_zone_shows_in_steps_of_different_height_with_an_honest_error(seed, full):
+    with of_few_effects(full, "backlash"):
+        found = diagnose(steps(seed, DEAD), settings=Settings(model="motor"), most=1)
     (first,) = found.verdict.effects
     # From rest each takes the first half volt, as friction of half a volt's torque does.
     assert first in ("dead_zone", "backlash", "coulomb_friction")

@@ -52,13 +52,14 @@ def test_a_mass_that_swings_about_the_place_that_a_voltage_holds_is_on_a_spring(
 
 
 @pytest.mark.parametrize(
-    ("matrix", "is_named"),
-    [(machine(2), True), (machine(2, units={"command": "A", "displacement": "m"}), True),
-     (machine(2, units={"command": "N*m", "displacement": "rad"}), False), (machine(2, omega=0.0), False),
-     (machine(2, units={"command": "V", "velocity": "rad/s"}), False)],
+    ("changed", "is_named"),
+    [({}, True), ({"units": {"command": "A", "displacement": "m"}}, True),
+     ({"units": {"command": "N*m", "displacement": "rad"}}, False), ({"omega": 0.0}, False),
+     ({"units": {"command": "V", "velocity": "rad/s"}}, False)],
     ids=["volts", "amperes", "a-torque-drives-a-mass", "a-motor-that-integrates", "no-position"],
 )  # fmt: skip
-def test_it_is_in_question_where_a_voltage_or_a_current_makes_a_position_ring(matrix, is_named):
+def test_it_is_in_question_where_a_voltage_or_a_current_makes_a_position_ring(changed, is_named):
+    matrix = machine(2, **changed)
     if "velocity" in matrix.runs[0].units:
         spun = ({"command": run.command, "velocity": run.measured} for run in matrix.runs)
         runs = (replace(run, channels=of, output="velocity") for run, of in zip(matrix.runs, spun, strict=True))

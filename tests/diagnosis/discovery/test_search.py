@@ -187,7 +187,7 @@ def test_the_strength_comes_with_its_standard_error():
 def test_noise_of_any_colour_is_no_physics(colour, seed, full):
     if not full and (colour, seed) != ("slow", 1):
         pytest.skip("some seconds each: run with --full")
-    matrix = machine(seed, 12)
+    matrix = machine(seed, 12 if full else 6)
     runs = []
     for number, run in enumerate(matrix.runs):
         rng = np.random.default_rng([9, seed, number])
