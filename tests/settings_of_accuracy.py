@@ -20,6 +20,7 @@ from tests.reference import (
     controlled_loop_reference,
     first_order_reference,
     nonlinear_reference,
+    plain_machine,
     qian_reference,
     strano_reference,
     test_qian_reference,
@@ -111,7 +112,7 @@ def of_accuracy_elsewhere() -> Iterator[Tie]:
     yield A, "the smallest change with a peak at 45 Hz | {} starts |", (oil_column.STARTS,)
     yield A, "friction with located events), {} machines, both kinds of command", (word(len(test_contract.CELLS)),)
     yield A, "agree within {} of the output's standard deviation, friction that sticks within {}", (
-        power(test_contract.CLOSE), power(test_contract.STICKING),
+        power(plain_machine.CLOSE), power(plain_machine.STICKING),
     )  # fmt: skip
     yield A, "A strength {} % off makes the comparison of every effect fail that changes these runs by {} % or more", (
         beyond(test_contract.OFF), per_cent(test_contract.FEW),

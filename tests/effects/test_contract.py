@@ -22,37 +22,17 @@ from ident.simulation.simulate import responses
 from ident.simulation.steps import steps_needed
 from tests.reference import nonlinear_reference as reference
 from tests.reference import qian_reference as linear
+from tests.reference.plain_cases import CASES
 
 PLANT = linear.Plant()
 CELLS = (linear.Cell(0.98, 67.6e3, 150.0, 7.0), linear.Cell(0.0, 0.0, 0.0, 10.0), linear.Cell(2.67, 0.0, 0.0, 5.0))
-STICKS = {
-    "coulomb_friction",
-    "stribeck_friction",
-    "spool_stiction",
-    "position_friction",
-    "unequal_areas",
-}  # in both, in the reference with located events
-SHARE = {
-    "command_limit": 0.5,
-    "specimen_free_play": 0.25,
-    "pressure_dependent_gain": 0.5,
-    "unequal_areas": 0.4,
-}  # of the largest strength, at which little would be left
 SAMPLES = 1024
-CLOSE, STICKING = 1e-4, 1e-3  # of the output's standard deviation; of friction that sticks
 OFF, FEW = 1.01, 0.02  # a strength that is wrong, and what a weak effect changes of the short runs
-SEEN = {"spool_stiction": 1.5, "stroke_dependent_volume": 1.1}
-"""What makes the comparison fail where 1 % does not: these change the short runs by less than 2 %, and no others."""
 
 
 def by_name(effect: Effect) -> str:
     """The id of a case."""
     return effect.name
-
-
-def tolerance(effect: Effect) -> float:
-    """Of the output's standard deviation."""
-    return STICKING if effect.name in STICKS else 2e-6 if effect.name == "stroke_dependent_volume" else CLOSE
 
 
 def command(seed: int) -> np.ndarray:
@@ -77,7 +57,7 @@ def ours(
 
 def strength(effect: Effect) -> float:
     """The strength at which an effect is compared: its largest, where the machine still follows."""
-    return effect.strength.upper * SHARE.get(effect.name, 1.0)
+    return effect.strength.upper * CASES[effect.name].share
 
 
 @cache
@@ -114,14 +94,18 @@ def test_the_reference_knows_every_effect():
 @pytest.mark.parametrize("effect", EFFECTS, ids=by_name)
 def test_the_kernel_agrees_with_the_reference(effect):
     """With and without specimen, command straight or held; friction that sticks to 1e-3, everything else to 1e-4."""
-    assert max(miss for miss, _ in deviations(effect)) < tolerance(effect)
+    assert max(miss for miss, _ in deviations(effect)) < CASES[effect.name].close
 
 
 @pytest.mark.parametrize("effect", EFFECTS, ids=by_name)
 def test_one_percent_of_its_strength_is_seen(effect):
-    """The comparison above is not blind: one coefficient of the kernel 1 % off makes it fail, or what `SEEN` says."""
-    assert (max(acts for _, acts in deviations(effect)) < FEW) is (effect.name in SEEN)
-    assert max(miss for miss, _ in deviations(effect, factor=SEEN.get(effect.name, OFF))) > tolerance(effect)
+    """The comparison above is not blind: one coefficient of the kernel 1 % off makes it fail.
+
+    More may be needed of those that change the short runs by less than 2 %, and of no others.
+    """
+    case = CASES[effect.name]
+    assert (max(acts for _, acts in deviations(effect)) < FEW) is (case.seen > OFF)
+    assert max(miss for miss, _ in deviations(effect, factor=case.seen)) > case.close
 
 
 @pytest.mark.parametrize("samples", [0.3, 1.0, 1.0127, 1.9, 2.4])

@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from tests.reference.plain_machine import CHATTERS, KINKS, Case, Machine, Samples, State, Switch
+from tests.reference.plain_machine import CHATTERS, KINKS, STICKING, Case, Machine, Samples, State, Switch
 from tests.reference.qian_reference import Cell, Plant
 
 
@@ -40,7 +40,7 @@ class CommandDelay(Machine):
 
 
 class CommandLimit(Machine):
-    case = Case({"a": (150, 150)}, KINKS)
+    case = Case({"a": (150, 150)}, KINKS, share=0.5)
 
     def drive(self, t: float, s: State) -> float:
         return clip(super().drive(t, s), -1 / self.p.a, 1 / self.p.a)
@@ -120,7 +120,7 @@ class ValveRateLimit(Machine):
 class SpoolStiction(Machine):
     """Modes: 0 stands, ±1 moves, ±2 is dragged along at the edge of the threshold where e moves slower than s/tau."""
 
-    case = Case({"s": (3e-4, 3e-4)}, CHATTERS, 1e-4)
+    case = Case({"s": (3e-4, 3e-4)}, CHATTERS, 1e-4, close=STICKING, seen=1.5)
     longest = 1e-4
 
     def gap(self, t: float, s: State) -> float:
@@ -251,7 +251,7 @@ class EntrainedAir(Machine):
 
 
 class StrokeDependentVolume(Machine):
-    case = Case({"kappa": (2e4, 2e4)})
+    case = Case({"kappa": (2e4, 2e4)}, close=2e-6, seen=1.1)
 
     def softness(self, s: State) -> float:
         return self.plant.Ka * (1 - self.p.kappa * s[3] ** 2)
@@ -268,7 +268,7 @@ class FlowForce(Machine):
 
 
 class PressureDependentGain(Machine):
-    case = Case({"g": (3e-7, -3e-7)}, KINKS)
+    case = Case({"g": (3e-7, -3e-7)}, KINKS, share=0.5)
 
     def flow(self, w: float, s: State) -> float:
         return super().flow(w, s) * (1 + self.p.g * abs(s[1]))

@@ -10,13 +10,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tests.reference.plain_effects import clip, sgn
-from tests.reference.plain_machine import KINKS, STICKS, Case, Machine, State, Switch
+from tests.reference.plain_machine import KINKS, STICKING, STICKS, Case, Machine, State, Switch
 
 
 class CoulombFriction(Machine):
     """Modes: 0 sticks, ±1 slides; it leaves a stop where the other forces are larger than friction at standstill."""
 
-    case = Case({"Fc": (80, 80)}, STICKS)
+    case = Case({"Fc": (80, 80)}, STICKS, close=STICKING)
     longest = 1e-4
 
     def limit(self, s: State) -> float:
@@ -45,7 +45,7 @@ class CoulombFriction(Machine):
 
 
 class StribeckFriction(CoulombFriction):
-    case = Case({"dF": (80, 80), "vs": (5e-3, 2e-2)}, STICKS, 4e-4)
+    case = Case({"dF": (80, 80), "vs": (5e-3, 2e-2)}, STICKS, 4e-4, close=STICKING)
 
     def limit(self, s: State) -> float:
         return self.p.dF * exp(-((s[2] / self.p.vs) ** 2))
@@ -89,7 +89,7 @@ class SpecimenHysteresis(Machine):
 
 
 class SpecimenFreePlay(Machine):
-    case = Case({"g": (5e-4, 5e-4)}, KINKS)
+    case = Case({"g": (5e-4, 5e-4)}, KINKS, share=0.25)
 
     def reaction(self, s: State) -> float:
         return self.cell.damping * s[2] + self.cell.stiffness * (s[3] - clip(s[3], -self.p.g, self.p.g))
@@ -185,7 +185,7 @@ class Vanishing(CoulombFriction):
 class UnequalAreas(Vanishing):
     """The area A (1 + a sgn v) of flow and force: against the motion it holds the rod as dry friction does."""
 
-    case = Case({"a": (0.2, -0.2)}, STICKS)
+    case = Case({"a": (0.2, -0.2)}, STICKS, share=0.4, close=STICKING)
 
     def limit(self, s: State) -> float:
         return max(-self.p.a * self.plant.A * s[1], 0.0)
@@ -203,7 +203,7 @@ class UnequalAreas(Vanishing):
 
 
 class PositionFriction(Vanishing):
-    case = Case({"Fx": (5e7, 5e7)}, STICKS)
+    case = Case({"Fx": (5e7, 5e7)}, STICKS, close=STICKING)
 
     def limit(self, s: State) -> float:
         return self.p.Fx * s[3] ** 2

@@ -45,12 +45,24 @@ class Kind(NamedTuple):
 SMOOTH, KINKS, STICKS, CHATTERS = Kind(1e-7, 40), Kind(5e-6, 6), Kind(5e-5, 5), Kind(1e-3, 2)
 
 
+CLOSE, STICKING = 1e-4, 1e-3
+"""Of the output's standard deviation: what the program may be off the nonlinear reference; of friction that sticks."""
+
+
 class Case(NamedTuple):
-    """Values of an effect's parameters in the two runs, what kind it is, and the RMS of the command (m)."""
+    """Values of an effect's parameters in the two runs, what kind it is, and the RMS of the command (m).
+
+    The others are of the program's comparison with the nonlinear reference: the `share` of the largest strength at
+    which it is made, less than 1 where that would leave little of the machine; what the program may be off, `close`;
+    and the factor of the strength that the comparison has to notice, `seen`.
+    """
 
     values: dict[str, tuple[float, float]]
     kind: Kind = SMOOTH
     rms: float = 1.27e-3
+    share: float = 1.0
+    close: float = CLOSE
+    seen: float = 1.01
 
 
 class Values:

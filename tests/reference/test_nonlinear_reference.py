@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import ast
-import re
 import sys
 from functools import cache
 from pathlib import Path
@@ -14,8 +13,9 @@ import pytest
 from ident.effects import EFFECTS
 from tests.reference import measured_load_reference as loaded
 from tests.reference import nonlinear_reference as reference
-from tests.reference import plain_effects, plain_loads, plain_machine
+from tests.reference import plain_cases, plain_effects, plain_loads, plain_machine
 from tests.reference import qian_reference as linear
+from tests.reference.plain_cases import CASES
 from tests.reference.plain_machine import KINKS
 from tests.short_form import short_form
 
@@ -26,16 +26,10 @@ SAMPLES, LONG = 60, 512
 RUNS = ((linear.Cell(0.98, 67.6e3, 150.0, 7.0), "linear"), (linear.Cell(0.0, 36.3e3, 300.0, 10.0), "zoh"))
 
 
-CASES = {
-    re.sub(r"(?<!^)(?=[A-Z])", "_", name).lower(): machine.case
-    for name, machine in (vars(plain_effects) | vars(plain_loads)).items()
-    if isinstance(machine, type) and "case" in vars(machine)
-}
-"""The case of each effect's machine, by the effect's name."""
-
-
 @pytest.mark.parametrize(
-    "module", [reference, loaded, plain_machine, plain_effects, plain_loads], ids=lambda m: m.__name__.split(".")[-1]
+    "module",
+    [reference, loaded, plain_machine, plain_effects, plain_loads, plain_cases],
+    ids=lambda m: m.__name__.split(".")[-1],
 )
 def test_the_references_import_nothing_of_the_program(module):
     """Neither the reference nor its judge; beside numpy, numba and scipy only each other and the linear reference."""
