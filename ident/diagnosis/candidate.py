@@ -23,7 +23,7 @@ class Candidate:
     """An effect, its prediction, its trial and its refit on all records where they were made, and the evidence for it.
 
     `worth_adding` is the answer of :func:`~ident.diagnosis.evidence.comparison.worth_adding` on it and the model
-    without it. It `worsens_part` where it improves the model on the whole, and worsens a condition of the tests, a half
+    without it. It `worsens_part` where it improves the model on the whole, and worsens a condition of the tests, a span
     of the records, or the free run of a model that is fitted over windows.
     """
 

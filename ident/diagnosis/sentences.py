@@ -10,7 +10,7 @@ from typing import Any
 from ident.diagnosis.candidate import Candidate
 from ident.diagnosis.criteria import CRITERIA
 from ident.diagnosis.discovery.proposal import Proposal
-from ident.diagnosis.evidence.comparison import HALVES, Evidence, generalises, losing_part, matters, runs_freely
+from ident.diagnosis.evidence.comparison import SPANS, Evidence, generalises, losing_part, matters, runs_freely
 from ident.diagnosis.evidence.criteria import EVIDENCE_CRITERIA
 from ident.diagnosis.evidence.free_run import FreeRun, drifts
 from ident.diagnosis.evidence.probability import is_improbable
@@ -66,8 +66,8 @@ def _reasons(
 
 
 def _loses(part: Hashable) -> Message:
-    """Where the error rises: on a half of the records, or on one condition of the test."""
-    return message("why.half", part=part) if part in HALVES else message("why.condition")
+    """Where the error rises: on a span of the records, or on one condition of the test."""
+    return message("why.span", span=part) if part in SPANS else message("why.condition")
 
 
 def _drifts(evidence: Evidence) -> Message:

@@ -232,8 +232,8 @@ WHY: Mapping[str, str] = {
     "why.little":
         "The effect explains {share:.2g} ± {error:.2g} % of the error above the noise floor. At least {least:.2g} % "
         "is required, beyond the standard error.",
-    "why.half":
-        "The error rises on the {part} of the records. An effect that only part of the data support is not added.",
+    "why.span":
+        "The error rises on the {span} of the records. An effect that only part of the data support is not added.",
     "why.condition":
         "The error rises under one condition of the tests. An effect that only part of the data support is not "
         "added.",

@@ -13,6 +13,7 @@ from scipy.signal import lfilter
 from ident.diagnosis.evidence.blocks import BlockMean
 from ident.diagnosis.evidence.chance import bar
 from ident.diagnosis.evidence.comparison import (
+    SPANS,
     Evidence,
     Residuals,
     both_probable,
@@ -360,11 +361,11 @@ def gaining(most: float, **gains: float) -> SetGains:
 
 
 def test_an_effect_is_added_where_it_improves_and_generalises_alone() -> None:
-    """What gains half of all that can be gained passes whatever the bar, and loses in no half of the records."""
+    """What gains half of all that can be gained passes whatever the bar, and loses in no span of the records."""
     before, after = periodic(30, 0.3, seed=13)
     found = compared([before], [after], [Record(1.0, period=87.3)])
     assert worth_adding(found)
-    loses = {**found.parts, "second half": BlockMean(-0.5 * found.explainable, 1e-9, 20)}
+    loses = {**found.parts, [*SPANS][-1]: BlockMean(-0.5 * found.explainable, 1e-9, 20)}
     assert not worth_adding(replace(found, by_part=lambda: loses))
     little = replace(found, gain=0.2 * found.most, without=0.2 * found.most)
     assert not worth_adding(little)

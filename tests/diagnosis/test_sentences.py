@@ -11,7 +11,7 @@ import pytest
 from ident.diagnosis.candidate_models import CandidateModels
 from ident.diagnosis.discovery.proposal import Proposal
 from ident.diagnosis.evidence.blocks import BlockMean
-from ident.diagnosis.evidence.comparison import Evidence
+from ident.diagnosis.evidence.comparison import SPANS, Evidence
 from ident.diagnosis.report import better_with_fewer
 from ident.diagnosis.sentences import proposed_text, verdict_text, why_of_evidence
 from ident.diagnosis.verification import Contradiction
@@ -19,6 +19,8 @@ from ident.effects import EFFECTS
 from ident.fit.settings import Settings
 from ident.matrix import Actuator, Matrix
 from ident.run import Run, Specimen
+
+LAST = [*SPANS][-1]
 
 
 def matrix(actuator: Actuator, **labels: object) -> Matrix:
@@ -154,11 +156,11 @@ def test_what_later_terms_bring_down_is_not_said_first(last, mended):
 
 
 def found(share: float, losing: bool = False) -> Evidence:
-    """An effect that takes a share of what is above the noise, and loses in one half or in none."""
+    """An effect that takes a share of what is above the noise, and loses in one span of the records or in none."""
     sure, lost = BlockMean(share, 0.02, 20), BlockMean(-0.5, 0.01, 20)
     return Evidence(
         gain=20.0, without=20.0, most=100.0, distinct=50.0, before=0.01, after=0.008, noise=0.0001, difference=sure,
-        share=sure, by_part=lambda: {"second half": lost if losing else sure}, apart=0.001, resolved=1e-6,
+        share=sure, by_part=lambda: {LAST: lost if losing else sure}, apart=0.001, resolved=1e-6,
     )  # fmt: skip
 
 
@@ -168,7 +170,7 @@ def found(share: float, losing: bool = False) -> Evidence:
         (found(0.4), True, "It shows as", "chance"),
         (found(0.4), False, "no more than the best of all effects gains by chance", "It shows"),
         (found(0.03), False, "explains 3 ± 3.5 % of the error above the noise floor", "chance"),
-        (found(0.4, losing=True), False, "The error rises on the second half of the records", "chance"),
+        (found(0.4, losing=True), False, f"The error rises on the {LAST} of the records", "chance"),
     ],
 )
 def test_an_effect_says_why_it_helps_or_does_not(evidence, worth_adding, said, unsaid):

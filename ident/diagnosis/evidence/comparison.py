@@ -23,8 +23,8 @@ with P the power of the error over the power of the output, averaged over runs: 
 shown. The error of ρ comes from blocks of ten correlation times of the difference, or from whole runs
 (:mod:`ident.diagnosis.evidence.blocks`).
 
-*Does it hold everywhere?* No condition of the tests, and neither half of the records, may lose beyond its error and by
-a hundredth of the explainable power.
+*Does it hold everywhere?* No condition of the tests, and none of the :data:`SPANS` of the records, may lose beyond its
+error and by a hundredth of the explainable power.
 """
 
 from __future__ import annotations
@@ -51,7 +51,8 @@ from ident.noise.effective_sample_size import independent_samples
 Array = NDArray[np.float64]
 NO_DIFFERENCE = BlockMean(0.0, 0.0, 1)
 """The difference of the means of two runs or one: their scatter is not known."""
-HALVES = ("first half", "second half")
+SPANS = {"first half": (0.0, 0.5), "second half": (0.5, 1.0)}
+"""The spans of the records, as shares of each, on none of which an effect may lose; a user reads their names."""
 
 
 @dataclass(frozen=True)
@@ -61,7 +62,7 @@ class Evidence:
     `gain` is G (nats), `without` is G without the run that gains most, `most` is the gain of a model whose residual is
     the noise, `distinct` is ν. `before`, `after` and `noise` are powers of the error over the power of the output,
     averaged over runs; `difference` is before − after and `share` ρ, with their errors; `by_part` works out `parts`,
-    the differences on each condition and each half. `apart` is the power of the difference of the two outputs,
+    the differences on each condition and each span. `apart` is the power of the difference of the two outputs,
     `resolved` the power of the least difference that the noise does not hide.
 
     The means of the runs, less their common mean, are judged by themselves. `level` is their root mean square before,
@@ -92,7 +93,7 @@ class Evidence:
 
     @cached_property
     def parts(self) -> Mapping[Hashable, BlockMean]:
-        """The differences on each condition and each half, worked out where they decide."""
+        """The differences on each condition and each span, worked out where they decide."""
         return self.by_part()
 
     @cached_property
@@ -237,12 +238,12 @@ def matters(evidence: Evidence, criteria: EvidenceCriteria = EVIDENCE_CRITERIA) 
 
 
 def generalises(evidence: Evidence, criteria: EvidenceCriteria = EVIDENCE_CRITERIA) -> bool:
-    """Whether no condition and no half loses beyond its error, and by a share of the explainable power that matters."""
+    """Whether no condition and no span loses beyond its error, and by a share of the explainable power that matters."""
     return losing_part(evidence, criteria) is None
 
 
 def losing_part(evidence: Evidence, criteria: EvidenceCriteria = EVIDENCE_CRITERIA) -> Hashable | None:
-    """The first condition or half that loses beyond its error by a share that matters; None where none does."""
+    """The first condition or span that loses beyond its error by a share that matters; None where none does."""
     least, each = -criteria.share * evidence.explainable, criteria.of_several(len(evidence.parts))
     return next((name for name, part in evidence.parts.items() if part.below(least, each)), None)
 
@@ -356,12 +357,13 @@ def _without(disturbance: Disturbance, before: Array, after: Array) -> float:
 def _parts(
     gained: Sequence[Array], records: Sequence[Record], criteria: EvidenceCriteria
 ) -> dict[Hashable, BlockMean]:  # fmt: skip
-    """The difference on each condition, where there are several, and on each half of the records."""
+    """The difference on each condition, where there are several, and on each span of the records."""
     conditions: dict[Hashable, list[Array]] = {}
     for series, record in zip(gained, records, strict=True):
         conditions.setdefault(record.condition, []).append(series)
     found: dict[Hashable, BlockMean] = {}
     if len(conditions) > 1:
         found |= {condition: block_mean(series, criteria) for condition, series in conditions.items()}
-    halves = ([run[: len(run) // 2] for run in gained], [run[len(run) // 2 :] for run in gained])
-    return found | {name: block_mean(half, criteria) for name, half in zip(HALVES, halves, strict=True)}
+    for name, (begin, end) in SPANS.items():
+        found[name] = block_mean([run[int(begin * len(run)) : int(end * len(run))] for run in gained], criteria)
+    return found
