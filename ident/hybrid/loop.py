@@ -157,7 +157,7 @@ def _advance(g: int, first: int, last: int, rig: Any) -> None:
 
 
 @_inlined
-def _shown(c: int, what: int, rig: Any) -> Any:
+def _shown(c: int, what: int | np.int64, rig: Any) -> Any:
     """What the kernel of a column shows of it."""
     g = rig.kernel[c]
     return rig.buffer[rig.begin[g] + rig.rows[g, what] * LANES + rig.lane[c]]
@@ -268,7 +268,7 @@ def close(k: int, system: int, rig: Any) -> None:
 
 
 @_inlined
-def _ask(k: int, system: int, rig: Any) -> None:
+def _ask(k: int, system: int | np.int64, rig: Any) -> None:
     """What the substructure asks of the actuators of a system; one that ran away is taken out.
 
     Its numbers would end in infinities.
