@@ -171,8 +171,8 @@ class Sensitivities:
 def _add(rows: Array, Z: Array, begin: int, cross: Array, power: Array) -> None:
     """Add to `cross` (runs, q, n) and `power` (runs, n) what the changes d give over the samples of a block.
 
-    `rows` (samples, runs, 1+n) holds the model's output, then the changed ones; `Z` (runs, q, n) is of whole records,
-    of which the block starts at sample `begin`. The changes lie
+    `rows` (samples, runs, 1+n) holds the model's output, then the changed ones; `Z` (runs, q, samples) is that of whole
+    records, of which the block begins at sample `begin`. The changes lie
     side by side in memory, and so they stay: a product of matrices sums them with what is read once.
     """
     samples, runs, lanes = rows.shape
