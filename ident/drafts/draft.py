@@ -223,7 +223,7 @@ class Draft:
     def options(self) -> tuple[str, ...]:
         """How everything that is missing is said on the command line; in capitals what only the user knows.
 
-        A column is named where one alone is left that it can be.
+        A column is named where one alone is left, and one channel alone that it can be.
         """
         return tuple(option for one in self.missing for option in self._options(one))
 
@@ -244,7 +244,8 @@ class Draft:
         clock, others = self._left(file)
         if kind == "rate":
             return f"--time {quote(f'{at}{clock}')}:UNIT" if clock else f"--rate '{at}RATE Hz'"
-        column = (quote(others[0]) if len(others) == 1 else "COLUMN") if kind == "channel" else ""
+        alone = len(others) == 1 and sum(one.key.startswith("channel") for one in self._missing_of(file)) == 1
+        column = (quote(others[0]) if alone else "COLUMN") if kind == "channel" else ""
         return f"--time {at}{column}:UNIT" if name == "time" else f"--channel {name}{at or '='}{column}:UNIT"
 
     def _left(self, file: RawFile) -> tuple[str, list[str]]:

@@ -176,6 +176,8 @@ class RawFile:
         try:
             samples = self.samples(number)
         except Unusable as refused:
+            if refused.code == "letter-behind-number":
+                return f"{refused.what}; {refused.remedy}"
             words = refused.code != "not-numeric" or number not in self.table.mostly
             return "" if words else refused.what
         bad = np.flatnonzero(~np.isfinite(samples))
@@ -242,8 +244,9 @@ def read_whole(data: bytes, name: str, limits: Limits = LIMITS, stated: Dialect 
     table = read_table(data, name, dialect, limits)
     read = RawFile(name, table, dialect.skip_rows, preamble, form, period, dialect=stated, head=head)
     if not read.columns:
+        what = "; ".join(("no column holds numbers throughout", *read.left_out[:1]))
         remedy = "look into the file; of a text state the dialect: delimiter, decimal sign, header rows, encoding"
-        raise Unusable("no-columns", "no column holds numbers throughout", name, remedy)
+        raise Unusable("no-columns", what, name, remedy)
     return read
 
 

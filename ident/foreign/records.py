@@ -1,7 +1,7 @@
 """JSON: a list of records, a record a line, an object of columns, or an object of tables, each a list of rows.
 
 In addition to its columns an object may state ``sample_rate`` (Hz) or ``dt`` (s), and ``units`` by the names of the
-columns.
+columns. It may stand within other objects, beside what describes the test: of several the one with most numbers counts.
 """
 
 from __future__ import annotations
@@ -28,10 +28,34 @@ def _held(path: str) -> Any:
         return [json.loads(line) for line in text.splitlines() if line.strip()]
 
 
+@lru_cache(1)
+def _record(path: str) -> Any:
+    """The part of the document that has the most numbers in columns; the document where no part has any.
+
+    A document without columns may be large: only an object can hold another part.
+    """
+    held = _held(path)
+    parts, largest, most = [held], held, 0
+    while parts:
+        part = parts.pop(0)
+        parts += [value for value in part.values() if isinstance(value, dict)] if isinstance(part, dict) else []
+        if (size := _numbers(part)) > most:
+            largest, most = part, size
+    return largest
+
+
+def _numbers(part: Any) -> int:
+    """How many numbers a part of a document has in columns; 0 where it has no columns."""
+    try:
+        return sum(len(values) for _, _, values in _columns(part) if values and isinstance(values[0], float))
+    except ValueError:
+        return 0
+
+
 def rate(path: str) -> float:
     """The sample rate in Hz that an object states; 0 where it states none."""
-    held = _held(path)
-    stated = {name.lower(): value for name, value in held.items()} if isinstance(held, dict) else {}
+    record = _record(path)
+    stated = {name.lower(): value for name, value in record.items()} if isinstance(record, dict) else {}
     for names, per in ((RATES, False), (STEPS, True)):
         for name in names:
             value = stated.get(name)
@@ -42,10 +66,10 @@ def rate(path: str) -> float:
 
 def columns(path: str) -> Iterator[tuple[str, str, Any]]:
     """Every entry that the first record has, as a column. Raises ValueError where records differ in their entries."""
-    held, units = _held(path), {}
-    if isinstance(held, dict) and isinstance(held.get("units"), dict):
-        units = held["units"]
-    for name, unit, values in _columns(held):
+    record, units = _record(path), {}
+    if isinstance(record, dict) and isinstance(record.get("units"), dict):
+        units = record["units"]
+    for name, unit, values in _columns(record):
         yield name, unit or str(units.get(name, "")), values
 
 

@@ -9,6 +9,7 @@ _FORM = r"[+-]?(?:\d+(?:{sign}\d*)?|{sign}\d+)(?:[eE][+-]?\d+)?|" + _WORDS
 _POINT = re.compile(_FORM.format(sign=r"\."), re.IGNORECASE)
 _COMMA = re.compile(_FORM.format(sign=","), re.IGNORECASE)
 _BEGUN = re.compile(r"[+-]?\d*[.,]?\d*(?:[eE][+-]?\d*)?")
+_PREFIXED = re.compile(r"[+-]?\d+(?:[.,]\d+)?(?:[eE][+-]?\d+)?\s?[TGMkmuµμnp]")
 _IN_THOUSANDS = re.compile(r"[+-]?[1-9]\d{0,2}([.,])\d{3}(?:\1\d{3})*")
 QUOTES = " \t\"'"
 """What may stand around a number or a name in a field."""
@@ -22,6 +23,11 @@ def is_numeral(field: str, comma: bool) -> bool:
 def has_fraction(field: str, comma: bool) -> bool:
     """Whether a field is a number that shows the decimal sign."""
     return ("," if comma else ".") in field and is_numeral(field, comma)
+
+
+def is_prefixed(field: str) -> bool:
+    """Whether a field is a number with one letter behind it, the prefix of a unit, as in 25.1m; m may be metres, too."""
+    return bool(_PREFIXED.fullmatch(field.strip(QUOTES)))
 
 
 def is_begun(field: str) -> bool:

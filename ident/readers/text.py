@@ -18,6 +18,7 @@ import numpy as np
 from ident.errors import Unusable
 from ident.readers.dialect import ENCODINGS, FOUND, Dialect
 from ident.readers.layout import Layout, mixes_thousands, recognise
+from ident.readers.numeral import is_prefixed
 from ident.readers.limits import Limits, check_size
 from ident.readers.table import Array, Table
 from ident.readers.time_stamp import seconds
@@ -189,7 +190,10 @@ def _unquoted(line: bytes, delimiter: str) -> list[bytes]:
 
 
 def as_float(field: bytes, comma: bool, line: int, where: str, within: bool = False) -> float:
-    """One field as a number; `within` the samples, not in their first row. Raises Unusable ``not-numeric``."""
+    """One field as a number; `within` the samples, not in their first row.
+
+    Raises Unusable: ``not-numeric``, ``letter-behind-number``.
+    """
     parted = comma and b"." in field and mixes_thousands(field.decode("utf-8", "replace"))
     if not parted:
         try:
@@ -205,6 +209,11 @@ def as_float(field: bytes, comma: bool, line: int, where: str, within: bool = Fa
         raise Unusable(
             "not-numeric", what, where, "fill it, or write nan there and keep the part before or after it with rows"
         )
+    if is_prefixed(text):
+        raise Unusable(
+            "letter-behind-number", f"line {line} holds {shown(text)!r}, a number with a letter behind it", where,
+            "write plain numbers, such as 0.0251 or 25.1e-3 for 25.1m, and state the unit of the column",
+        )  # fmt: skip
     if within:
         what = f"line {line} holds {shown(text)!r} among numbers"
         remedy = "correct the number, or write nan there and keep the part before or after it with rows"

@@ -334,6 +334,16 @@ def test_a_column_that_is_no_channel_is_said():
     assert "no channel is taken from 'stage'" in Draft([raw(text, "a.csv")], with_coil).doubts
 
 
+def test_numbers_with_the_prefix_of_a_unit_behind_them_are_named_with_what_to_write():
+    """A letter m may stand for metres, too, so it is not read."""
+    rows = "".join(f"{n / 10};{20 + n / 10:.1f}m;1.{n}k\n" for n in range(9))
+    of_some = Draft([raw("time (s);current;pressure\n" + rows, "a.csv")], Answers(serial="S"))
+    said = "'current' is left out: line 2 holds '20.0m', a number with a letter behind it; write plain numbers"
+    assert any(said in one for one in of_some.doubts)
+    with pytest.raises(Unusable, match="no column holds numbers throughout; 'current' is left out: .* '20.0m'"):
+        raw("current;pressure\n" + "".join(row.partition(";")[2] + "\n" for row in rows.split()), "b.csv")
+
+
 def test_files_with_other_names_have_columns_units_and_clocks_of_their_own():
     """What is said of a file outweighs what is said of all; each is asked for what it lacks, by its name."""
     files = [raw(IN_MS, "a.csv"), raw(OTHER_NAMES, "b.csv"), raw(OTHER_NAMES, "c.csv")]

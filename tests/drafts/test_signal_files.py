@@ -122,6 +122,12 @@ def test_everything_that_is_missing_is_asked_in_one_command_that_names_what_can_
     assert named.options == ("--channel command='the drive':UNIT", "--channel displacement=:UNIT", "--time :UNIT")
 
 
+def test_one_column_that_is_left_is_not_named_for_two_channels():
+    rows = "\n".join(f"{20 + n},{n % 7}" for n in range(50))
+    heated = Draft([read_raw(f"temperature (degC),strain\n{rows}".encode(), "a.csv")], Answers("S"))
+    assert heated.options == ("--channel command=COLUMN:UNIT", "--channel displacement=COLUMN:UNIT", "--rate 'RATE Hz'")
+
+
 def test_what_is_missing_of_some_files_is_asked_of_each_of_them():
     rows = "\n".join(f"{n},{n % 7}" for n in range(50))
     files = [read_raw(f"{names}\n{rows}".encode(), name) for names, name in

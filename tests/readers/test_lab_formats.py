@@ -79,6 +79,15 @@ def test_a_record_a_line_and_an_object_of_columns_are_json_as_well():
         np.testing.assert_array_equal(table.load([1])[0], X)
 
 
+def test_a_record_within_a_document_is_the_part_that_has_the_most_numbers():
+    """Lists of what the specimen is made of, and of who tested it, stand beside it."""
+    ply = {"thickness": [1.1, 11.0], "modulus": [2e11, 3e9]}
+    held = {"source": [{"title": "a"}, {"title": "b"}], "ply": ply, "test": {"name": "c", "dt": 0.5, "u": U, "x": X}}
+    table = read_table(json.dumps(held).encode(), "run.json", FOUND, LIMITS)
+    assert (table.names, table.rate) == (("u", "x"), 2.0)
+    np.testing.assert_array_equal(table.load([1])[0], X)
+
+
 @pytest.mark.parametrize(
     ("name", "data", "code"),
     [
