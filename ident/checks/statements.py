@@ -5,7 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from ident.checks.finding import Finding
+from ident.errors import Unusable
 from ident.matrix import Matrix
+from ident.presets import Preset
+from ident.presets.suited import in_question
 from ident.run import BENCH
 from ident.words.message import Message, message
 
@@ -14,7 +17,7 @@ _TURNING = ("rad", "rad/s", "N*m")  # units of an output
 
 
 def statements(matrix: Matrix) -> Iterator[Finding]:
-    """Uses, and everything optional that a fit of the hydraulic chain would want."""
+    """Uses, and everything optional that a fit of the models in question would want."""
     yield from uses(matrix)
     known = [run for run in matrix.runs if run.kind not in BENCH]  # a bench has neither gain nor specimen
     # Without physical units nothing is to be had; what turns is no cylinder, and what is moved is the specimen itself.
@@ -26,15 +29,26 @@ def statements(matrix: Matrix) -> Iterator[Finding]:
         and run.units.get(run.output) not in _TURNING
     ]
     hydraulic = [run for run in runs if "drive_force" not in run.channels]
-    if hydraulic and matrix.actuator.piston_area is None:
-        yield note("no-piston-area", message("check.no_piston_area"))
-    if without := [run.id for run in hydraulic if run.gain is None]:
+    models = _in_question(matrix) if runs else ()
+    ratios = next((model.without_area for model in models if model.without_area), {})
+    if hydraulic and ratios and matrix.actuator.piston_area is None:
+        yield note("no-piston-area", message("check.no_piston_area", ratios=[ratio for ratio, _ in ratios.values()]))
+    without = [run.id for run in hydraulic if run.gain is None]
+    if without and any(model.chain.reads("Kp") for model in models):
         yield note("no-gain", message("check.no_gain", runs=without))
     if without := [run.id for run in runs if run.specimen is None]:
         yield note("no-specimen", message("check.no_specimen", runs=without))
     conditions = {(run.specimen, run.gain) for run in matrix.of_use("fit")}
     if len(conditions) == 1 and hydraulic:
         yield note("one-condition", message("check.one_condition"))
+
+
+def _in_question(matrix: Matrix) -> tuple[Preset, ...]:
+    """The models that a fit would compare; none where no model has such inputs and outputs."""
+    try:
+        return in_question(matrix.runs, matrix.machine, matrix.actuator.states_oil)
+    except Unusable:
+        return ()
 
 
 def uses(matrix: Matrix) -> Iterator[Finding]:

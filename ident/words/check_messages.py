@@ -184,8 +184,8 @@ CHECKS: Mapping[str, str] = {
     "unit.correct_scale": "Correct its unit or scale",
     "unit.correct_command": "Correct its unit or scale, or state the amplitude that was meant",
     "check.no_piston_area":
-        "piston_area is not given: only the ratios Z0/A^2, Ka/A^2 and Cl/A^2 are identifiable. State it to get the "
-        "parameters themselves",
+        "piston_area is not given: only the ratios {ratios:all} are identifiable. State it to get the parameters "
+        "themselves",
     "check.no_gain":
         "gain is not given for {runs:first}: Kp = 1 is assumed, so Z0 means Z0 times Kp. State the gain",
     "check.no_specimen":

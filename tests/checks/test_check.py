@@ -251,6 +251,16 @@ def test_a_machine_that_turns_is_asked_for_nothing_of_a_cylinder(faulty):
         assert ("repeat" in codes) is (of is moved)
 
 
+@pytest.mark.parametrize(("unit", "ratio"), [("Pa", "m0/Ap, c0/Ap and k0/Ap"), ("rad/s", "Z0/A^3")])
+def test_a_command_that_no_loop_compares_is_asked_for_no_loop_gain(faulty, unit, ratio):
+    """A pressure that drives a mass, and the speed of a pump: the ratios are those of the machine in question."""
+    runs = [replace(run, gain=None, units={**run.units, "command": unit}) for run in faulty.matrix.runs]
+    bare = replace(faulty.matrix, runs=tuple(runs), actuator=replace(faulty.matrix.actuator, piston_area=None))
+    said = {finding.code: finding.text for finding in check(bare)}
+    assert "no-gain" not in said
+    assert ratio in said["no-piston-area"]
+
+
 def test_missing_runs_to_verify_and_to_fit_are_found(faulty):
     assert faulty.all_runs(use="fit").found() == {(None, "no-verify-runs"): "doubt"}
     assert faulty.all_runs(use="verify").found() == {(None, "no-fit-runs"): "fault"}
