@@ -11,7 +11,9 @@ NoRunExclusion = Annotated[
 ]
 NoForceSign = Annotated[
     bool,
-    typer.Option("--no-force-sign", help="Do not correct the sign of a force if the specimen seems to produce work."),
+    typer.Option(
+        "--no-force-sign", help="Do not correct the sign of a force, or of a motion that seems to go against its force."
+    ),
 ]
 NoCommandOffset = Annotated[
     bool, typer.Option("--no-command-offset", help="Do not subtract the neutral offset of the command.")

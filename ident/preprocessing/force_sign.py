@@ -1,4 +1,4 @@
-"""A specimen that is moved takes work: where a record says that it gives work back, a channel has the wrong sign."""
+"""Force and motion have one sign: a specimen that is moved takes work, and a mass goes where a force drives it."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
+from ident.preprocessing.motion_sign import BALANCED, against_its_drive, drives_mass
 from ident.preprocessing.step import Prepared, Step, Threshold
 from ident.run import MOTIONS, Run
 
@@ -43,8 +44,11 @@ def gives_work_back(run: Run) -> bool:
 
 
 def _act(prepared: Prepared) -> tuple[Prepared, tuple[str, ...]]:
-    """Turn the sign of the force in every run in which the specimen would give work back."""
+    """Turn the sign of the force in every run in which the specimen would give work back; of a mass that a force
+    drives, that of the motion where all runs to fit say that it is counted the other way."""
     matrix = prepared.matrix
+    if drives_mass(prepared.model):
+        return _motion_turned(prepared)
     wrong = [run for run in matrix.runs if gives_work_back(run)] if prepared.model.data.driven_by in MOTIONS else []
     if not wrong:
         return prepared, ()
@@ -58,12 +62,25 @@ def _act(prepared: Prepared) -> tuple[Prepared, tuple[str, ...]]:
     return replace(prepared, matrix=replace(matrix, runs=runs)), (said,)
 
 
+def _motion_turned(prepared: Prepared) -> tuple[Prepared, tuple[str, ...]]:
+    matrix = prepared.matrix
+    told = [against for run in matrix.of_use("fit") or matrix.runs if (against := against_its_drive(run)) is not None]
+    if not told or not all(told):
+        return prepared, ()
+    said = (
+        f"The {matrix.runs[0].output} is taken with the other sign: as recorded it goes against the force that drives "
+        f"it. Mass, damper and spring go with it."
+    )
+    return replace(prepared, matrix=replace(matrix, runs=tuple(run.turned(run.output) for run in matrix.runs))), (said,)
+
+
 FORCE_SIGN = Step(
     name="force_sign",
-    does="turns the sign of the force of a run",
+    does="turns the sign of the force of a run, or of the motion that a force drives",
     applies="a motion drives the model, a run records force and speed, and their product says that the specimen gives "
-    "work back",
-    without="the force is taken with the sign that was recorded",
-    thresholds=(GIVES_BACK,),
+    "work back; or a force, a pressure or a torque drives a mass, and every estimation run says that the motion is "
+    "counted against it",
+    without="force and motion are taken with the sign that was recorded",
+    thresholds=(GIVES_BACK, BALANCED),
     act=_act,
 )

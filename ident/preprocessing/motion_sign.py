@@ -1,0 +1,61 @@
+"""A force moves a mass to its own side: where a record says otherwise, the motion is counted the other way."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ident.preprocessing.step import Threshold
+from ident.presets.preset import Preset
+from ident.run import Run
+from ident.stages import ACTING_PRESSURE, DIRECT_FORCE, DRIVEN_MASS, TORQUE
+
+Array = NDArray[np.float64]
+_DRIVES = (DIRECT_FORCE, ACTING_PRESSURE, TORQUE)
+"""Stages whose force has the sign of what drives."""
+BALANCED = Threshold(
+    0.1,
+    "of the power of the drive, integrated twice",
+    "a balance of mass, damping and spring leaves less with the sign that is right, and more with the other",
+    "what drifts away is next to a polynomial, whose rest a balance of the wrong sign explains by half, too",
+)
+
+
+def drives_mass(model: Preset) -> bool:
+    """Whether a force, a pressure or a torque, which has the sign of what was recorded, drives a mass."""
+    stages = model.chain.stages
+    return DRIVEN_MASS in stages and any(drive in stages for drive in _DRIVES)
+
+
+def against_its_drive(run: Run) -> bool | None:
+    """Whether the motion of a run is counted against the force that drives it; None where the run does not tell.
+
+    Of the balance p = m x″ + c x′ + k x + p₀, integrated twice, m, c and k ≥ 0 are found by least squares, which needs
+    no derivative of a record; first states and p₀ are a polynomial of second degree in the time. The run tells the sign
+    where such a balance leaves less than a tenth of the drive with one sign, and more with the other.
+    """
+    drive, motion = run.command, run.measured
+    if not (np.ptp(drive) > 0 and np.ptp(motion) > 0):
+        return None
+    time = np.linspace(-1.0, 1.0, len(drive))
+    smooth = np.linalg.qr(np.column_stack([time**power for power in range(3)]))[0]
+    target = _integrated(drive, 2 if run.output == "displacement" else 1)
+    terms = np.column_stack([_integrated(motion, times) for times in range(3)])
+    target, terms = (part - smooth @ (smooth.T @ part) for part in (target, terms))
+    right, turned = (_left(sign * target, terms / np.linalg.norm(terms, axis=0)) for sign in (1.0, -1.0))
+    return turned < right if min(right, turned) < BALANCED.value < max(right, turned) else None
+
+
+def _left(target: Array, terms: Array) -> float:
+    """The share of the power of the target that the terms leave with coefficients that are not negative, at most 1."""
+    from scipy.optimize import nnls  # noqa: PLC0415 - a record is read without it
+
+    return float(nnls(terms, target)[1] ** 2 / np.sum(target**2))
+
+
+def _integrated(samples: Array, times: int) -> Array:
+    """The integral of the samples, over their number, so many times, less their mean before each."""
+    for _ in range(times):
+        centred = samples - samples.mean()
+        samples = np.concatenate([[0.0], np.cumsum((centred[1:] + centred[:-1]) / 2.0)]) / len(samples)
+    return samples

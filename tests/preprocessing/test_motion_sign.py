@@ -1,0 +1,69 @@
+"""Which records say that a motion is counted against the force that drives it: a mass, a damper or a spring."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from scipy.signal import cont2discrete, lfilter
+
+from ident.fit.settings import Settings
+from ident.matrix import Actuator, Matrix
+from ident.preprocessing.motion_sign import against_its_drive
+from ident.run import Run
+from ident.workflows import identify
+
+RATE = 100.0
+MASS, DAMPER, SPRING, SWINGING = (1.0, 1.0, 1e-4), (0.01, 5.0, 1e-3), (1e-3, 0.1, 5.0), (1.0, 0.4, 60.0)
+
+
+def driven(
+    machine: tuple[float, float, float], sign: float, output: str = "displacement", seed: int = 0, noise: float = 0.02
+) -> Run:
+    """m x″ + c x′ + k x = p of a held pressure, by SciPy, with an offset of the reading and white noise."""
+    rng = np.random.default_rng(seed)
+    pressure = np.repeat(rng.uniform(0.0, 2e5, 25), 120)
+    above = [1.0] if output == "displacement" else [1.0, 0.0]
+    b, a, _ = cont2discrete((above, machine), 1 / RATE)
+    moved = lfilter(b.ravel(), a, pressure)
+    moved = sign * moved / np.ptp(moved)
+    moved = moved + 3.0 + noise * rng.standard_normal(len(moved))
+    channels, units = {"command": pressure, output: moved}, {"command": "Pa", output: "m"}
+    return Run(f"run-{seed}", "", RATE, channels, units, hold="zoh", output=output)
+
+
+@pytest.mark.parametrize(
+    ("machine", "output"),
+    [(MASS, "velocity"), (DAMPER, "displacement"), (DAMPER, "velocity"), (SPRING, "displacement"),
+     (SWINGING, "displacement")],
+)  # fmt: skip
+def test_mass_damper_and_spring_have_the_sign_of_what_drives_them(
+    machine: tuple[float, float, float], output: str
+) -> None:
+    """Whatever the reading's zero is."""
+    for sign in (1.0, -1.0):
+        assert against_its_drive(driven(machine, sign, output)) is (sign < 0)
+
+
+def test_a_drift_of_a_mass_alone_is_turned_by_nothing() -> None:
+    """Integrated twice, what drifts away is next to a polynomial, and the rest of it fits either sign."""
+    for seed in range(5):
+        assert not against_its_drive(driven(MASS, 1.0, seed=seed))
+
+
+def test_a_motion_that_the_drive_does_not_explain_tells_no_sign() -> None:
+    noise = np.random.default_rng(1).standard_normal(2000)
+    channels, units = {"command": noise, "displacement": noise[::-1].copy()}, {"command": "Pa", "displacement": "m"}
+    assert against_its_drive(Run("r", "", RATE, channels, units)) is None
+    channels = {"command": noise, "displacement": np.zeros(2000)}
+    assert against_its_drive(Run("r", "", RATE, channels, units)) is None
+
+
+def test_a_muscle_that_contracts_under_pressure_is_a_mass_on_a_spring() -> None:
+    """As recorded, its motion is counted against the pressure, and its spring would be negative."""
+    muscle = Matrix(Actuator("MUSCLE"), (driven(SWINGING, -1.0), driven(SWINGING, -1.0, seed=1)))
+    fit = identify(muscle, Settings(model="pressure_drive"))
+    assert any("taken with the other sign" in note for note in fit.notes)
+    assert fit.parameters["k0/Ap"].value / fit.parameters["m0/Ap"].value == pytest.approx(60.0, rel=0.02)
+    assert fit.error["fit"] < 0.2
+    as_recorded = Settings(model="pressure_drive", preprocessing={"force_sign": False})
+    assert identify(muscle, as_recorded).error["fit"] > 0.9
