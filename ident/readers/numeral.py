@@ -26,7 +26,7 @@ def has_fraction(field: str, comma: bool) -> bool:
 
 
 def is_prefixed(field: str) -> bool:
-    """Whether a field is a number with one letter behind it, the prefix of a unit, as in 25.1m; m may be metres, too."""
+    """Whether a field is a number with the prefix of a unit behind it, as in 25.1m, where m may be metres, too."""
     return bool(_PREFIXED.fullmatch(field.strip(QUOTES)))
 
 

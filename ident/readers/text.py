@@ -18,8 +18,8 @@ import numpy as np
 from ident.errors import Unusable
 from ident.readers.dialect import ENCODINGS, FOUND, Dialect
 from ident.readers.layout import Layout, mixes_thousands, recognise
-from ident.readers.numeral import is_prefixed
 from ident.readers.limits import Limits, check_size
+from ident.readers.numeral import is_prefixed
 from ident.readers.table import Array, Table
 from ident.readers.time_stamp import seconds
 from ident.units.quantity import shown

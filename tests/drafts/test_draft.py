@@ -340,7 +340,7 @@ def test_numbers_with_the_prefix_of_a_unit_behind_them_are_named_with_what_to_wr
     of_some = Draft([raw("time (s);current;pressure\n" + rows, "a.csv")], Answers(serial="S"))
     said = "'current' is left out: line 2 holds '20.0m', a number with a letter behind it; write plain numbers"
     assert any(said in one for one in of_some.doubts)
-    with pytest.raises(Unusable, match="no column holds numbers throughout; 'current' is left out: .* '20.0m'"):
+    with pytest.raises(Unusable, match=r"no column holds numbers throughout; 'current' is left out: .* '20\.0m'"):
         raw("current;pressure\n" + "".join(row.partition(";")[2] + "\n" for row in rows.split()), "b.csv")
 
 
