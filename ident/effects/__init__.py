@@ -65,6 +65,7 @@ OF_BENCH = _of_files(
 """Those of an actuator on a bench, whose signals are rated currents and pressures."""
 OF_RECORDS = _of_files(
     "speed_asymmetry",
+    "progressive_drive",
     "root_outflow",
     "upper_overflow",
     "overflow",

@@ -48,11 +48,12 @@ def solved(rates: Callable[[float, np.ndarray], list[float]], states: int) -> np
     return np.asarray(found.y)
 
 
-def lag(back: Callable[[float], float] = lambda x: x, turned: float = 0.0) -> np.ndarray:
-    """A level that is fed by the command and falls back by what `back` says of it."""
+def lag(back: Callable[[float], float] = lambda x: x, turned: float = 0.0, squared: float = 0.0) -> np.ndarray:
+    """A level that is fed by the command and a part of its square, and falls back by what `back` says of it."""
 
     def rates(t: float, s: np.ndarray) -> list[float]:
-        rate = (GAIN * at(LEVEL, t) - back(s[0])) / TAU
+        fed = at(LEVEL, t)
+        rate = (GAIN * (fed + squared * fed**2) - back(s[0])) / TAU
         return [rate * (1.0 + turned * np.sign(rate))]
 
     return solved(rates, 1)[0]
@@ -162,6 +163,8 @@ def bent(curvature: float) -> np.ndarray:
 
 CASES = {
     "speed_asymmetry": Case("first_order", {"speed_asymmetry.asymmetry": 0.5}, lambda k: lag(turned=0.5 * k), {}),
+    "progressive_drive": Case(
+        "first_order", {"progressive_drive.inverse_command": 2.0}, lambda k: lag(squared=2.0 * k), {}),
     "root_outflow": Case(
         "first_order", {"root_outflow.share": 0.7, "root_outflow.level": 0.6},
         lambda k: lag(lambda x: x + 0.7 * k * (np.sign(x) * np.sqrt(0.6 * abs(x)) - x)), {}),
@@ -272,7 +275,7 @@ def test_an_effect_is_looked_for_only_where_the_record_could_show_it():
     springs = {"elastic_coupling", "elastic_load"}
     metres = {"command": "m", "displacement": "m"}
     assert not of_records & candidates("first_order", metres, command=about_zero, displacement=about_zero)
-    level = {"speed_asymmetry", "overflow", "sensor_curve"}
+    level = {"speed_asymmetry", "progressive_drive", "overflow", "sensor_curve"}
     recorded = {"command": LEVEL, "displacement": LEVEL}
     assert of_records & candidates("first_order", metres, **recorded) == {*level, "root_outflow"}
     assert of_records & candidates("two_tanks", metres, **recorded) == {
