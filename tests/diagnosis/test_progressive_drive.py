@@ -34,7 +34,7 @@ def propeller(seed: int) -> Run:
 
 
 @pytest.mark.full
-def test_a_thrust_that_grows_with_the_square_of_the_voltage_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_thrust_that_grows_with_the_square_of_the_voltage_is_named(monkeypatch):
     rank_only(monkeypatch, FEW)
     records = Matrix(Actuator("PROPELLER"), (propeller(0), propeller(1)))
     found = diagnose(records, identify(records, Settings(model="sprung_motor")), propose=False)

@@ -28,7 +28,7 @@ OTHER_UNIT = {
     "position_servo": {"second_lag"},
     "kononykhin": {"command_limit", "integral_action", "lead", "pressure_feedback", "valve_second_order",
                    "valve_rate_limit", "spool_stiction", "backlash", "null_bias", "dead_zone", "underlap",
-                   "gain_asymmetry", "flow_saturation", "flow_force"},
+                   "gain_asymmetry", "flow_saturation", "progressive_drive", "flow_force"},
     "strano": {"second_lag"},
     "drive under control": {"command_limit", "integral_action", "lead", "pressure_feedback", "flow_force"},
 }  # fmt: skip
