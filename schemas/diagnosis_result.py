@@ -107,18 +107,18 @@ class ExplanationView(BaseModel):
 class NoiseTestView(BaseModel):
     """The numbers by which the residual on the estimation data counts as noise, or does not.
 
-    It is noise where the `error` is below the `limit` that follows from the noise `floor`. Where no repeated command
-    tells the floor it is also noise where the share of it that the commands predict, out of fold, is no larger than
-    chance: `predicted` is at most `predicted_limit`. In diagnoses of earlier versions the `correlation` of neighbouring
-    residuals decided.
+    Where a noise `floor` is known the `error` has to be below the `limit`; else the `correlation` of neighbouring
+    residuals must not be above it. Where no repeated command tells the floor, and the error is at most twice as large,
+    it is also noise if the share that the inputs predict of it, out of fold, is no more than chance: `predicted` is at
+    most `predicted_limit`.
     """
 
     error: float
-    limit: float | None
+    limit: float
     floor: float | None = None
+    correlation: float | None = None
     predicted: float | None = None
     predicted_limit: float | None = None
-    correlation: float | None = None
 
 
 class VerdictView(BaseModel):

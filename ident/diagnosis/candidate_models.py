@@ -297,18 +297,26 @@ class CandidateModels:
         return self.floor is not None and is_noise(self._above(self.floor, error))
 
     def residual_above_noise(self, refit: FittedModel) -> bool:
-        """Whether the residual is more than noise: above its floor, or where no repeats tell that, predicted."""
+        """Whether the error is still above the noise: its floor, or where that is not known, its lack of memory."""
         return not is_noise(self.residual(refit))
 
     def residual(self, refit: FittedModel) -> Residual:
-        """The error of a refit with its noise floor, and where repeats do not tell it, with the
-        share of the residual that the commands predict."""
-        floor = self.floor
-        found = Residual(refit.error, None) if floor is None else self._above(floor, refit.error)
-        may_be_coloured = floor is None or refit.error < CRITERIA.noise.colour * floor
-        if self.floors.in_band or is_noise(found) or not may_be_coloured or not refit.stable:
+        """The error of a refit, with its noise floor; where that is not known, with the memory of its residual."""
+        if self.floor is not None:
+            return self._above(self.floor, refit.error)
+        outputs = refit.fitness.outputs(refit.point)
+        residuals = [refit.fitness.left(run, outputs[run.id]) for run in self.runs]
+        memory = [float(np.corrcoef(r[1:], r[:-1])[0, 1]) for r in residuals]
+        return Residual(refit.error, None, correlation=float(np.median(memory)))
+
+    def last_residual(self, refit: FittedModel) -> Residual:
+        """The same of the last model of a search, where coloured noise may have made its error with the share that the
+        inputs predict. A search itself goes on down to the floor."""
+        found = self.residual(refit)
+        if found.floor is None or self.floors.in_band or is_noise(found):
             return found
-        return replace(found, predicted=refit.predicted_share)
+        coloured = found.error <= CRITERIA.noise.colour * found.floor
+        return replace(found, predicted=refit.predicted_share) if coloured else found
 
     def _above(self, floor: float, error: float) -> Residual:
         return Residual(error, floor, self.floors.spread(sum(run.length for run in self.runs)))

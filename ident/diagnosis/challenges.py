@@ -31,7 +31,7 @@ def challenged(
 ) -> Findings:  # fmt: skip
     """The findings on a selection: its residual, validation data and bounds, together with those of other stages."""
     models, fitted = selection.models, selection.fitted
-    residual = in_time(lambda: models.residual(fitted))
+    residual = in_time(lambda: models.last_residual(fitted))
     if residual is None:
         stages.miss(NOISE)
     verify = in_time(lambda: tuple(_verify_changes(steps)))

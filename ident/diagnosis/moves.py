@@ -73,7 +73,7 @@ class Moves:
 
     def may_lack_width(self, selection: Selection) -> bool:
         """Whether another width of one effect may explain more, or as much as several effects."""
-        return len(selection.added) > 1 or not self.models.at_floor(selection.fitted)
+        return len(selection.added) > 1 or self.models.residual_above_noise(selection.fitted)
 
     # Ranking ---------------------------------------------------------------------------------------------------
 
@@ -180,7 +180,7 @@ class Moves:
         """
         base, refit = selection.base, None if best is None else best.refit
         names = springs(self.models, base, self._addable(base))
-        if not names or self.models.at_floor(refit or base):
+        if not names or not self.models.residual_above_noise(refit or base):
             return None
         self._tried_as_springs = names
         freed = with_free_widths(self.models, base, refit or base, names)

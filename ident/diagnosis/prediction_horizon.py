@@ -71,7 +71,7 @@ def may_hide_an_effect(models: CandidateModels, base: FittedModel) -> bool:
     So they may where the residual is above the noise. The residual of windows that begin in noise may be no more than
     this noise makes of them; then they may where the innovations of the records are above the noise of these.
     """
-    if not models.at_floor(base):
+    if models.residual_above_noise(base):
         return True
     floors, runs = models.over_windows(None, None).floors, models.runs
     noise = [floor * np.sqrt(run.power / run.length) for run in runs if (floor := floors.by_run[run.id]) is not None]

@@ -126,6 +126,8 @@ def verdict_text(
         found.append(message("verdict.unconfirmed", before=before))
     elif unexplained:
         found.append(message("verdict.none", before=before))
+    elif floor is None:
+        found.append(message("verdict.white", before=before))
     elif asked:
         found.append(_probable("verdict.unpredicted", "nothing", probabilities, before=before))
     else:

@@ -354,7 +354,7 @@ class _JudgedStructure:
     @property
     def above_noise(self) -> bool:
         """Whether a simulation confirms it and its residual is above the noise."""
-        return self.best.finite and not self.models.at_floor(self.best)
+        return self.best.finite and self.models.residual_above_noise(self.best)
 
     @property
     def irreplaceable(self) -> int:

@@ -15,10 +15,11 @@ noise. A *group* are effects that the data cannot tell apart. The verdict stands
   contradicted; or no noise floor is known and a named strength ended at the bound of its search;
 * *found*: none of these.
 
-The residual is noise where its size is that of the noise floor. Where no command was repeated the floor is not known
-in the band of the command; there it is also noise where the commands predict nothing of it. The verdict follows this
-test. The probability that something unlisted acts follows from the gains of the refitted models, and from this test.
-Validation data are not part of a probability: an effect that they contradict may have a large one.
+The residual is noise where its size is that of the noise floor, or where no floor is known, where it has no memory.
+Where no command was repeated the floor is not known in the band of the command; there a residual of up to twice the
+floor is also noise if the inputs predict nothing of it. The verdict follows this test. The probability that something
+unlisted acts follows from the gains of the refitted models, and from this test. Validation data are not part of a
+probability: an effect that they contradict may have a large one.
 """
 
 from __future__ import annotations
@@ -41,15 +42,16 @@ class Residual:
     """The error on the estimation data, and its noise floor.
 
     `floor` is the error that noise alone makes, None where it is not known, and `spread` its relative standard
-    deviation. A floor from a spectrum above the band of the command is a lower bound: then `predicted`, the share of
-    the residual that the commands predict, decides where the error is above the floor. It is None where repeats tell
-    the floor. `excess` is the share of the floor by which the error may exceed it, None for the usual share; a bench
-    has its own.
+    deviation. `correlation` is the correlation of neighbouring residuals, which decides where no floor is known. A
+    floor from a spectrum above the band of the command is a lower bound: `predicted`, the share of the residual that
+    the inputs predict, decides where coloured noise may have made the error; None elsewhere. `excess` is the share of
+    the floor by which the error may exceed it, None for the usual share; a bench has its own.
     """
 
     error: float
     floor: float | None
     spread: float = 0.0
+    correlation: float = 0.0
     predicted: BlockMean | None = None
     excess: float | None = None
 
@@ -80,24 +82,26 @@ class Findings:
 
 
 def is_noise(residual: Residual, criteria: Criteria = CRITERIA) -> bool:
-    """Whether the residual is noise alone: below its limit, or no more predicted by the commands than chance is."""
+    """Whether the residual is noise alone: below its limit, or no more predicted by the inputs than chance is; where no
+    floor is known, without memory."""
     test = noise_test(residual, criteria)
-    below = test.limit is not None and test.error < test.limit
-    return below or (test.predicted is not None and test.predicted <= (test.predicted_limit or 0.0))
+    if test.correlation is not None:
+        return not test.correlation > test.limit
+    return test.error < test.limit or (test.predicted is not None and test.predicted <= (test.predicted_limit or 0.0))
 
 
 def noise_test(residual: Residual, criteria: Criteria = CRITERIA) -> NoiseTest:
     """The error and its limit, the floor and a margin for its own error and for chance; the predicted share and its
-    limit, the share that matters and a margin for chance."""
-    share, limit = residual.predicted, None
-    if residual.floor is not None:
-        margin = criteria.evidence.floor_margin if residual.excess is None else 1.0 + residual.excess
-        limit = (margin + criteria.noise.floor_deviations * residual.spread) * residual.floor
+    limit, the share that matters and a margin for chance; without a floor the correlation of neighbouring residuals
+    and its limit."""
+    if residual.floor is None:
+        return NoiseTest(residual.error, criteria.noise.noise_correlation, correlation=residual.correlation)
+    margin = criteria.evidence.floor_margin if residual.excess is None else 1.0 + residual.excess
+    limit, share = (margin + criteria.noise.floor_deviations * residual.spread) * residual.floor, residual.predicted
     if share is None:
         return NoiseTest(residual.error, limit, residual.floor)
-    return NoiseTest(
-        residual.error, limit, residual.floor, share.mean, criteria.evidence.share + share.bound(criteria.evidence)
-    )
+    most = criteria.evidence.share + share.bound(criteria.evidence)
+    return NoiseTest(residual.error, limit, residual.floor, predicted=share.mean, predicted_limit=most)
 
 
 def contradicts(change: VerifyChange, criteria: Criteria = CRITERIA) -> bool:

@@ -101,6 +101,8 @@ VERDICT: Mapping[str, str] = {
         "With {named} the error on estimation data falls further, but validation data show nothing of it: the error "
         "there is {before:error} without it and {after:error} with it, and would be {due:error} if it acted. Either it "
         "only imitates something else, or the machine was different in these runs.",
+    "verdict.white":
+        "Nothing seems to be missing: the residual, {before:error}, is white. The noise floor is not known.",
     "verdict.unpredicted":
         "Nothing seems to be missing: the command predicts nothing of the residual, {before:error}.",
     "verdict.unpredicted_probable":

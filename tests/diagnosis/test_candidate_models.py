@@ -8,6 +8,7 @@ import pytest
 
 from ident.diagnosis.candidate_models import CandidateModels
 from ident.diagnosis.evidence.blocks import BlockMean
+from ident.diagnosis.verdict import is_noise
 from ident.fit.settings import Settings
 from ident.matrix import Actuator
 from ident.noise.floor import Floors
@@ -32,16 +33,16 @@ def refitted(error: float) -> SimpleNamespace:
     ("error", "floor", "in_band", "more"),
     [
         (0.01, 0.01, False, False),
-        (0.02, 0.01, False, False),  # coloured noise
-        (0.02, 0.01, True, True),  # repeats tell the floor
-        (0.02, None, False, False),
+        (0.019, 0.01, False, False),  # coloured noise
+        (0.019, 0.01, True, True),  # repeats tell the floor
+        (0.03, 0.01, False, True),  # more than coloured noise
     ],
 )
 def test_a_residual_that_no_input_predicts_is_noise_where_repeats_do_not_tell_the_floor(error, floor, in_band, more):
-    assert models_with_floor(floor, in_band).residual_above_noise(refitted(error)) is more
+    assert is_noise(models_with_floor(floor, in_band).last_residual(refitted(error))) is not more
 
 
-@pytest.mark.parametrize(("ratio", "asked"), [(4.0, True), (6.0, False)])
-def test_coloured_noise_makes_no_error_of_six_times_the_floor(ratio, asked):
-    residual = models_with_floor(0.01, in_band=False).residual(refitted(0.01 * ratio))
+@pytest.mark.parametrize(("ratio", "asked"), [(1.5, True), (2.5, False)])
+def test_coloured_noise_makes_no_error_of_three_times_the_floor(ratio, asked):
+    residual = models_with_floor(0.01, in_band=False).last_residual(refitted(0.01 * ratio))
     assert (residual.predicted is not None) is asked

@@ -133,6 +133,8 @@ def test_a_channel_varies_where_it_does_by_more_than_rounding(deviation, varies)
         (Residual(0.0129, 0.01, excess=CRITERIA.noise.bench_excess), False),
         (Residual(0.010143, 0.01), True),
         (Residual(0.010257, 0.01), False),
+        (Residual(0.01, None, correlation=0.4), True),
+        (Residual(0.01, None, correlation=0.6), False),
     ],
 )
 def test_an_error_is_noise_within_each_margin(residual, noise):

@@ -31,9 +31,9 @@ LEAD = Findings(added=("lead",), residual=NOISE, verify=(FALLS,))
         (replace(LEAD, verify=(replace(RISES, std_error=0.002),)), "found", False),  # 1.5 standard errors
         (replace(LEAD, verify=(VerifyChange("lead", 0.1, None),)), "contradicted", False),  # unstable with it
         (replace(LEAD, at_bound=("lead",)), "found", False),
-        (replace(LEAD, at_bound=("lead",), residual=Residual(0.01, None, predicted=NOT_PREDICTED)), "stand_in", False),
+        (replace(LEAD, at_bound=("lead",), residual=Residual(0.01, None, correlation=0.1)), "stand_in", False),
         (replace(LEAD, added=("lead", "lag"), dispensable=("lag",), at_bound=("lag",),
-                 residual=Residual(0.01, None, predicted=NOT_PREDICTED)), "found", False),
+                 residual=Residual(0.01, None, correlation=0.1)), "found", False),
         (Findings(residual=NOISE), "nothing", False),
         (Findings(residual=FAR), "nothing", True),
         (replace(LEAD, dispensable=("lead",)), "nothing", False),
@@ -49,9 +49,11 @@ def test_the_numbers_that_decide_whether_the_residual_is_noise_stand_in_the_verd
     test = conclude(replace(LEAD, residual=FAR)).noise_test
     assert (test.error, test.floor, test.predicted) == (0.02, 0.01, None)
     assert test.limit == pytest.approx((1.02 + 3 * 0.001) * 0.01)
-    without = conclude(replace(LEAD, residual=Residual(0.02, None, predicted=PREDICTED))).noise_test
-    assert (without.predicted, without.limit, without.floor) == (0.1, None, None)
-    assert without.predicted_limit == pytest.approx(
+    without = conclude(replace(LEAD, residual=Residual(0.02, None, correlation=0.7))).noise_test
+    assert (without.correlation, without.limit, without.floor) == (0.7, 0.5, None)
+    coloured = conclude(replace(LEAD, residual=replace(FAR, predicted=PREDICTED))).noise_test
+    assert (coloured.predicted, coloured.floor) == (0.1, 0.01)
+    assert coloured.predicted_limit == pytest.approx(
         0.01 + 0.02 * 1.729, rel=1e-3
     )  # Student's t of 19 degrees of freedom
     assert conclude(replace(LEAD, residual=None)).noise_test is None
@@ -122,7 +124,8 @@ def test_an_effect_of_which_validation_data_show_nothing_is_named_where_a_later_
         (Residual(0.01021, 0.01), False),
         (Residual(0.0104, 0.01, spread=0.007), True),  # 2 % and three deviations
         (Residual(0.0124, 0.01, excess=0.25), True),
-        (Residual(0.01, None), False),  # nobody knows
+        (Residual(0.01, None, correlation=0.4), True),
+        (Residual(0.01, None, correlation=0.6), False),
         (Residual(0.02, 0.01, predicted=NOT_PREDICTED), True),
         (Residual(0.02, 0.01, predicted=PREDICTED), False),
         (Residual(0.01, 0.01, predicted=PREDICTED), True),

@@ -12,6 +12,7 @@ from ident.diagnosis.discovery.search import TermSearch
 from ident.diagnosis.fitted_model import FittedModel
 from ident.diagnosis.selection import Selection
 from ident.diagnosis.stages import TERMS, Stages
+from ident.diagnosis.verdict import is_noise
 from ident.time_budget import in_time
 
 INCOMPLETE = DiscoveryResult(complete=False)
@@ -25,8 +26,8 @@ def is_searched(selection: Selection, stages: Stages, budget: SearchBudget) -> b
     exhausted = budget.most >= CRITERIA.selection.usual or len(selection.added) < budget.most
     if not (exhausted if budget.propose is None else budget.propose):
         return False
-    asked = budget.propose is True
-    return stages.attempt(TERMS, lambda: asked or selection.models.residual_above_noise(selection.fitted), False)
+    asked, models = budget.propose is True, selection.models
+    return stages.attempt(TERMS, lambda: asked or not is_noise(models.last_residual(selection.fitted)), False)
 
 
 def discovered(models: CandidateModels, selection: Selection, stages: Stages, budget: SearchBudget) -> DiscoveryResult:
