@@ -105,12 +105,13 @@ class FittedModel:
     def _expected(self, run: Run, residual: Array, found: NormalMatrices) -> float:
         """The power that the disturbances at the ends of the windows, and the errors of the parameters, add up to."""
         anchoring, p = self.fitness.anchoring(run), len(self.point)
-        ends = anchoring(residual)[anchoring.window - 1 :: anchoring.window]
+        window = min(anchoring.window, run.length)
+        ends = anchoring(residual)[window - 1 :: window]
         lasting = len(ends) / max(independent_samples(ends), 1.0)  # windows over which a disturbance is correlated
         own = lasting * float(np.mean(ends**2)) / run.power * run.length
         shared = found.gram[:p, :p] + found.length * np.outer(found.means[:p], found.means[:p])
         of_parameters = float(np.sum(self._known.seen * shared)) / found.total
-        return adds_up(own, run.length / anchoring.window, anchoring.memory > 0) + of_parameters
+        return adds_up(own, run.length / window, anchoring.memory > 0) + of_parameters
 
     def _left_of(self, points: Sequence[Array], numbers: Sequence[int]) -> Iterator[list[Array]]:
         """The residuals of the model at each point on some runs, means included."""

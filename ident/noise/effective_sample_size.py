@@ -14,7 +14,7 @@ def independent_samples(residual: Array) -> float:
     n, r = len(residual), residual - residual.mean()
     length = scipy.fft.next_fast_len(2 * n, real=True)
     power = np.abs(scipy.fft.rfft(r, length)) ** 2
-    correlation = scipy.fft.irfft(power, length)[: n // 4]
+    correlation = scipy.fft.irfft(power, length)[: max(n // 4, 1)]
     if not correlation[0] > 0:
         return float(n)
     rho = correlation / correlation[0]

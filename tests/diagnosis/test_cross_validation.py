@@ -171,6 +171,7 @@ def test_white_noise_is_all_new_and_a_slow_one_is_not(rng):
     white = rng.standard_normal(4096)
     assert independent_samples(white) > 2000
     assert independent_samples(np.convolve(white, np.ones(32) / 32, "same")) < 400
+    assert independent_samples(white[:3]) == 3.0  # of so few nothing is known of a memory
 
 
 def test_a_step_stays_in_the_cube_and_the_rest_makes_up_for_it():

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -69,6 +71,18 @@ def test_friction_that_drives_the_free_run_away_is_not_added_and_that_is_said(mo
     assert next(free_run_sentence(friction.refit.free_run)).startswith("The free run of the estimation data leaves")
     said = why(friction, friction.refit.fitness.preset.effects[0], found.base.held_out.error, None, False)
     assert "An effect that drives the free run away is not added." in said
+
+
+def test_a_run_shorter_than_a_window_has_a_free_run():
+    """Validation data may be: the one end that they have is that of the run."""
+    matrix = Matrix(Actuator("RAIL"), (run := rail(SMALL, 2),))
+    models = CandidateModels.of(matrix, Settings(model="motor"), (), WINDOW, None)
+    fitted = models.refit((), {"m0": 1.0, "c0": DAMPING, "Kt": GAIN})
+    short = round(0.9 * WINDOW * run.sample_rate)
+    beginning = replace(run, channels={name: samples[:short] for name, samples in run.channels.items()})
+    free = fitted.free_run_of([beginning])
+    assert 0.0 < free.power < np.inf
+    assert 0.0 < free.expected < np.inf
 
 
 @pytest.mark.full
