@@ -128,9 +128,12 @@ def _arrives(run: Run, channel: str) -> bool:
 
 
 def unusual(model: Preset, runs: Sequence[Described]) -> bool:
-    """Whether a machine of this kind moves otherwise as a rule: a motor turns, a cylinder goes along a way."""
+    """Whether a machine of this kind moves otherwise as a rule: a motor turns, a cylinder goes along a way.
+
+    Of a speed alone nothing tells them apart. A motor is then a lag with a mass, on which friction and springs act.
+    """
     units = {run.units.get(run.output, "1") for run in runs}
-    return bool(units <= {"m", "m/s"} and model.data.turns)
+    return bool(units <= {"m"} and model.data.turns)
 
 
 def _allows(model: Preset, run: Described) -> bool:

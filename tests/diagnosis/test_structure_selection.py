@@ -122,6 +122,15 @@ def test_of_equals_the_one_with_fewer_parameters_is_taken():
     assert next(one for one in others if one.machine == "open_valve").parameters > 2
 
 
+def test_a_speed_along_a_way_is_that_of_a_motor():
+    """A cart behind a motor, V to m/s: a lag of no machine leaves as little, but no friction and no spring act on it."""
+    matrix = motor(8)
+    along = (replace(run, units={"command": "V", "velocity": "m/s"}) for run in matrix.runs)
+    found = {one.machine: one.error["held_out"] for one in compared_structures(replace(matrix, runs=tuple(along)))}
+    assert next(iter(found)) == "motor"
+    assert found["motor"] == pytest.approx(found["first_order"], rel=1e-2)
+
+
 def test_where_the_channels_say_it_nothing_is_compared():
     (only,) = compared_structures(specimen(1))
     assert (only.machine, only.error["held_out"]) == ("specimen", None)
