@@ -139,7 +139,7 @@ def _with_command(draft: Draft, files: list[Path], said: Mapping[str, object]) -
     named = shlex.join(given) if len(shlex.join(given)) <= _LONGEST else f"FILES… {shlex.join(given[len(files) :])}"
     what = str(message("draft.missing", questions=[one.question for one in draft.missing]))
     command = f"servoident init {' '.join((named.strip(), *draft.options))}"
-    remedy = str(message("draft.command" if draft.options else "draft.command_whole", command=command))
+    remedy = str(message("draft.command_whole" if draft.is_whole else "draft.command", command=command))
     return Unusable("not-stated", what, "init", remedy)
 
 

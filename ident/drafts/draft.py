@@ -27,6 +27,8 @@ from ident.words.message import message
 OUTPUTS = ("displacement", "velocity", "force", "load_pressure")
 """Channels that a model may have to reproduce; the first that there is, unless one is named."""
 _DRIVES = ("command", "current")
+_TO_REPLACE = ("SERIAL", "COLUMN", "UNIT", "RATE", "=NAME")
+"""What stands in an option for what only the user knows."""
 _HELD = "the command rests and jumps, so a zero-order hold is assumed (hold: zoh)"
 _DRAWN = "the command is assumed to be linear between samples (hold: linear); set zoh if it is held"
 _MOVED = "the motion that drives is assumed to be linear between samples (hold: linear); set zoh if it is held"
@@ -227,6 +229,11 @@ class Draft:
         """
         return tuple(option for one in self.missing for option in self._options(one))
 
+    @property
+    def is_whole(self) -> bool:
+        """Whether the options leave nothing to replace: no word in capitals that only the user knows."""
+        return not any(word in option for option in self.options for word in _TO_REPLACE)
+
     def _options(self, missing: Missing) -> Iterator[str]:
         """An option, or one a file where something is missing in some files only."""
         if not missing.files:
@@ -243,12 +250,15 @@ class Draft:
             return f"--dialect {at}delimiter=NAME"
         clock, others = self._left(file)
         if kind == "rate":
-            return f"--time {quote(f'{at}{clock}')}:UNIT" if clock else f"--rate '{at}RATE Hz'"
+            return f"--time {quote(f'{at}{clock.name}')}:UNIT" if clock else f"--rate '{at}RATE Hz'"
         alone = len(others) == 1 and sum(one.key.startswith("channel") for one in self._missing_of(file)) == 1
-        column = (quote(others[0]) if alone else "COLUMN") if kind == "channel" else ""
-        return f"--time {at}{column}:UNIT" if name == "time" else f"--channel {name}{at or '='}{column}:UNIT"
+        column, unit = "", ":UNIT"
+        if kind == "channel":
+            column = quote(others[0].name) if alone else "COLUMN"
+            unit = "" if alone and unit_of(others[0]) else unit
+        return f"--time {at}{column}{unit}" if name == "time" else f"--channel {name}{at or '='}{column}{unit}"
 
-    def _left(self, file: RawFile) -> tuple[str, list[str]]:
+    def _left(self, file: RawFile) -> tuple[Column | None, list[Column]]:
         """The columns that are nothing yet: the one that may be the time, as its samples only increase; the others."""
         known = self.known(file)
         answers = [*known.channels.values(), *([known.time] if known.time.column != "" else [])]
@@ -256,7 +266,7 @@ class Draft:
         left = [column for column in file.columns if column.number not in taken]
         timed = known.time.column != "" or known.rate
         clock = next((one for one in left if not timed and (np.diff(file.samples(one.number)) > 0).all()), None)
-        return clock.name if clock else "", [one.name for one in left if one is not clock]
+        return clock, [one for one in left if one is not clock]
 
     def _run(self, file: RawFile, name: str) -> dict[str, Any]:
         known = self.known(file)

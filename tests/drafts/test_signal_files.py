@@ -120,6 +120,10 @@ def test_everything_that_is_missing_is_asked_in_one_command_that_names_what_can_
     named = Draft([read_raw(f"t,x pos,the drive\n{rows}".encode(), "a.csv")],
                   Answers("S", {"displacement": Answer("x pos")}))  # fmt: skip
     assert named.options == ("--channel command='the drive':UNIT", "--channel displacement=:UNIT", "--time :UNIT")
+    stated = Draft([read_raw(f"t [s],x pos [mm],the drive [V]\n{rows}".encode(), "a.csv")],
+                   Answers("S", {"displacement": Answer("x pos [mm]")}))  # fmt: skip
+    assert stated.options == ("--channel command='the drive [V]'",)
+    assert [one.is_whole for one in (plain, named, stated)] == [False, False, True]
 
 
 def test_one_column_that_is_left_is_not_named_for_two_channels():
