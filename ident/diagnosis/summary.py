@@ -36,8 +36,8 @@ def _missing(diagnosis: Diagnosis) -> Message:
         return message("summary.oscillation", evidence=diagnosis.oscillation[0]["evidence"])
     if verdict.effects:
         named = [_named(diagnosis, name) for name in verdict.effects]
-        if verdict.standing == "contradicted":  # a probability knows nothing of validation data
-            return message("summary.contradicted", effects=[_strong(diagnosis, name) for name in verdict.effects])
+        if verdict.standing == "contradicted":
+            return _contradicted(diagnosis)
         return _missing_and_helping(diagnosis, named)
     if verdict.suspects:
         return message("summary.label", run=verdict.suspects[0].run)
@@ -46,6 +46,19 @@ def _missing(diagnosis: Diagnosis) -> Message:
     if verdict.unexplained:
         return _probable(diagnosis, "unlisted", "summary.unlisted", "summary.unlisted_probable")
     return _probable(diagnosis, "nothing", "summary.nothing", "summary.nothing_probable")
+
+
+def _contradicted(diagnosis: Diagnosis) -> Message:
+    """The effects that validation data contradict, with those that were added on top of them, and those before.
+
+    Without their probabilities, which know nothing of validation data.
+    """
+    named, against = diagnosis.verdict.effects, diagnosis.verdict.contradicted_by
+    first = next((number for number, name in enumerate(named) if name in against), 0)
+    before, effects = ([_strong(diagnosis, name) for name in part] for part in (named[:first], named[first:]))
+    if not before:
+        return message("summary.contradicted", effects=effects)
+    return message("summary.contradicted_after", before=before, effects=effects)
 
 
 def _missing_and_helping(diagnosis: Diagnosis, named: Sequence[Message]) -> Message:

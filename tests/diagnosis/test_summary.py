@@ -90,6 +90,8 @@ def test_nothing_something_unlisted_and_what_is_contradicted_are_said():
     assert unlisted.summary[0] == "Missing: something that no effect in the library explains (probability 90 %)."
     against = lines(standing="contradicted", contradicted_by=("dead_zone",))
     assert against[0].startswith("Not confirmed: dead zone (")
+    later = lines(standing="contradicted", effects=("dead_zone", "underlap"), contradicted_by=("underlap",))
+    assert later[0].startswith("The error falls with dead zone (80.00 ± 0.20 µm). Not confirmed: underlap. Estimation")
     assert against[2].startswith("Next: do not add dead zone yet. Compare the fit with it and the fit without it")
 
 
