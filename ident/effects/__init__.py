@@ -74,6 +74,7 @@ OF_RECORDS = _of_files(
     "current_friction",
     "pressure_force",
     "arm_gravity",
+    "load_friction",
     "damping_asymmetry",
     "friction_behind_play",
     "degrading_hysteresis",

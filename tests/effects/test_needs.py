@@ -205,6 +205,9 @@ CASES = {
     "arm_gravity": Case(
         "drive", {"arm_gravity.torque": 30.0, "arm_gravity.hanging": 0.5},
         lambda k: mass(lambda _t, x, _v: 30.0 * k * np.sin(x - 0.5)), {}),
+    "load_friction": Case(
+        "drive", {"load_friction.coefficient": 0.4},
+        lambda k: mass(lambda _t, x, v: 0.4 * k * abs(STIFFNESS * x) * dry(v)), {}, 1e-2),
     "rectified_sensor": Case(
         "motor", {"rectified_sensor.share": 0.8}, lambda k: counted(0.8 * k), {}, output="velocity"),
     "speed_sensor_lag": Case(
@@ -299,7 +302,7 @@ def test_an_effect_is_looked_for_only_where_the_record_could_show_it():
     assert of_records & rectified - springs == {*motor, "rectified_sensor"}
     assert "rectified_sensor" not in candidates("motor", volts, command=LEVEL, velocity=np.abs(speed))
     for turning in ({"command": "N*m", "displacement": "rad"}, {"command": "1", "displacement": "1"}):
-        assert of_records & candidates("drive", turning, **recorded) - springs == {"arm_gravity"}
+        assert of_records & candidates("drive", turning, **recorded) - springs == {"arm_gravity", "load_friction"}
 
 
 @pytest.mark.parametrize(("below", "is_one_sided"), [(0.9 * ONE_SIDED, True), (1.1 * ONE_SIDED, False)])
