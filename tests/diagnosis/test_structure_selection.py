@@ -123,7 +123,7 @@ def test_of_equals_the_one_with_fewer_parameters_is_taken():
 
 
 def test_a_speed_along_a_way_is_that_of_a_motor():
-    """A cart behind a motor, V to m/s: a lag of no machine leaves as little, but no friction and no spring act on it."""
+    """A cart behind a motor: a lag that is no machine leaves as little, but no friction and no spring act on it."""
     matrix = motor(8)
     along = (replace(run, units={"command": "V", "velocity": "m/s"}) for run in matrix.runs)
     found = {one.machine: one.error["held_out"] for one in compared_structures(replace(matrix, runs=tuple(along)))}
