@@ -20,7 +20,9 @@ from app.main import routed
 from ident.diagnosis.criteria import CRITERIA
 from ident.effects import CATALOGUE
 from ident.equations.equation import Equation
+from ident.fit.criteria import FIT_CRITERIA
 from ident.fit.levenberg_marquardt import Way
+from ident.noise.criteria import NOISE_CRITERIA
 from ident.parameter import Parameter
 from ident.presets import PRESETS, Preset
 from ident.presets.signal_table import signal_table
@@ -183,27 +185,33 @@ def parameters(of: Iterable[Parameter]) -> list[str]:
 
 
 CRITERIA_HEAD = (
-    "Every number that decides in a [diagnosis](diagnosis.md), by the stage that it decides in, as",
-    "`ident/diagnosis/criteria.py` has it. Read a row as: value, unit, what it is.",
+    "Every number that decides in a [diagnosis](diagnosis.md), in a fit or about the noise of a record, by the stage",
+    "or step that it decides in, as the `criteria.py` of each folder has it. Read a row as: value, unit, what it is.",
 )
+CRITERIA_OF: dict[str, Any] = {"Diagnosis": CRITERIA, "Fit": FIT_CRITERIA, "Noise": NOISE_CRITERIA}
 
 
 def criteria() -> str:
-    """Every number of a diagnosis, by stage, with its unit, its meaning and its reason."""
-    lines = ["# The numbers of a diagnosis", NOTE, "", *CRITERIA_HEAD, ""]
-    for section in fields(CRITERIA):
-        of = getattr(CRITERIA, section.name)
-        below = documented(Path(inspect.getfile(type(of))), type(of).__name__)
-        rows = []
-        for one in fields(of):
-            unit, meaning, reason = below[one.name]
-            value = getattr(of, one.name)
-            shown = f"{value.most} steps, to {value.converged:g}" if isinstance(value, Way) else str(value)
-            rows.append((one.name.replace("_", " "), shown, unit, meaning, reason))
-        title = section.name.replace("_", " ").capitalize()
-        lines += [f"## {title}", "", inspect.getdoc(type(of)) or "", ""]
-        lines += [*table(("number", "value", "unit", "what it is", "why"), rows), ""]
+    """Every number that decides, by room and section, with its unit, its meaning and its reason."""
+    lines = ["# The numbers that decide", NOTE, "", *CRITERIA_HEAD, ""]
+    for room, criteria_of_room in CRITERIA_OF.items():
+        lines += [f"## {room}", ""]
+        for section in fields(criteria_of_room):
+            lines += criteria_of_section(section.name, getattr(criteria_of_room, section.name))
     return "\n".join(lines).rstrip() + "\n"
+
+
+def criteria_of_section(name: str, of: Any) -> list[str]:
+    """The table of the numbers of one section."""
+    below, rows = documented(Path(inspect.getfile(type(of))), type(of).__name__), []
+    for one in fields(of):
+        unit, meaning, reason = below[one.name]
+        value = getattr(of, one.name)
+        shown = f"{value.most} steps, to {value.converged:g}" if isinstance(value, Way) else str(value)
+        rows.append((one.name.replace("_", " "), shown, unit, meaning, reason))
+    columns = ("number", "value", "unit", "what it is", "why")
+    title = name.replace("_", " ").capitalize()
+    return [f"### {title}", "", inspect.getdoc(type(of)) or "", "", *table(columns, rows), ""]
 
 
 def documented(file: Path, section: str) -> dict[str, tuple[str, str, str]]:

@@ -9,10 +9,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ident.resolution import noise_of, resolution
+from ident.rounding import ROUNDING, TINY
 
 Samples = NDArray[np.float64]
 Beginning = Literal["at rest", "standing", "moving"]
-ROUNDING = 1e-9  # of a command's largest value: it is held but for rounding
 SLOW = 0.05  # of the typical speed: slower is standing still
 AT_ZERO = 0.02  # of the record's standard deviation: nearer is at zero, and as near is the same place
 ERRORS = 4.0  # standard errors within which a value or a speed is nothing, too
@@ -107,7 +107,7 @@ def zero_at_rest(x: Samples, begins: Beginning, sample_rate: float) -> tuple[flo
     if len(x) <= FEWEST + 4:
         return None
     step, noise, n = resolution(x), noise_of(x), _first(x, sample_rate)
-    least = max(ROUNDING * float(np.abs(x).max()), 1e-300)
+    least = max(ROUNDING * float(np.abs(x).max()), TINY)
     if begins == "at rest":
         n = n if abs(x[n - 1] - x[0]) <= ERRORS * noise + step else 1
         return float(x[:n].mean()), float(max(np.hypot(noise / np.sqrt(n), step / np.sqrt(12.0)), least))

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-ROUNDING = 1e-9
-"""[of the largest value] Changes below it are the rounding of the values themselves."""
+from ident.rounding import ROUNDING
+
 CHANGING = 0.9
 """[of the samples] Of a reading in steps some samples are alike: where more than this share changes, it is in none."""
 

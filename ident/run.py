@@ -9,8 +9,9 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ident.beginning import ROUNDING, Beginning, beginning, held_still, standing_for, zero_at_rest
+from ident.beginning import Beginning, beginning, held_still, standing_for, zero_at_rest
 from ident.cached import cached_property
+from ident.rounding import ROUNDING
 from ident.slopes import slopes
 from ident.words.engineering import multiple
 from ident.words.number import plain

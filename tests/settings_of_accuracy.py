@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from inspect import signature
 
 from ident.effects import EFFECTS
-from ident.fit import linear_fitness
+from ident.fit.criteria import FIT_CRITERIA
 from ident.hybrid import draws, oil_column, robustness
 from tests import rounding
 from tests.acceptance import matrices, test_equations, test_fitness, test_identification, test_rounding
@@ -56,7 +56,7 @@ def of_accuracy() -> Iterator[Tie]:
         test_fitness.VECTORS, per_cent(test_fitness.APART), test_fitness.VECTORS,
     )  # fmt: skip
     yield A, "off by more than {} %, the worst", (per_cent(test_fitness.TOLERANCE),)
-    yield A, "more than one vector in {} of a generation", ({20: "twenty"}[linear_fitness._LEADING],)
+    yield A, "more than one vector in {} of a generation", ({20: "twenty"}[FIT_CRITERIA.reduced.leading],)
     for seconds in (matrices.SHORT, matrices.LONG):
         yield A, "| {} s | straight lines | 0.00", (plain(seconds),)
     yield A, "Default method, {} s records, {} % noise.", (plain(matrices.LONG), per_cent(matrices.NOISE))

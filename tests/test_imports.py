@@ -112,8 +112,8 @@ def test_what_a_benchmark_or_a_picture_imports_is_there(file):
 
 
 ROOMS = (
-    "errors", "plain", "cached", "progress", "time_budget", "parallel", "unstable", "words", "resolution", "beginning",
-    "linear_filter", "slopes",
+    "errors", "plain", "cached", "progress", "time_budget", "parallel", "unstable", "rounding", "words", "resolution",
+    "beginning", "linear_filter", "slopes",
     "run", "rig", "matrix", "parameter", "linear", "statistics", "equations", "units", "stages", "effects", "chain",
     "presets",
     "foreign", "readers", "custom", "preprocessing", "noise", "stability", "checks", "drafts", "simulation", "fit",
@@ -255,8 +255,8 @@ def test_there_is_no_loose_file_but_the_basic_words_and_the_workflows():
     """What belongs together stands in a folder."""
     loose = {file.stem for file in files("ident/*.py")} - {"__init__"}
     assert loose == {
-        "errors", "plain", "cached", "progress", "time_budget", "parallel", "unstable", "resolution", "beginning",
-        "linear_filter", "run",
+        "errors", "plain", "cached", "progress", "time_budget", "parallel", "unstable", "rounding", "resolution",
+        "beginning", "linear_filter", "run",
         "matrix", "parameter", "linear", "workflows",
     }  # fmt: skip
 

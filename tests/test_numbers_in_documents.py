@@ -19,7 +19,8 @@ from ident.comparison import frequency_response, profile
 from ident.diagnosis.criteria import CRITERIA
 from ident.figures import bode, residual_curve, sensitivity, time
 from ident.figures import tracking as tracking_figure
-from ident.fit import genetic, windows
+from ident.fit import genetic
+from ident.fit.criteria import FIT_CRITERIA
 from ident.fit.search import Search
 from ident.hybrid import (
     compensation,
@@ -103,7 +104,11 @@ def of_diagnosis() -> Iterator[Tie]:
     yield D, "The next term is sought in addition to it, {} at most", (word(CRITERIA.discovery.most),)
     yield D, "hats at {} quantiles of the signal", (word(len(CRITERIA.discovery.knots)),)
     yield D, "the {} groups that explain most are refitted", (word(CRITERIA.discovery.of_a_kind),)
-    yield D, "of {}, {} or {} times its slowest other time constant", tuple(plain(t) for t in windows._TIMES)
+    yield (
+        D,
+        "of {}, {} or {} times its slowest other time constant",
+        tuple(plain(t) for t in FIT_CRITERIA.windows.times),
+    )
     of = CRITERIA.evidence
     yield D, "Of {} runs or more whole runs take turns", (word(CRITERIA.evidence.whole_runs),)
     yield D, "in {} folds. Of a single run {} stretches do", (

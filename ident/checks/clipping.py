@@ -7,8 +7,8 @@ from collections.abc import Iterator
 import numpy as np
 from numpy.typing import NDArray
 
-from ident.beginning import ROUNDING
 from ident.checks.finding import Finding
+from ident.rounding import ROUNDING
 from ident.run import Run, Samples
 from ident.words.message import message
 

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from ident.checks.finding import Finding
 from ident.run import Run, Samples
+from ident.statistics.robust import robust_deviation
 from ident.words.message import message
 
 OWN, OTHER = 40, 12  # lags of the command's past, and of the output's beside as many more of the command's
@@ -106,7 +107,7 @@ def _ordinary(table: Samples) -> NDArray[np.bool_] | None:
     rows = np.ones(len(table), bool)
     for _ in range(ROUNDS):
         left = table[:, 0] - table[:, 1:] @ _weights(_products(table[rows]))
-        size = 1.4826 * float(np.median(np.abs(left[rows])))
+        size = robust_deviation(left[rows])
         rows = np.abs(left) <= ORDINARY * size
         if size < FLOOR or rows.sum() < LEAST * table.shape[1]:
             return None

@@ -10,12 +10,12 @@ import numpy as np
 from ident.checks.finding import Finding
 from ident.checks.gain import FACTORS
 from ident.checks.response import RELATED, Response
+from ident.rounding import TINY
 from ident.run import Run
 from ident.words.message import message
 
 LEAST = 10.0  # a dead zone or dry friction makes small and large commands differ by less
 NEAR = 1.3  # either way, for a factor to be that of a wrong unit
-TINY = 1e-300
 ALIKE = 3.0  # from the frequencies with the smallest ratio to those with the largest
 BAND = (0.02, 0.98)  # of the command's power
 Measured = tuple[Run, Response]

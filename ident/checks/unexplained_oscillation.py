@@ -14,9 +14,9 @@ import numpy as np
 import scipy.fft  # not scipy.signal, which takes a second of every diagnosis to load
 from numpy.typing import NDArray
 
-from ident.beginning import ROUNDING
 from ident.checks.oscillation_at_rest import DIES, is_of_mains
 from ident.noise.periodic import line_frequency
+from ident.rounding import ROUNDING
 from ident.run import Run, Samples
 
 Spectrum = NDArray[np.complex128]

@@ -12,8 +12,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ident.chain.channels import READABLE, unmeasured
-from ident.diagnosis.criteria import EPSILON
 from ident.presets import Preset
+from ident.rounding import EPSILON
 from ident.run import MOTIONS, Run
 
 _SURROUNDS = ("supply_pressure", "vertical_load", "temperature")

@@ -20,6 +20,7 @@ from ident.diagnosis.verdict import Residual, is_noise
 from ident.effects import CATALOGUE
 from ident.effects.effect import Effect, off_values
 from ident.errors import Unusable
+from ident.fit.criteria import FIT_CRITERIA
 from ident.fit.given import of_model
 from ident.fit.known_zeros import with_known_zeros
 from ident.fit.levenberg_marquardt import Way
@@ -29,7 +30,7 @@ from ident.fit.settings import Settings
 from ident.fit.simulated_fitness import SimulatedFitness, shortened
 from ident.fit.simulated_runs import SimulatedRuns
 from ident.fit.space import search_space
-from ident.fit.wider_bounds import ROUNDS, reaching, wider_at
+from ident.fit.wider_bounds import reaching, wider_at
 from ident.matrix import Matrix
 from ident.noise.floor import Floors, noise_floors
 from ident.parallel import Once, each
@@ -42,7 +43,7 @@ from ident.words.titles import title
 
 Array = NDArray[np.float64]
 _EFFECTS_A_CHAIN = 8
-"""Effects of one simulated chain, one for each lane: the kernel has registers for so many. No result depends on it."""
+"""Effects of one simulated chain, one for each lane: the kernel has registers for so many. No answer depends on it."""
 
 
 @dataclass
@@ -397,7 +398,7 @@ class CandidateModels:
         found = self._optimum(effects, fitness, point, way, samples)
         if way is not free and found.asks_for(free, CRITERIA.ranking.promising):
             way, found = free, self._optimum(effects, fitness, found.point, free, samples)
-        for _ in range(ROUNDS):
+        for _ in range(FIT_CRITERIA.ranges.rounds):
             ended = [
                 self.strength(name) for name in effects if name in self.effects and self._asks_farther(found, name)
             ]

@@ -12,12 +12,6 @@ from ident.diagnosis.discovery.criteria import Discovery, TermShapes
 from ident.diagnosis.evidence.criteria import EVIDENCE_CRITERIA, EvidenceCriteria
 from ident.fit.levenberg_marquardt import Way
 
-TINY = 1e-300
-"""A logarithm's or a quotient's argument is kept above it, near the smallest normal number: it decides nothing."""
-EPSILON: float = 1e-12
-"""[of a size] Least relative error that is used. Why: rounding of a sum of ten thousand terms.
-Test: test_criteria_of_estimation.py::test_a_channel_varies_where_it_does_by_more_than_rounding"""
-
 
 @dataclass(frozen=True)
 class Estimation:

@@ -12,11 +12,12 @@ from collections.abc import Iterable, Mapping, Sequence
 import numpy as np
 
 from ident.diagnosis.candidate_models import CandidateModels
-from ident.diagnosis.criteria import CRITERIA, TINY
+from ident.diagnosis.criteria import CRITERIA
 from ident.diagnosis.fitted_model import FittedModel
 from ident.diagnosis.ladder import without_effect
 from ident.diagnosis.screening import Prediction
 from ident.diagnosis.tie_breaking import stable_minimum
+from ident.rounding import TINY
 
 
 def joint_refit(

@@ -15,15 +15,19 @@ from numpy.typing import NDArray
 
 from ident.chain.conditions import conditions
 from ident.diagnosis.candidate_models import CandidateModels
-from ident.diagnosis.criteria import CRITERIA, EPSILON
+from ident.diagnosis.criteria import CRITERIA
 from ident.diagnosis.fitted_model import FittedModel
 from ident.diagnosis.result import LabelErrors, Suspect
 from ident.parallel import each
+from ident.rounding import EPSILON
 from ident.run import Run
 from ident.simulation.simulate import Simulation
+from ident.statistics.robust import robust_deviation
 from ident.words.error import error_said
 
 Array = NDArray[np.float64]
+_MILLISECONDS = 1e3
+"""Of a second. No answer depends on it: a unit."""
 _LABELS = {"mass": "mL", "stiffness": "k", "gain": "Kp"}
 _UNITS = {"mass": "kg", "stiffness": "N/m", "gain": "1"}
 
@@ -43,7 +47,7 @@ def label_suspects(models: CandidateModels, fitted: FittedModel, floors: Mapping
     scale = {run.id: (floors[run.id] or 1.0) if known else 1.0 for run in runs}
     ratios = np.log([max(errors[run.id], EPSILON) / scale[run.id] for run in runs])
     usual = float(np.median(ratios))
-    spread = 1.4826 * float(np.median(np.abs(ratios - usual)))
+    spread = robust_deviation(ratios - usual)
     outside = [
         run for run, ratio in zip(runs, ratios, strict=True)
         if ratio - usual > max(np.log(CRITERIA.labels.least_excess), CRITERIA.labels.outlier * spread)
@@ -78,7 +82,7 @@ def _evidence(what: str, stated: float, found: float, unit: str, error: float, u
     of_channel = {
         "sign": "turned in sign",
         "unit": f"multiplied by {found:.4g}",
-        "delay": f"shifted by {1e3 * found:.3g} ms",
+        "delay": f"shifted by {_MILLISECONDS * found:.3g} ms",
     }
     return (
         f"the run's error is {error_said(error)}, where {error_said(usual)} would be usual; "

@@ -17,18 +17,19 @@ from numpy.typing import NDArray
 
 from ident.cached import cached_property
 from ident.diagnosis.candidate_models import CandidateModels
-from ident.diagnosis.criteria import CRITERIA, EPSILON
+from ident.diagnosis.criteria import CRITERIA
 from ident.diagnosis.cross_validation import scored, weight_of_offsets
 from ident.diagnosis.evidence.chance import bar
 from ident.diagnosis.evidence.comparison import Residuals, common_disturbance
 from ident.diagnosis.fitted_model import FittedModel
 from ident.diagnosis.initial_guesses import in_place_of_spring, initial_guesses, strength_in_model, strength_in_records
 from ident.fit.bounded_step import bounded_steps
+from ident.fit.criteria import FIT_CRITERIA
 from ident.fit.responses import Responses, Sensitivities
 from ident.fit.simulated_fitness import SimulatedFitness
 from ident.fit.space import Space
-from ident.fit.wider_bounds import FURTHER, ROUNDS
 from ident.parallel import each
+from ident.rounding import EPSILON
 
 Array = NDArray[np.float64]
 
@@ -146,7 +147,7 @@ def _predicted(given: _Sensitivities, base: FittedModel, names: Sequence[str]) -
     promises = list(found.predicted_fits())
     if between := found.thresholds():
         promises += given.with_effects(fitness, values, between).predicted_fits()
-    for _ in range(ROUNDS):
+    for _ in range(FIT_CRITERIA.ranges.rounds):
         if not (beyond := _beyond(models, fitness, values, promises)):
             break
         promises += given.with_effects(fitness, values, beyond).predicted_fits()
@@ -197,7 +198,7 @@ def _beyond(
         lower, upper = fitness.space.reach(models.strength(trial.effect), values)
         at_end = trial.strength >= (1.0 - EPSILON) * upper or trial.strength <= (1.0 - EPSILON) * lower < 0
         if at_end and step[-1] >= most and models.may_reach_farther(fitness, trial.effect):
-            found.append(replace(trial, strength=FURTHER * trial.strength))
+            found.append(replace(trial, strength=FIT_CRITERIA.ranges.further * trial.strength))
     return found
 
 

@@ -22,13 +22,14 @@ from ident.effects.effect import Effect
 from ident.fit.result import Combination
 from ident.presets.record_units import SAMPLE
 from ident.words.message import Message, message, said
+from ident.words.percent import PER_CENT
 from ident.words.titles import title
 
 
 def why(candidate: Candidate, effect: Effect, before: float, floor: float | None, best: bool) -> str:
     """The evidence for or against an effect, in words; `before` is the held-out error without it."""
     if candidate.refit is None or candidate.evidence is None:
-        return str(message("why.predicted", share=100 * candidate.prediction.reduction))
+        return str(message("why.predicted", share=PER_CENT * candidate.prediction.reduction))
     errors = before, candidate.refit.held_out.error
     return why_of_evidence(candidate.evidence, effect, errors, candidate.worth_adding, floor, best)
 
@@ -49,8 +50,8 @@ def _reasons(
     else:
         yield message("why.change", before=before, after=after)
     if not matters(evidence):
-        share, error = 100 * evidence.share.mean, 100 * evidence.share.bound(EVIDENCE_CRITERIA)
-        yield message("why.little", share=share, error=error, least=100 * EVIDENCE_CRITERIA.share)
+        share, error = PER_CENT * evidence.share.mean, PER_CENT * evidence.share.bound(EVIDENCE_CRITERIA)
+        yield message("why.little", share=share, error=error, least=PER_CENT * EVIDENCE_CRITERIA.share)
         yield message("why.would_show", looks=effect.looks)
     elif not generalises(evidence):
         yield _loses(losing_part(evidence))

@@ -13,11 +13,12 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from ident.diagnosis.criteria import CRITERIA, TINY
+from ident.diagnosis.criteria import CRITERIA
 from ident.diagnosis.evidence.blocks import block_mean
 from ident.diagnosis.evidence.criteria import EVIDENCE_CRITERIA
 from ident.diagnosis.evidence.free_run import FreeRun, drives_away
 from ident.plain import WHERE_KNOWN
+from ident.rounding import TINY
 from ident.run import Run, over_runs
 from ident.unstable import UNSTABLE
 from ident.words.message import Message, message

@@ -42,7 +42,7 @@ class Anchoring:
 
     @property
     def noise(self) -> float:
-        """What white noise of a variance of 1 becomes, its mean square over a window: 1 where there is none."""
+        """The mean square over a window of white noise of variance 1: 1 where there is none (Kalata 1984)."""
         if not self.window:
             return 1.0
         k = np.arange(self.window)
@@ -95,7 +95,7 @@ def _windows(samples: int, window: int) -> Iterator[tuple[int, int, int]]:
 
 
 def gains(memory: float) -> tuple[float, float]:
-    """α and β of the steady filter."""
+    """α and β of the steady filter (Kalata 1984)."""
     index = 1.0 / memory**2
     r = (4.0 + index - np.sqrt(8.0 * index + index**2)) / 4.0
     alpha = 1.0 - r**2

@@ -5,10 +5,12 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from ident.fit.criteria import FIT_CRITERIA
+from ident.rounding import EPSILON, TINY
 from ident.simulation.jit import jit
 
 Array = NDArray[np.float64]
-_LOST = 1e-7  # relative to the largest eigenvalue of the scaled H: a direction that a fold does not see stays
+_LOST = FIT_CRITERIA.refinement.lost
 
 
 @jit(nogil=True)
@@ -18,14 +20,14 @@ def bounded_step(point: Array, H: Array, g: Array) -> Array:
     step = np.zeros(len(point))
     if not _is_finite(H):
         return step
-    largest = 1e-300
+    largest = TINY
     for i in range(len(point)):
         largest = max(largest, H[i, i])
     free, count = np.arange(len(point)), len(point)
     while count:
         scale, rest, A = np.empty(count), np.empty(count), np.empty((count, count))
         for i in range(count):
-            scale[i] = np.sqrt(max(H[free[i], free[i]], 1e-12 * largest))
+            scale[i] = np.sqrt(max(H[free[i], free[i]], EPSILON * largest))
         for i in range(count):
             rest[i] = g[free[i]]
             for axis in range(len(point)):

@@ -40,10 +40,8 @@ class BulkModulus:
     compressibility: str = "Ka"
 
     def __str__(self) -> str:
-        return (
-            f"bulk modulus {plus_minus_si(self.value, self.std_error, 'Pa', 4)} = V/(4 {self.compressibility}) with "
-            f"V = {self.volume:.4g} m^3, {self.stands_on}"
-        )
+        value = plus_minus_si(self.value, self.std_error, "Pa", digits=4)
+        return f"bulk modulus {value} = V/(4 {self.compressibility}) with V = {self.volume:.4g} m^3, {self.stands_on}"
 
     @property
     def combination(self) -> Combination | None:
@@ -72,7 +70,7 @@ def oil_volume(actuator: Actuator) -> OilVolume | None:
 
 
 def bulk_modulus(parameters: Mapping[str, Estimate], actuator: Actuator) -> BulkModulus | None:
-    """βe of fitted parameters; None without a volume or without a compressibility in m³/Pa.
+    """βe of fitted parameters (Qian et al. 2014, eq. 18); None without a volume or without a compressibility in m³/Pa.
 
     Without a piston area only Ka/A² is known, in another unit: a volume is then worth nothing.
     """

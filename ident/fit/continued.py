@@ -14,10 +14,11 @@ from numpy.typing import NDArray
 
 from ident.errors import Unusable
 from ident.fit import genetic
+from ident.fit.criteria import FIT_CRITERIA
 from ident.fit.ends import End, distinct
 from ident.fit.fitness import Fitness, Local
 from ident.fit.given import of_model
-from ident.fit.identification import CANDIDATES, SEARCHED, Identification
+from ident.fit.identification import CANDIDATES, Identification
 from ident.fit.levenberg_marquardt import STEPS
 from ident.fit.linear_fitness import LinearFitness
 from ident.fit.multistart import Optimum
@@ -38,10 +39,6 @@ from ident.words.percent import percent
 Array = NDArray[np.float64]
 REFINEMENT = "refinement"
 """The method of a fit without a search: Levenberg and Marquardt's from a start."""
-
-
-_ROUNDS = 3
-"""In which first states are followed at an end: what a search stops at moves eq. (17) by some millionths."""
 
 
 @dataclass(frozen=True)
@@ -70,7 +67,7 @@ class ContinuedIdentification(Identification):
                            "fit without a start, or mark further runs use: fit")  # fmt: skip
         self.objective = self.searched = self._over(fitted)
         if isinstance(self.objective, SimulatedFitness):
-            self.searched = replace(self.objective, roughly=True).fresh(shortened(fitted, SEARCHED))
+            self.searched = replace(self.objective, roughly=True).fresh(shortened(fitted, FIT_CRITERIA.search.samples))
         self.search = replace(self.search, errors=self.searched.errors)
         self.floors = noise_floors(self.matrix.runs, excited_band(self._runs), left_out)
 
@@ -153,7 +150,7 @@ class ContinuedIdentification(Identification):
             and np.isfinite(here.error)
             and any(r.begins == "moving" for r in fresh.runs)
         ):
-            fresh = fresh.followed(point, _ROUNDS)
+            fresh = fresh.followed(point, FIT_CRITERIA.first_states.followed)
         self.objective.evaluations += fresh.evaluations
         return _Tried(fresh, point, here, _error(fresh, point))
 

@@ -8,13 +8,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from ident.fit.criteria import FIT_CRITERIA
+from ident.words.percent import PER_CENT
+
 Array = NDArray[np.float64]
-_APART = 0.1  # of an axis, from which on two starts are distinct
-_SAME = 1e-6  # relative difference of errors that is none
-AGREE = 1e-3  # relative difference of errors of one optimum, found twice
-_BOUND = 1e-6  # of an axis
-SETTLED = 3  # starts that end together
-_NEAR = 0.01  # relative difference of errors that is no reason to prefer one end to another
+_OF = FIT_CRITERIA.optima
 
 
 @dataclass(frozen=True)
@@ -30,7 +28,7 @@ def distinct(points: Iterable[Array], most: int) -> list[Array]:
     """The first points that are at least a tenth of an axis apart, at most so many."""
     chosen: list[Array] = []
     for point in points:
-        if all(np.abs(point - other).max() > _APART for other in chosen):
+        if all(np.abs(point - other).max() > FIT_CRITERIA.search.apart for other in chosen):
             chosen.append(point)
         if len(chosen) == most:
             break
@@ -39,22 +37,22 @@ def distinct(points: Iterable[Array], most: int) -> list[Array]:
 
 def valley(ends: Sequence[End]) -> list[Array]:
     """The points of the ends that have the error of the first: what differs among them the data do not determine."""
-    return [end.point for end in ends if end.error <= ends[0].error * (1 + _SAME)]
+    return [end.point for end in ends if end.error <= ends[0].error * (1 + _OF.same)]
 
 
 def agreeing(ends: Sequence[End], best: End) -> int:
     """How many ends have the error of the best."""
-    return sum(bool(end.error <= best.error * (1 + AGREE)) for end in ends)
+    return sum(bool(end.error <= best.error * (1 + _OF.agree)) for end in ends)
 
 
 def at_bound(end: End) -> bool:
     """Whether an axis ended at its bound."""
-    return bool(np.any((end.point < _BOUND) | (end.point > 1 - _BOUND)))
+    return bool(np.any((end.point < _OF.edge) | (end.point > 1 - _OF.edge)))
 
 
 def rivals(ends: Sequence[End]) -> list[End]:
     """The ends whose error is nearly that of the first, but not in one valley with it."""
-    return [end for end in ends if ends[0].error * (1 + _SAME) < end.error <= ends[0].error * (1 + _NEAR)]
+    return [end for end in ends if ends[0].error * (1 + _OF.same) < end.error <= ends[0].error * (1 + _OF.near)]
 
 
 def parted(ends: Sequence[End], deviations: Mapping[str, float], label: Mapping[str, str]) -> Iterator[str]:
@@ -71,7 +69,7 @@ def parted(ends: Sequence[End], deviations: Mapping[str, float], label: Mapping[
     }
     told = [f"{label[name]} by {far[name]:.2g}" for name in sorted(far, key=lambda name: -far[name]) if far[name] > 1]
     if told:
-        excess = 100 * (max(end.error for end in near) / ends[0].error - 1)
+        excess = PER_CENT * (max(end.error for end in near) / ends[0].error - 1)
         yield (
             f"Other members of the search end elsewhere with an error at most {excess:.2g} % larger; in standard "
             f"errors they differ from this fit: {', '.join(told)}."

@@ -9,9 +9,14 @@ import numpy as np
 import scipy  # optimize, which takes a third of a second to load, is loaded where it is first used
 from numpy.typing import NDArray
 
+from ident.fit.criteria import FIT_CRITERIA
+
 Array = NDArray[np.float64]
 Errors = Callable[[Array], Array]
-GENERATIONS = {"differential-evolution": 150, "cma-es": 150}
+_OF = FIT_CRITERIA.library_searches
+GENERATIONS = dict.fromkeys(("differential-evolution", "cma-es"), _OF.generations)
+_SILENT = -9
+"""Of pycma: it prints nothing. No answer depends on it."""
 
 
 def differential_evolution(axes: int, seed: int, errors: Errors) -> list[tuple[Array, Array]]:
@@ -25,8 +30,8 @@ def differential_evolution(axes: int, seed: int, errors: Errors) -> list[tuple[A
         return cost
 
     scipy.optimize.differential_evolution(
-        vectorised, [(0.0, 1.0)] * axes, maxiter=GENERATIONS["differential-evolution"], popsize=max(1, 120 // axes),
-        tol=1e-4, rng=np.random.default_rng(seed), polish=False, vectorized=True, updating="deferred",
+        vectorised, [(0.0, 1.0)] * axes, maxiter=_OF.generations, popsize=max(1, _OF.differential_evolution // axes),
+        tol=_OF.tolerance, rng=np.random.default_rng(seed), polish=False, vectorized=True, updating="deferred",
     )  # fmt: skip
     return history
 
@@ -40,10 +45,10 @@ def cma_es(axes: int, seed: int, errors: Errors) -> list[tuple[Array, Array]]:
     # One axis is beyond pycma, so a second one without effect is put beside it.
     width = max(axes, 2)
     options = {
-        "bounds": [0, 1], "popsize": 40, "seed": seed + 1, "verbose": -9, "maxiter": GENERATIONS["cma-es"],
-        "tolfun": 1e-7,
+        "bounds": [0, 1], "popsize": _OF.cma_es, "seed": seed + 1, "verbose": _SILENT, "maxiter": _OF.generations,
+        "tolfun": _OF.change,
     }  # fmt: skip
-    strategy = cma.CMAEvolutionStrategy(width * [0.5], 0.25, options)
+    strategy = cma.CMAEvolutionStrategy(width * [0.5], _OF.deviation, options)
     history: list[tuple[Array, Array]] = []
     while not strategy.stop():
         asked = strategy.ask()

@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from ident.fit.criteria import FIT_CRITERIA
 from ident.fit.given import of_model
 from ident.fit.settings import Settings
 from ident.fit.space import search_space
@@ -16,9 +17,7 @@ from ident.units.quantity import si_scale
 from ident.words.message import Message, message
 
 Range = tuple[float, float]
-FAR = 30.0
-"""Times the size of a parameter on this machine: below it lies what a user may well want, above it an inch (39.4 to
-the metre), and every prefix of a unit."""
+FAR = FIT_CRITERIA.ranges.far
 _MEANT = {
     "s": {"ms": "milliseconds", "us": "microseconds"},
     "m": {"mm": "millimetres", "um": "micrometres", "in": "inches", "cm": "centimetres"},

@@ -17,15 +17,18 @@ from numpy.typing import NDArray
 
 from ident.cached import cached_property
 from ident.fit import transducer
+from ident.fit.criteria import FIT_CRITERIA
 from ident.fit.levenberg_marquardt import Way
 from ident.fit.normal_matrices import NormalMatrices
 from ident.fit.space import Space
 from ident.matrix import Matrix
 from ident.presets import Preset
+from ident.rounding import EPSILON
 from ident.run import Run, over_runs
 
 Array = NDArray[np.float64]
-STEP = 1e-5  # of an axis, for sensitivities by differences
+STEP = FIT_CRITERIA.refinement.stride
+"""Of an axis, for sensitivities by differences."""
 Steps = Callable[[int, float], None]
 """Hears of the number of steps, and the error."""
 
@@ -140,21 +143,21 @@ def means_of(runs: Sequence[NormalMatrices], error: float) -> NormalMatrices | N
     below what white noise of the records' size gives a mean. Two runs, or runs of one gain, tell nothing beside the
     zero: then there is nothing to add.
     """
-    if len(runs) < 3:
+    if len(runs) < FIT_CRITERIA.refinement.fewest_means:
         return None
     z = np.array([run.means for run in runs])
     z = z - z.mean(axis=0)
     # However well they meet, a mean is not known better than the noise of its record lets it be.
     noise = np.array([run.gram[-1, -1] / run.length**2 for run in runs])
-    least = float(noise.sum()) + 1e-14 * runs[0].total / runs[0].length
+    least = float(noise.sum()) + FIT_CRITERIA.refinement.noise_of_means * runs[0].total / runs[0].length
     gram = z.T @ z
     gram[-1, -1] += least
     samples = sum(run.length for run in runs) / len(runs)
-    weight = samples / (max(error, 1e-12) * len(runs))  # of the record's norm, so that weight_of gives its due
+    weight = samples / (max(error, EPSILON) * len(runs))  # of the record's norm, so that weight_of gives its due
     scores = z[:, :-1] * np.copysign(np.hypot(z[:, -1], np.sqrt(noise)), z[:, -1])[:, None]
     return NormalMatrices(gram, scores, float(gram[-1, -1] * weight**2), 0.0)
 
 
 def weight_of(run: NormalMatrices) -> float:
     """1 / (|r| |x_m|): with it the sum of |r| / |x_m| has the gradient of a weighted least-squares problem."""
-    return float(1.0 / np.sqrt(max(run.gram[-1, -1], 1e-24 * run.total) * run.total))
+    return float(1.0 / np.sqrt(max(run.gram[-1, -1], EPSILON**2 * run.total) * run.total))

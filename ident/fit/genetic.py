@@ -12,6 +12,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ident.fit.criteria import FIT_CRITERIA
+
 Array = NDArray[np.float64]
 Errors = Callable[[Array], Array]
 State = dict[str, Any]
@@ -22,13 +24,16 @@ generations, a mean error that falls to a third, a cloud that contracts. Populat
 vectors are the text's. `keep` is not: its 0.5 leaves five of 200 after six generations. `over_bounds` 0 draws a mutated
 element between the smallest and the largest of the vectors that survive; from the whole of Table 2 (1), three vectors
 of four are drawn anew in each generation, and neither figure comes out."""
-RANGES = {
-    "population": (10.0, 100_000.0), "keep": (0.05, 0.99), "mutation": (0.0, 1.0), "over_bounds": (0.0, 1.0),
-    "survivors": (1.0, 1000.0), "generations": (1.0, 10_000.0), "elite": (1.0, 10_000.0), "starts": (0.0, 1000.0),
+RANGES = {**vars(FIT_CRITERIA.search_options), "mutation": (0.0, 1.0), "over_bounds": (0.0, 1.0)}
+"""What a user may choose of either search."""
+_OF = FIT_CRITERIA.search
+DEFAULT = {
+    "population": _OF.population, "generations": _OF.generations, "elite": _OF.elite, "mutation": _OF.mutation,
+    "starts": 0.0,
 }  # fmt: skip
-DEFAULT = {"population": 200.0, "generations": 30.0, "elite": 10.0, "mutation": 0.3, "starts": 0.0}
-WITH_EFFECTS = {**DEFAULT, "population": 64.0, "generations": 12.0, "elite": 6.0}
-_LEVELS = (0.03, 0.15, 0.5)  # of a strength's range, at which each effect is tried alone
+WITH_EFFECTS = {
+    **DEFAULT, "population": _OF.population_nearby, "generations": _OF.generations_nearby, "elite": _OF.elite_nearby,
+}  # fmt: skip
 
 
 def around(state: State, centre: Array, of_effects: Array) -> State:
@@ -37,11 +42,11 @@ def around(state: State, centre: Array, of_effects: Array) -> State:
     First comes the centre itself, then each effect alone at a few strengths to either side.
     """
     population = np.array(state["population"])
-    near = centre + 0.1 * (population - 0.5)
+    near = centre + _OF.nearby * (population - 0.5)
     drawn = np.where(of_effects, population, np.clip(near, 0.0, 1.0))
     alone = [centre]
     for axis in np.flatnonzero(of_effects):
-        for level in _LEVELS:
+        for level in _OF.strengths:
             for strength in (centre[axis] + level, centre[axis] - level):
                 if 0 <= strength <= 1:
                     alone.append(np.where(np.arange(len(centre)) == axis, strength, centre))
@@ -95,9 +100,9 @@ def default_step(state: State, errors: Errors, options: dict[str, float]) -> Sta
     draws = rng.integers(0, size, (2, 2, count))
     first, second = draws[:, 0], draws[:, 1]
     parents = population[np.where(cost[first] <= cost[second], first, second)]
-    blend = rng.uniform(-0.3, 1.3, (count, axes))
+    blend = rng.uniform(-_OF.blend, 1.0 + _OF.blend, (count, axes))
     children = parents[0] + blend * (parents[1] - parents[0])
-    width = 0.2 * 0.02 ** (generation / last)
+    width = _OF.mutation_width * _OF.narrowing ** (generation / last)
     mutated = rng.random((count, axes)) < options["mutation"]
     children += np.where(mutated, width * rng.standard_normal((count, axes)), 0.0)
     children = np.abs(children)  # reflected at the bounds

@@ -17,6 +17,7 @@ from ident.effects.effect import off_values, undoable, undone
 from ident.errors import Unusable
 from ident.fit import genetic
 from ident.fit.bulk_modulus import with_bulk_modulus
+from ident.fit.criteria import FIT_CRITERIA
 from ident.fit.ends import distinct
 from ident.fit.fitness import Fitness
 from ident.fit.given import of_model, with_candidates
@@ -44,11 +45,10 @@ from ident.words.nearest import did_you_mean
 from ident.words.run_name import run_name
 
 Array = NDArray[np.float64]
-SEARCHED = 65_536  # samples of a search with effects; the polish takes every sample
-_FURTHER = 16  # members of the first generation that it starts from, too, where those do not settle it
-_JUDGED = 8  # runs of a matrix that are looked at for a controller
+_OF = FIT_CRITERIA.search
 _WITH_NOISE = "short windows that start from the measurement are fitted, since a free run would give biased parameters"
-CANDIDATES = 5  # distinct vectors of the last generation from which the polish starts
+CANDIDATES = _OF.candidates
+"""Distinct vectors of the last generation from which the polish starts."""
 
 
 class Identification:
@@ -79,7 +79,7 @@ class Identification:
         if is_simulated(self.preset, matrix):
             absolute = self.preset.absolute
             self.objective = SimulatedFitness(self.preset, matrix, self._runs, band, space, absolute=absolute)
-            self.searched: Fitness = replace(self.objective, roughly=True).fresh(shortened(self._runs, SEARCHED))
+            self.searched: Fitness = replace(self.objective, roughly=True).fresh(shortened(self._runs, _OF.samples))
         else:
             self.objective = self.searched = LinearFitness(self.preset, matrix, self._runs, space, Basis(band))
         options = options_of(settings, self.preset)
@@ -186,7 +186,7 @@ class Identification:
         members = np.concatenate([np.array(state["best"])[None], np.array(state["population"])])
         # The last of the first generation were drawn over the whole space.
         count = int(self.search.options.get("starts", 0))
-        drawn = np.array(state["history"][0]["population"])[: -max(_FURTHER, count) - 1 : -1]
+        drawn = np.array(state["history"][0]["population"])[: -max(_OF.further, count) - 1 : -1]
         found = multistart(self.searched, objective, distinct(members, CANDIDATES), self.report, drawn, count)
         given = {self.preset.parameter(name).in_equations for name in of_model(self.settings, self.preset).bounds}
         found = beyond_bounds(found, self.searched, objective, given, self.report, drawn)
@@ -305,7 +305,7 @@ def _fed_back(preset: Preset, runs: Sequence[Run]) -> tuple[str, ...]:
     """
     if preset.data.driven_by != "command":
         return ()
-    apart = -(-len(runs) // _JUDGED)
+    apart = -(-len(runs) // _OF.judged)
     judged = (run for at, run in enumerate(runs) if run.closed_loop is not None or at % apart == 0)
     return tuple(run.id for run in judged if closed_loop(run))
 

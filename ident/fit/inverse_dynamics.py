@@ -22,17 +22,17 @@ import scipy  # signal, which takes most of a second to load, is loaded where it
 from numpy.typing import NDArray
 
 from ident.errors import Unusable
+from ident.fit.criteria import FIT_CRITERIA
 from ident.matrix import Matrix
+from ident.rounding import ROUNDING
 from ident.run import Run
 from ident.words.run_name import run_name
 
 Array = NDArray[np.float64]
-CUTOFF = 20.0  # Hz
+_OF = FIT_CRITERIA.inverse_dynamics
 UNITS = {"mass": "kg", "viscous": "N*s/m", "coulomb": "N", "offset": "N"}
 _CHANNELS = ("displacement", "drive_force")
-_WITHOUT_FRICTION = (0, 1, 3)
-_STILL = 0.02  # of the run's largest speed
-_FEWEST = 20  # samples in motion that a run must have
+_WITHOUT_FRICTION = tuple(place for place, name in enumerate(UNITS) if name != "coulomb")
 
 
 @dataclass(frozen=True)
@@ -70,13 +70,13 @@ class _Record:
         return float(np.std(self.error(columns, solution)[self.moving]) / np.std(self.force[self.moving]))
 
 
-def regress(matrix: Matrix, cutoff: float = CUTOFF) -> InverseDynamics:
+def regress(matrix: Matrix, cutoff: float = _OF.cutoff) -> InverseDynamics:
     """Fit the runs to fit; `cutoff` in Hz. Raises Unusable where no such run has drive_force and displacement."""
     runs = [run for run in matrix.runs if _has_channels(run)]
     if not any(run.use == "fit" for run in runs):
         raise Unusable("missing-channel", "no run to fit has drive_force and displacement in known units", "runs",
                        "name the column and unit of the drive's force and of its position")  # fmt: skip
-    if not 0 < cutoff <= min(run.sample_rate for run in runs) / 4:
+    if not 0 < cutoff <= min(run.sample_rate for run in runs) / _OF.samples_of_a_period:
         raise Unusable("bad-value", f"cut-off {cutoff:g} Hz", "inverse dynamics",
                        "give a positive one, a quarter of the sample rate at most")  # fmt: skip
     records = {run.id: _record(run, cutoff) for run in runs}
@@ -99,22 +99,22 @@ def _has_channels(run: Run) -> bool:
 
 def _record(run: Run, cutoff: float) -> _Record:
     rate, ends = run.sample_rate, int(run.sample_rate / cutoff)
-    too_short = Unusable("too-short", f"fewer than {_FEWEST} samples in motion at a cut-off of {cutoff:g} Hz",
+    too_short = Unusable("too-short", f"fewer than {_OF.fewest} samples in motion at a cut-off of {cutoff:g} Hz",
                          run_name(run.id), "give a longer record of motion or leave the run out")  # fmt: skip
-    if len(run.channels["displacement"]) <= 2 * ends + _FEWEST:
+    if len(run.channels["displacement"]) <= 2 * ends + _OF.fewest:
         raise too_short
-    low_pass = scipy.signal.butter(4, cutoff, fs=rate, output="sos")
+    low_pass = scipy.signal.butter(_OF.order, cutoff, fs=rate, output="sos")
     x, force = (scipy.signal.sosfiltfilt(low_pass, run.channels[name]) for name in _CHANNELS)
     speed = np.gradient(x, 1 / rate)
     acceleration = np.gradient(speed, 1 / rate)
     # The sign is filtered like the force, or its jumps would stay sharp where the force's are not.
     sign = scipy.signal.sosfiltfilt(low_pass, np.sign(speed))
-    grid = np.arange(ends, len(x) - ends, max(1, int(rate / (4 * cutoff))))
-    moving = (np.abs(speed) > _STILL * np.abs(speed[ends : len(x) - ends]).max())[grid]
-    if np.count_nonzero(moving) < _FEWEST:
+    grid = np.arange(ends, len(x) - ends, max(1, int(rate / (_OF.samples_of_a_period * cutoff))))
+    moving = (np.abs(speed) > _OF.still * np.abs(speed[ends : len(x) - ends]).max())[grid]
+    if np.count_nonzero(moving) < _OF.fewest:
         raise too_short
     design = np.column_stack([acceleration, speed, sign, np.ones(len(x))])[grid]
-    if np.ptp(force[grid][moving]) <= 1e-9 * np.abs(force).max():
+    if np.ptp(force[grid][moving]) <= ROUNDING * np.abs(force).max():
         raise Unusable("zero-variance", "the drive's force does not change", run_name(run.id), "check its column")
     return _Record(design * moving[:, None], force[grid] * moving, moving)
 
@@ -124,7 +124,7 @@ def _weighted(records: Sequence[_Record], columns: Sequence[int]) -> tuple[Array
     solution = _solved(records, columns, np.ones(len(records)))
     deviation = np.array([np.std(record.error(columns, solution)[record.moving]) for record in records])
     force = np.array([np.std(record.force[record.moving]) for record in records])
-    weights = 1 / np.maximum(deviation, 1e-6 * force)  # a perfect run must not have all the weight
+    weights = 1 / np.maximum(deviation, _OF.perfect * force)  # a perfect run must not have all the weight
     return _solved(records, columns, weights), weights
 
 
@@ -133,7 +133,7 @@ def _solved(records: Sequence[_Record], columns: Sequence[int], weights: Array) 
     design = np.concatenate([weight * record.design[:, columns] for weight, record in pairs])
     force = np.concatenate([weight * record.force for weight, record in pairs])
     scale = np.linalg.norm(design, axis=0)
-    if not scale.all() or np.linalg.matrix_rank(design / scale, tol=1e-6 * np.sqrt(len(scale))) < len(scale):
+    if not scale.all() or np.linalg.matrix_rank(design / scale, tol=_OF.separated * np.sqrt(len(scale))) < len(scale):
         raise Unusable("not-determined", "this motion does not separate mass, friction and offset", "inverse dynamics",
                        "record motion both ways with speeds that change")  # fmt: skip
     solution, *_ = np.linalg.lstsq(design / scale, force, rcond=None)
@@ -157,7 +157,10 @@ def _deviations(records: Sequence[_Record], weights: Array, solution: Array) -> 
 
 
 def _long_run(scores: Array) -> Array:
-    """n times the long-run covariance of the scores: Parzen's kernel, bandwidth from first-order fits (Andrews)."""
+    """n times the long-run covariance of the scores: Parzen's kernel, bandwidth from first-order fits (Andrews 1991).
+
+    Their correlation counts as 0.97 at most (Andrews and Monahan 1992).
+    """
     power = np.sum(scores**2, axis=0)
     correlation = np.sum(scores[1:] * scores[:-1], axis=0) / np.where(power > 0, power, 1.0)
     rho = float(np.clip(correlation, 0.0, 0.97).max())

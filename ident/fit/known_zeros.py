@@ -13,7 +13,7 @@ from __future__ import annotations
 from collections.abc import Collection, Sequence
 from dataclasses import replace
 
-from ident.fit.normal_matrices import RECOGNISED
+from ident.fit.criteria import FIT_CRITERIA
 from ident.fit.transducer import Optimal, is_large, offsets, rest_of
 from ident.matrix import Matrix
 from ident.run import Run
@@ -48,5 +48,5 @@ def contradicted_zeros(here: Optimal, runs: Sequence[Run]) -> tuple[str, ...]:
     return tuple(
         name
         for name, (zero, error) in zeros.items()
-        if name not in fitted or abs(fitted[name].value - zero) > RECOGNISED * error
+        if name not in fitted or abs(fitted[name].value - zero) > FIT_CRITERIA.offsets.recognised * error
     )

@@ -10,23 +10,13 @@ from typing import Protocol, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
+from ident.fit.criteria import FIT_CRITERIA
 from ident.fit.straight_steps import led
+from ident.rounding import EPSILON, TINY
 
 Array = NDArray[np.float64]
-STEPS = 200  # at most: along a curved valley it takes more than 60
-_LEAST, _DAMPING, _MOST = 1e-12, 1e-4, 1e6  # least, at first, most
-_HOPE = 4.0  # times what a step takes off: what a few more may
-_KEPT = 0.1
-"""Of what a step promised, by which it missed it, below which the next one keeps its promise, too. Why: the model is
-straight there, unless the step was short because it was damped.
-
-Test: tests/fit/test_levenberg_marquardt.py::test_where_steps_keep_their_promise_the_next_one_is_believed"""
-_NEAR = 0.1
-"""Of the length of a step that failed, in units of the diagonal of H, by which another has to differ to be tried.
-
-Why: of those nearer than that one in 90 helped; they were a fifth of all that the diagnosis of a short record tried.
-
-Test: tests/fit/test_levenberg_marquardt.py::test_a_step_next_to_one_that_failed_is_not_tried"""
+_OF = FIT_CRITERIA.refinement
+STEPS = _OF.steps
 
 
 class Shape(Protocol):
@@ -62,7 +52,7 @@ class Way:
     the error at which there is no need to go on.
     """
 
-    converged: float = 1e-10
+    converged: float = _OF.converged
     most: int = STEPS
     within: tuple[float | Array, float | Array] = (0.0, 1.0)
     longest: float = np.inf
@@ -72,18 +62,18 @@ class Way:
 
     def is_lost(self, error: float, promised: float, *gained: float) -> bool:
         """Whether what is missing is many times what the next step promises, and what the last ones `gained`."""
-        return error - self.aim > _HOPE * max((promised, *gained))
+        return error - self.aim > _OF.hope * max((promised, *gained))
 
     def promised(self, point: Array, here: Shape, spans: Array | None = None) -> float:
         """By how much the first step from a point lowers the error, were the model straight."""
-        return promise(here, _trial(point, here, _DAMPING, self, _spans(point, spans))[0])
+        return promise(here, _trial(point, here, _OF.damping, self, _spans(point, spans))[0])
 
     def leads_nowhere(self, point: Array, here: Shape, spans: Array | None = None) -> bool:
         """Whether from a point that steps have led to the next one promises nothing near what is missing.
 
         Of a step that is cut at a bound nobody knows: a shorter one may promise more.
         """
-        step, _, cut = _trial(point, here, _DAMPING, self, _spans(point, spans))
+        step, _, cut = _trial(point, here, _OF.damping, self, _spans(point, spans))
         return not cut and self.is_lost(here.error, promise(here, step))
 
 
@@ -106,7 +96,7 @@ def levenberg_marquardt(
     """
     spans = _spans(start, spans)
     way, better = way or Way(), better or partial(_better, evaluate)
-    point, here, damping, rise = start.copy(), evaluate(start), _DAMPING, 2.0
+    point, here, damping, rise = start.copy(), evaluate(start), _OF.damping, 2.0
     gained: list[float] = []
     failed: Array | None = None
     straight = False
@@ -126,11 +116,11 @@ def levenberg_marquardt(
         failed = step if new else failed
         if there is not None:
             gained.append(here.error - there.error)
-            straight = damping <= _DAMPING and abs(gained[-1] / promised - 1.0) < _KEPT
-            damping, rise = max(damping * _fall(gained[-1] / promised), _LEAST), 2.0
+            straight = damping <= _OF.damping and abs(gained[-1] / promised - 1.0) < _OF.kept
+            damping, rise = max(damping * _fall(gained[-1] / promised), EPSILON), 2.0
             point, here, failed = trial, there, None
             accept(here)
-        elif damping > _MOST or 0 < promised < way.rough * here.error:
+        elif damping > _OF.most_damping or 0 < promised < way.rough * here.error:
             break
         else:
             damping, rise = damping * rise, 2.0 * rise
@@ -145,12 +135,15 @@ def promise(here: Shape, step: Array) -> float:
 def _is_near(step: Array, failed: Array, here: Shape) -> bool:
     """Whether a step is next to one that failed at the same point: as far as H tells, it leads to the same."""
     size = np.sqrt(np.maximum(np.diag(here.curvature), 0.0))
-    return bool(np.linalg.norm(size * (step - failed)) < _NEAR * np.linalg.norm(size * failed))
+    return bool(np.linalg.norm(size * (step - failed)) < _OF.near * np.linalg.norm(size * failed))
 
 
 def _fall(kept: float) -> float:
-    """By what the damping is multiplied after a step that kept a share of its promise: by more than one below half."""
-    return max(0.1, 1.0 - (2.0 * kept - 1.0) ** 3)
+    """By what the damping is multiplied after a step that kept a share of its promise (Nielsen 1999).
+
+    By more than one below half.
+    """
+    return max(_OF.fall, 1.0 - (2.0 * kept - 1.0) ** 3)
 
 
 def _better(evaluate: Callable[[Array], S], trial: Array, least: float) -> S | None:
@@ -178,8 +171,8 @@ def _step(point: Array, here: Shape, damping: float, within: tuple[float | Array
     free = np.flatnonzero(~outwards)
     if len(free):
         H = here.curvature[np.ix_(free, free)]
-        scale = np.sqrt(np.maximum(np.diag(H), 1e-12 * max(np.diag(H).max(), 1e-300)))
+        scale = np.sqrt(np.maximum(np.diag(H), EPSILON * max(np.diag(H).max(), TINY)))
         scaled = H / scale[:, None] / scale
-        np.fill_diagonal(scaled, 1.0 + damping + 1e-12)
+        np.fill_diagonal(scaled, 1.0 + damping + EPSILON)
         step[free] = -np.linalg.solve(scaled, here.gradient[free] / scale) / scale
     return step

@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from ident.cached import cached_property
 from ident.chain.conditions import conditions, zeros
+from ident.fit.criteria import FIT_CRITERIA
 from ident.fit.fitness import STEP, Local, Steps, local
 from ident.fit.levenberg_marquardt import Way, levenberg_marquardt
 from ident.fit.modes import FOLLOWED, extreme, fastest
@@ -32,11 +33,8 @@ from ident.unstable import UNSTABLE
 
 Array = NDArray[np.float64]
 Outcome = TypeVar("Outcome")
-_TRUSTED = 0.05  # of the error: a doubt below this moves the error by less than 0.13 %
-_FEW = 100_000  # samples of all runs that are simulated for whole populations
-_LEADING = 20  # one vector in so many of a generation is evaluated exactly, at most
+_OF = FIT_CRITERIA.reduced
 _IN_BAND = ("blwn", "multisine")  # commands without power beyond their band
-_WRONG = 0.2  # beyond it the fast error can be off by more than half a percent
 
 
 @dataclass
@@ -69,7 +67,9 @@ class LinearFitness:
         The steps of a held command have power far beyond the band of any noise: what a model does there is not seen.
         Long records, and those with a first state of each model's own, would take too long.
         """
-        long = sum(run.length for run in self.runs) > _FEW or any(run.begins == "moving" for run in self.runs)
+        long = sum(run.length for run in self.runs) > _OF.few_samples or any(
+            run.begins == "moving" for run in self.runs
+        )
         return long or not any(run.hold == "zoh" and run.kind not in _IN_BAND for run in self.runs)
 
     def errors(self, points: Array) -> Array:
@@ -82,10 +82,10 @@ class LinearFitness:
         errors, doubt = self._fast(points) if self._reduces else (self._one_by_one(points), np.zeros(len(points)))
         errors[~self._followed(points)] = UNSTABLE
         self.unstable += int(np.sum(errors >= UNSTABLE))
-        few = max(1, len(points) // _LEADING)
+        few = max(1, len(points) // _OF.leading)
         leading = np.argsort(errors, kind="stable")[:few]
-        doubtful = set(leading[(doubt > _TRUSTED * errors)[leading] & (errors[leading] < UNSTABLE)])
-        wrong = np.flatnonzero((doubt > _WRONG * errors) & (errors < UNSTABLE))
+        doubtful = set(leading[(doubt > _OF.trusted * errors)[leading] & (errors[leading] < UNSTABLE)])
+        wrong = np.flatnonzero((doubt > _OF.wrong * errors) & (errors < UNSTABLE))
         if len(wrong) <= few:  # where most are, as in a search without bounds, only the leading ones are worth it
             doubtful |= set(wrong)
         for index in sorted(doubtful):

@@ -9,13 +9,14 @@ from numpy.typing import NDArray
 
 from ident.chain.chain import Chain
 from ident.chain.conditions import conditions
+from ident.fit.criteria import FIT_CRITERIA
 from ident.matrix import Actuator
 from ident.run import Run
 from ident.simulation.steps import MOST, Modes, fastest_mode
 
 Array = NDArray[np.float64]
-FOLLOWED = 2.5 * MOST
-"""Radians a sample of the fastest mode that a simulation follows at all: from 2.7 a Runge-Kutta step goes astray."""
+FOLLOWED = FIT_CRITERIA.ranges.followed * MOST
+"""Radians a sample of the fastest mode that a simulation follows at all."""
 
 
 def extreme(runs: Iterable[Run]) -> tuple[Run, ...]:

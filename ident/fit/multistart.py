@@ -8,7 +8,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from ident.fit.ends import SETTLED, End, agreeing, at_bound, rivals, valley
+from ident.fit.criteria import FIT_CRITERIA
+from ident.fit.ends import End, agreeing, at_bound, rivals, valley
 from ident.fit.fitness import Fitness, Local
 from ident.fit.levenberg_marquardt import STEPS
 from ident.fit.result import Starts
@@ -16,9 +17,10 @@ from ident.fit.simulated_fitness import SimulatedFitness
 from ident.fit.space import Space
 from ident.progress import Progress, Report
 from ident.run import Run
+from ident.statistics.robust import robust_deviation
 
 Array = NDArray[np.float64]
-_RIVALS = 2  # ends that are followed to the last sample, beside the best
+_OF = FIT_CRITERIA.optima
 
 
 @dataclass(frozen=True)
@@ -62,7 +64,7 @@ def multistart(
     """
     ends = sorted(_all_ends(searched, starts, further, report, count), key=_error)
     first, here = _end(objective, ends[0].point, report)
-    others = [_elsewhere(objective, end, report) for end in rivals(ends)[:_RIVALS]]
+    others = [_elsewhere(objective, end, report) for end in rivals(ends)[: _OF.competing]]
     least = min([first, *others], key=_error)
     if least is not first:
         others = [first, *(end for end in others if end is not least)]
@@ -92,7 +94,7 @@ def _all_ends(
         later.append(_end(searched, start, report, roughly=True)[0])
         yield later[-1]
         enough = len(ends) + len(later) >= count
-        if enough and (count or agreeing(later, min([best, *later], key=_error)) >= SETTLED):
+        if enough and (count or agreeing(later, min([best, *later], key=_error)) >= _OF.settled):
             return
 
 
@@ -125,9 +127,9 @@ def bad_runs(runs: Sequence[Run], here: Local) -> tuple[str, ...]:
     Their error is more than three times the median, and beyond 5 deviations of the errors' logarithms; at most one
     run in twenty is taken for bad, and none of fewer than five.
     """
-    if len(runs) < 5:
+    if len(runs) < _OF.fewest_runs:
         return ()
     errors = np.log([run.error for run in here.runs])
-    spread = 1.4826 * float(np.median(np.abs(errors - np.median(errors)))) + 1e-3
-    far = (errors - np.median(errors) > np.maximum(5 * spread, np.log(3.0))).nonzero()[0]
-    return tuple(runs[i].id for i in far) if len(far) <= max(1, len(runs) // 20) else ()
+    spread = robust_deviation(errors - np.median(errors))
+    far = (errors - np.median(errors) > np.maximum(_OF.outlier * spread, np.log(_OF.times))).nonzero()[0]
+    return tuple(runs[i].id for i in far) if len(far) <= max(1, int(_OF.most_bad * len(runs))) else ()

@@ -14,35 +14,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ident.cached import cached_property
+from ident.fit.criteria import FIT_CRITERIA
 from ident.fit.products import add_products, completed, removal, shares_of, without
 from ident.linear import LinearModel
+from ident.rounding import TINY
 from ident.run import Run
 from ident.simulation.between import at_nodes
 from ident.simulation.recursion import Recursion, discretise, respond, responses
 
 Array = NDArray[np.float64]
-_BLOCKS = 32  # of a record; each is one sample of the score, long enough to hold the residual's own correlation
-_SETTLED = 1e-6  # of a residual's power
-_MUCH = 0.1  # of it: more than this a step promises only as far as the model is straight
-TOLD = 1e-6
-"""[of the samples] Fewer tell no mean, as where a first position does the same as an offset.
-
-Test: tests/fit/test_windows.py::test_what_a_first_position_does_as_well_as_an_offset_is_the_first_position"""
-ALIKE = 0.01
-"""[of the samples] Fewer tell the mean only where the offset is determined: first states do nearly the same.
-
-Test: tests/fit/test_windows.py::test_an_offset_that_first_states_do_nearly_as_well_is_none_unless_it_is_determined"""
-LETS_GO = 1e-4
-"""[of the samples] The same of a speed, whose zero is in question and not its place: a spring that lets go of less than
-a thirtieth over the record, which tells a mean of (1/30)²/12, stands for a force that lasts. The size of that mean is
-then chance, and the spring itself is not determined.
-
-Test: tests/blind/test_offsets.py::test_no_headline_hides_an_offset"""
-RECOGNISED = 3.0
-"""Standard errors beyond which an offset is determined: chance passes that once in 370 records.
-
-Test: tests/fit/test_transducer.py::test_without_an_offset_nothing_is_found_and_the_fit_is_that_of_equation_17"""
-_ESCAPED = 1e12  # times the record's power: the model has run away, and its nuisances would explain anything
+_OF, _OFFSETS = FIT_CRITERIA.first_states, FIT_CRITERIA.offsets
 
 
 @dataclass(frozen=True)
@@ -94,12 +75,12 @@ class NormalMatrices:
         """Whether better first states, if any are free, would explain next to nothing more of the residual."""
         if not len(self.release):
             return True
-        return bool(self.centred > (1.0 - _SETTLED) * self.power)
+        return bool(self.centred > (1.0 - _OF.settled) * self.power)
 
     @property
     def promises(self) -> bool:
         """Whether better first states would explain much of the residual, were the model straight up to them."""
-        return bool(len(self.release)) and bool(self.centred < (1.0 - _MUCH) * self.power)
+        return bool(len(self.release)) and bool(self.centred < (1.0 - _OF.much) * self.power)
 
     @property
     def power(self) -> float:
@@ -119,7 +100,7 @@ class NormalMatrices:
         gram, shared, constant = total[p:-2, p:-2], total[p:-2, [-2]], total[-2, -2]
         free = shared / constant if constant > 0 else np.zeros(shared.shape)
         shape, towards = gram - free @ shared.T, total[p:-2, -1] - free[:, 0] * total[-2, -1]
-        size = np.sqrt(np.maximum(np.diag(gram), 1e-300))
+        size = np.sqrt(np.maximum(np.diag(gram), TINY))
         ridge = damping * np.eye(len(size))
         return np.asarray(np.linalg.solve(shape / size / size[:, None] + ridge, towards / size) / size)
 
@@ -153,15 +134,16 @@ class NormalMatrices:
         """Whether the offset is beyond chance, by its standard error from the sums over blocks."""
         offset = self.offset * np.sqrt(self.total / self.length)
         scatter = float(np.linalg.norm(self.sums_about(self.means[-1])))
-        return bool(abs(offset) * self.informing > RECOGNISED * scatter)
+        return bool(abs(offset) * self.informing > _OFFSETS.recognised * scatter)
 
     def tells_offset(self, least: float) -> bool:
         """Whether the record tells an offset from all that its first states may do.
 
-        Of fewer than a share `least` of the samples it does not, of more than ALIKE it does, between them by chance.
+        Of fewer than a share `least` of the samples it does not, of more than the share `alike` it does. Between them
+        it does where the offset is determined.
         """
         share = self.informing / max(self.length, 1)
-        return share > ALIKE or (share > least and self._offset_determined)
+        return share > _OFFSETS.alike or (share > least and self._offset_determined)
 
     def begun_at_zero(self) -> Array | None:
         """The sums of the blocks, (b, q, q), without the first state that does nearly the same as an offset.
@@ -172,7 +154,7 @@ class NormalMatrices:
         of it, stretched without end. Its first position is zero, and what lasts is the offset.
         """
         total, p = self.blocks.sum(axis=0), self.remove.shape[1] - 1
-        alike = total[p:-2, -2] ** 2 / np.maximum(np.diag(total)[p:-2], 1e-300)
+        alike = total[p:-2, -2] ** 2 / np.maximum(np.diag(total)[p:-2], TINY)
         if not np.max(alike, initial=0.0) > 0:
             return None
         blocks, most = self.blocks.copy(), p + int(np.argmax(alike))
@@ -190,7 +172,7 @@ class NormalMatrices:
         alike = -self._level[p:-2]  # what of each first state does the same as an offset of 1
         size = np.sqrt(self.total / self.length)
         release = self.release + self.offset * size * alike
-        if self.informing <= TOLD * self.length:
+        if self.informing <= _OFFSETS.told * self.length:
             return replace(self, release=release, offset=0.0, means=np.zeros_like(self.means))
         return replace(self.about(self.means)._centred(), release=release)
 
@@ -226,6 +208,11 @@ class NormalMatrices:
         return np.asarray(np.sqrt(np.maximum(squares, 0.0) / self.total))
 
 
+def block_length(run: Run) -> int:
+    """Samples of each block of a record, of which there are so many, or fewer of a short one."""
+    return max(_OF.shortest_block, -(-run.length // _OF.blocks))
+
+
 def normal_matrices(run: Run, model: LinearModel, strides: Array) -> NormalMatrices:
     """The moments of a run for a batch of models (1 + p,): the model, and p neighbours, each a stride (p,) away."""
     systems = _begun(run, model)
@@ -249,7 +236,7 @@ def normal_matrices_of(runs: Sequence[Run], blocks: Array, p: int) -> list[Norma
     """The moments of runs from sums of products of [J, N, 1, r] of each block, (runs, b, q, q), of mean-free runs."""
     means, totals = np.array([(run.mean, run.power) for run in runs]).T
     gram = blocks.sum(axis=1)
-    sound = np.all(np.isfinite(gram), axis=(1, 2)) & ~(gram[:, -1, -1] > _ESCAPED * totals)
+    sound = np.all(np.isfinite(gram), axis=(1, 2)) & ~(gram[:, -1, -1] > _OF.escaped * totals)
     remove = removal(np.where(sound[:, None, None], gram, 0.0), p, totals)
     with np.errstate(invalid="ignore", over="ignore"):
         projected = without(remove, gram)
@@ -273,7 +260,7 @@ def normal_matrices_of(runs: Sequence[Run], blocks: Array, p: int) -> list[Norma
 def _separated(run: Run, found: NormalMatrices) -> NormalMatrices:
     """The moments of a run whose offset and first states differ in their effect, or without one of them."""
     of_speed = run.output == "velocity"
-    if not len(found.release) or found.tells_offset(LETS_GO if of_speed else TOLD):
+    if not len(found.release) or found.tells_offset(_OFFSETS.lets_go if of_speed else _OFFSETS.told):
         return found
     if not of_speed:
         return found.begun_without_offset()
@@ -339,7 +326,7 @@ def _with_releases(systems: Recursion) -> Recursion:
 
 def _products(run: Run, systems: Recursion, strides: Array) -> Array:
     """Sums of products of [J, releases, 1, r] for each block of the record, (blocks, q, q)."""
-    length, q = max(16, -(-run.length // _BLOCKS)), len(systems.D) + 1
+    length, q = block_length(run), len(systems.D) + 1
     sums = np.zeros((-(-run.length // length), q, q))
     measured = run.centred[:, None]
     for rows, first, last in responses(systems, at_nodes(run)):

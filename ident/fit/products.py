@@ -5,12 +5,13 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from ident.fit.criteria import FIT_CRITERIA
+from ident.rounding import EPSILON, TINY
 from ident.simulation.jit import jit
 
 Array = NDArray[np.float64]
-_BLIND = 1e-12  # relative to the largest eigenvalue: nuisances that do the same
-_ROUNDING = 1e-11  # of a record's deviation: a small step of a first state that shows by less is not seen there
-CHUNK = 256  # samples turned at a time, so that the sums run along contiguous memory
+CHUNK = 256
+"""Samples turned at a time, so that the sums run along contiguous memory. No answer depends on it."""
 
 
 @jit(fastmath=True, nogil=True)
@@ -92,10 +93,10 @@ def shares_of(inner: Array, columns: Array, totals: Array) -> Array:
     measured position, a first position is rounding alone, and a share of rounding would lead it kilometres away.
     """
     power = np.diagonal(inner, axis1=1, axis2=2)
-    shown = power > _ROUNDING**2 * totals[:, None]
+    shown = power > FIT_CRITERIA.first_states.rounding**2 * totals[:, None]
     if inner.shape[-1] == 1:
-        return np.where(shown[:, :, None], columns / np.maximum(inner, 1e-300), 0.0)
-    size = np.where(shown, np.sqrt(np.maximum(power, 1e-300)), np.inf)
+        return np.where(shown[:, :, None], columns / np.maximum(inner, TINY), 0.0)
+    size = np.where(shown, np.sqrt(np.maximum(power, TINY)), np.inf)
     outer = size[:, :, None] * size[:, None, :]
     return np.asarray((_inverse(inner / outer) / outer) @ columns)
 
@@ -110,7 +111,7 @@ def _inverse(symmetric: Array) -> Array:
     order, runs = np.argsort(size)[:, ::-1], np.arange(len(values))[:, None]
     size, signs = size[runs, order], np.sign(values)[runs, order]
     rows = vectors.transpose(0, 2, 1)[runs, order]
-    sound = size > _BLIND * size[:, :1]
+    sound = size > EPSILON * size[:, :1]
     inverse = np.where(sound, 1.0 / np.where(sound, size, 1.0), 0.0)
     return np.asarray((rows * signs[:, :, None]).transpose(0, 2, 1) @ (inverse[:, :, None] * rows))
 

@@ -13,7 +13,9 @@ from threading import Lock
 from ident.fit.normal_matrices import NormalMatrices
 
 Moments = tuple[int, Mapping[str, NormalMatrices]]
-_MOST = 512  # runs: of fourteen columns 25 MB, and as many refits as a ranking of one record has on trial
+_MOST = 512
+"""Runs: of fourteen columns 25 MB, and as many refits as a ranking of one record has on trial. No answer depends on
+it."""
 
 
 class RecentMoments:

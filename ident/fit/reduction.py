@@ -20,9 +20,11 @@ import scipy.fft
 from numpy.typing import NDArray
 
 from ident.cached import cached_property
+from ident.fit.criteria import FIT_CRITERIA
 from ident.linear import LinearModel
 from ident.noise.power_density import power_density
 from ident.parallel import each
+from ident.rounding import EPSILON, TINY
 from ident.run import Run
 from ident.simulation.between import at_nodes
 from ident.simulation.jit import jit
@@ -30,14 +32,8 @@ from ident.simulation.recursion import Recursion, discretise, responses
 
 Array = NDArray[np.float64]
 
-# All in units of the band edge W. Poles on a line of real part −0.12, 0.07 apart, resolve poles of the model down to a
-# damping of about 0.06 W; three real poles take the slow and the fast ends. Found by scanning random models in the
-# bounds of Table 2: error of representation 2e-5 at Table 4, below 1e-3 everywhere (docs/accuracy.md).
-_PAIR_DAMPING, _PAIR_SPACING, _PAIR_REACH = 0.12, 0.07, 1.5
-_PAIRS = np.arange(_PAIR_SPACING / 2, _PAIR_REACH, _PAIR_SPACING)
-_REAL = (0.03, 2.0, 5.0)
-_NODES, _NODE_REACH, _BEYOND_BAND = 44, 1.6, 0.1
-_CHECKS = 4
+_OF, _BAND = FIT_CRITERIA.reduced, FIT_CRITERIA.band
+_PAIRS = np.arange(_OF.pair_spacing / 2, _OF.pair_reach, _OF.pair_spacing)
 
 
 @dataclass(frozen=True)
@@ -54,9 +50,9 @@ class Basis:
     @cached_property
     def filters(self) -> LinearModel:
         """m filters of two states: (s + σ)/D and ω/D for each pair, D = (s + σ)² + ω², and β/(s + β)."""
-        sigma = _PAIR_DAMPING * self.band
+        sigma = _OF.pair_damping * self.band
         omega = _PAIRS * self.band
-        beta = np.array(_REAL) * self.band
+        beta = np.array(_OF.real) * self.band
         pairs, m = self.pairs, self.pairs + len(beta)
         A, B, C = np.zeros((m, 2, 2)), np.zeros((m, 2)), np.zeros((m, 2))
         A[:pairs, 0, 0] = A[:pairs, 1, 1] = -sigma
@@ -70,8 +66,8 @@ class Basis:
     @cached_property
     def nodes(self) -> Array:
         """Frequencies (rad/s) at which a model is evaluated: those that represent it, then those that check it."""
-        fit = (np.arange(_NODES) + 0.5) / _NODES * _NODE_REACH
-        check = (np.arange(_CHECKS) + 0.4) / _CHECKS
+        fit = (np.arange(_OF.nodes) + 0.5) / _OF.nodes * _OF.node_reach
+        check = (np.arange(_OF.checks) + _OF.first_check) / _OF.checks
         return np.concatenate([fit, check]) * self.band
 
     @cached_property
@@ -81,11 +77,11 @@ class Basis:
     @cached_property
     def expansion(self) -> Array:
         """The filters' coefficients from the values at the nodes, (m, 2·nodes): least squares, the band counts most."""
-        weight = np.where(self.nodes[:_NODES] <= self.band, 1.0, _BEYOND_BAND)
-        F = self._at_nodes[:_NODES] * weight[:, None]
-        inverse = np.linalg.pinv(np.vstack([F.real, F.imag]), rcond=1e-8) * np.tile(weight, 2)
+        weight = np.where(self.nodes[: _OF.nodes] <= self.band, 1.0, _OF.beyond_band)
+        F = self._at_nodes[: _OF.nodes] * weight[:, None]
+        inverse = np.linalg.pinv(np.vstack([F.real, F.imag])) * np.tile(weight, 2)
         full = np.zeros((len(inverse), 2, len(self.nodes)))
-        full[:, :, :_NODES] = inverse.reshape(-1, 2, _NODES)
+        full[:, :, : _OF.nodes] = inverse.reshape(-1, 2, _OF.nodes)
         return full.reshape(len(inverse), -1)
 
     @cached_property
@@ -94,12 +90,12 @@ class Basis:
 
         Values of the expansion at the checking nodes minus the model's own: zero for a model it can represent.
         """
-        F = self._at_nodes[_NODES:]
+        F = self._at_nodes[_OF.nodes :]
         total = len(self.nodes)
         residual = np.vstack([F.real, F.imag]) @ self.expansion
-        rows = np.arange(_CHECKS)
-        residual[rows, _NODES + rows] -= 1.0
-        residual[_CHECKS + rows, total + _NODES + rows] -= 1.0
+        rows = np.arange(_OF.checks)
+        residual[rows, _OF.nodes + rows] -= 1.0
+        residual[_OF.checks + rows, total + _OF.nodes + rows] -= 1.0
         return residual
 
 
@@ -127,7 +123,7 @@ def _reduce(g: Array, W: Array, d: Array, rest: float, unit: float, check: Array
     outputs, misfits = np.dot(g, W.T), np.dot(g, check.T)
     half, checks = g.shape[1] // 2, len(check)
     for v in range(len(g)):
-        distance, misfit, size = 0.0, 0.0, 1e-300
+        distance, misfit, size = 0.0, 0.0, TINY
         for row in range(len(d)):
             distance += (outputs[v, row] - d[row]) ** 2
         for row in range(checks):
@@ -146,16 +142,16 @@ def excited_band(runs: Sequence[Run]) -> float:
     """
 
     def edge(run: Run) -> float:
-        segment = min(run.length, max(256, run.length // 4), 16384)
+        segment = min(run.length, max(_BAND.shortest_window, run.length // _BAND.windows), _BAND.window)
         # A step has the power of what it steps to after as long at nothing.
         command = np.concatenate([np.zeros(run.length), run.command]) if run.stepped else run.command
         frequency, power = power_density(command, run.sample_rate, segment)
         share = np.cumsum(power)
-        return float(frequency[max(1, np.searchsorted(share, 0.99 * share[-1]))])
+        return float(frequency[max(1, np.searchsorted(share, _BAND.power * share[-1]))])
 
     edges = each(edge, runs)
     nyquist = max(run.sample_rate for run in runs) / 2
-    return 2 * np.pi * min(1.25 * max(edges), 0.9 * nyquist)
+    return 2 * np.pi * min(_BAND.margin * max(edges), _BAND.most * nyquist)
 
 
 def reduced(run: Run, basis: Basis) -> ReducedRun:
@@ -164,17 +160,17 @@ def reduced(run: Run, basis: Basis) -> ReducedRun:
     columns, (gram, rounding) = len(basis.filters.D), _gram(run, basis)
     kept, nuisance = slice(0, columns + 1), slice(columns + 1, None)
     values, vectors = np.linalg.eigh(gram[nuisance, nuisance])
-    sound = values > 1e-12 * values[-1]
+    sound = values > EPSILON * values[-1]
     projection = gram[kept, nuisance] @ (vectors[:, sound] / np.sqrt(values[sound]))
     mean_free = gram[columns, columns] - gram[columns, -1] ** 2 / gram[-1, -1]
     gram = gram[kept, kept] - projection @ projection.T
     values, vectors = np.linalg.eigh(gram[:columns, :columns])
-    sound = values > max(1e-13, rounding) * values[-1]
+    sound = values > max(_OF.rounding, rounding) * values[-1]
     root = np.sqrt(values[sound])
     d = (vectors[:, sound].T @ gram[:columns, columns]) / root
     # Rows of W that no model of ordinary size can make felt are dropped: their share of d is part of the rest.
     left, strength, right = np.linalg.svd((vectors[:, sound] * root).T @ basis.expansion, full_matrices=False)
-    felt = strength > 1e-6 * strength[0]
+    felt = strength > _OF.felt * strength[0]
     d = left[:, felt].T @ d
     W = strength[felt, None] * right[felt]
     return ReducedRun(W, d, max(float(gram[columns, columns] - d @ d), 0.0), float(mean_free))
@@ -227,7 +223,7 @@ def _products(systems: Recursion, sums: Array, last: Array, record: Array, pairs
 
     def with_partner(x: Array) -> NDArray[np.complex128]:
         partner = np.zeros_like(x)
-        for start in range(0, len(x), pairs + len(_REAL)):  # the filters, then their decays
+        for start in range(0, len(x), pairs + len(_OF.real)):  # the filters, then their decays
             even, odd = x[start : start + pairs : 2], x[start + 1 : start + pairs : 2]
             partner[start : start + pairs : 2], partner[start + 1 : start + pairs : 2] = -odd, even
         return x + 1j * partner

@@ -13,6 +13,7 @@ from dataclasses import replace
 from typing import Any
 
 from ident.errors import Unusable
+from ident.fit.criteria import FIT_CRITERIA
 from ident.fit.identification import Identification
 from ident.fit.inverse_dynamics import InverseDynamics, regress
 from ident.fit.result import FitResult
@@ -24,7 +25,6 @@ from ident.words.run_name import run_name
 
 NAME = "inverse-dynamics"
 EFFECTS = ("coulomb_friction", "static_load")
-_SLACK = 1e-6  # N/m: the regression knows no spring
 
 
 class RegressedIdentification(Identification):
@@ -35,7 +35,7 @@ class RegressedIdentification(Identification):
             raise Unusable("method-does-not-fit", f"{NAME} finds mass, friction and a constant force", "method",
                            f"use it with no effect but {' and '.join(EFFECTS)}")  # fmt: skip
         self.asked, self.regression = settings, regress(matrix)
-        fixed = {**_values(self.regression), "k0": _SLACK, **settings.fixed}
+        fixed = {**_values(self.regression), "k0": FIT_CRITERIA.inverse_dynamics.slack, **settings.fixed}
         super().__init__(matrix, replace(settings, method="ga", effects=EFFECTS, fixed=fixed), report)
 
     def finish(self, state: dict[str, Any]) -> FitResult:

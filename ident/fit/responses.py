@@ -20,8 +20,10 @@ from ident.run import Run
 from ident.simulation.jit import jit
 
 Array = NDArray[np.float64]
-_LANES = 1024  # simulated in one go: what all of them share is worked out once
-_LARGEST = 1e30  # a sum of squares beyond it is of a model that ran away
+_LANES = 1024
+"""Simulated in one go: what all of them share is worked out once. No answer depends on it."""
+_LARGEST = 1e30
+"""A sum of squares beyond it is of a model that ran away. No answer depends on it: one that grows so far overflows."""
 
 
 @dataclass(frozen=True)

@@ -9,6 +9,7 @@ import numpy as np
 
 from ident.fit.result import RunError
 from ident.unstable import UNSTABLE, bounded
+from ident.words.percent import PER_CENT
 
 
 class Rmse(TypedDict):
@@ -70,5 +71,5 @@ def fit_percent(errors: Sequence[RunError], with_mean: Mapping[str, float | None
     None where there are none, or the model is unstable on one.
     """
     unstable = {one.use for one in errors if one.unstable}
-    return {use: None if error is None or use in unstable else 100.0 * (1.0 - error)
+    return {use: None if error is None or use in unstable else PER_CENT * (1.0 - error)
             for use, error in with_mean.items()}  # fmt: skip

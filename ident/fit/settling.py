@@ -8,14 +8,11 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from ident.fit.criteria import FIT_CRITERIA
 from ident.fit.normal_matrices import NormalMatrices
 
 Array = NDArray[np.float64]
-ROUNDS = 20
-"""Rounds at most in which the first states of a model are found."""
-_DAMPING = 1e-6  # of the first step that is damped
-_LESS = 1e-3  # by which the residual has to fall for a round to count
-_IN_VAIN = {False: 1, True: 4}  # rounds of one kind of steps that do not, by whether much is promised
+_OF = FIT_CRITERIA.first_states
 
 
 @dataclass(frozen=True)
@@ -27,7 +24,7 @@ class Least:
 
     start: Array
     found: NormalMatrices
-    damping: float = _DAMPING
+    damping: float = _OF.damping
     vain: int = 0
     back: bool = False
 
@@ -46,14 +43,14 @@ class Settling:
     def step(self, run: str, start: Array, found: NormalMatrices) -> tuple[Array, Array] | None:
         """From which states (n,) a run goes on, and how far along those that are free; None where they hold."""
         best = self.least.get(run) or Least(start, found)
-        vain = 0 if found.power < (1.0 - _LESS) * best.found.power else best.vain + 1
+        vain = 0 if found.power < (1.0 - _OF.helps) * best.found.power else best.vain + 1
         if found.power < best.found.power:
-            best = replace(best, start=start, found=found, vain=vain, damping=best.damping / 10.0)
+            best = replace(best, start=start, found=found, vain=vain, damping=best.damping / _OF.less)
         else:
-            best = replace(best, vain=vain, damping=best.damping * (100.0 if best.back else 1.0))
-        over = best.found.settled or best.vain > _IN_VAIN[best.found.promises]
+            best = replace(best, vain=vain, damping=best.damping * (_OF.more if best.back else 1.0))
+        over = best.found.settled or best.vain > (_OF.in_vain_of_much if best.found.promises else _OF.in_vain)
         if over and not best.back and best.found.promises:
-            best, over = replace(best, vain=0, back=True, damping=_DAMPING), False
+            best, over = replace(best, vain=0, back=True, damping=_OF.damping), False
         self.least[run] = best
         if over:
             return None
@@ -66,5 +63,5 @@ def better(ends: Sequence[Least]) -> Least:
     In saturation a position that is shifted changes nothing else.
     """
     least = min(end.found.power for end in ends)
-    as_good = [end for end in ends if end.found.power <= least + _LESS * abs(least)]
+    as_good = [end for end in ends if end.found.power <= least + _OF.helps * abs(least)]
     return min(as_good, key=lambda end: abs(end.found.offset))

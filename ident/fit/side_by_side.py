@@ -11,8 +11,9 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from ident.fit.criteria import FIT_CRITERIA
 from ident.fit.normal_matrices import NormalMatrices
-from ident.fit.settling import ROUNDS, Settling
+from ident.fit.settling import Settling
 from ident.fit.simulated_runs import SimulatedRuns
 from ident.parallel import each
 from ident.run import Run
@@ -75,7 +76,7 @@ def _settle(models: Sequence[_Model]) -> None:
     for model in models:
         model.pending = moving
     with np.errstate(over="ignore", invalid="ignore"):
-        for _ in range(ROUNDS):
+        for _ in range(FIT_CRITERIA.first_states.rounds):
             pending = [model for model in models if model.pending]
             for numbers in _alike(pending):
                 _one_round([pending[i] for i in numbers])

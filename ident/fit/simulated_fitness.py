@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from ident.cached import cached_property
 from ident.effects.effect import Effect
+from ident.fit.criteria import FIT_CRITERIA
 from ident.fit.fitness import STEP, Local, Steps, Worth, local
 from ident.fit.levenberg_marquardt import Way, levenberg_marquardt
 from ident.fit.normal_matrices import NormalMatrices
@@ -196,4 +197,9 @@ def shortened(runs: Sequence[Run], samples: int) -> tuple[Run, ...]:
     total = sum(run.length for run in runs)
     if total <= samples:
         return tuple(runs)
-    return tuple(run.part(0, max(512, run.length * samples // total)) if run.kind == "blwn" else run for run in runs)
+    return tuple(
+        run.part(0, max(FIT_CRITERIA.search.shortest_part, run.length * samples // total))
+        if run.kind == "blwn"
+        else run
+        for run in runs
+    )

@@ -20,16 +20,18 @@ from ident.chain.chain import Chain, integrates, linear_model
 from ident.chain.conditions import conditions
 from ident.effects.effect import Effect
 from ident.fit.anchoring import Anchoring
+from ident.fit.criteria import FIT_CRITERIA
 from ident.fit.first_guesses import begins_about_middle, with_followers
 from ident.fit.modes import extreme, fastest, motion
-from ident.fit.normal_matrices import NormalMatrices, first_state, normal_matrices_of
+from ident.fit.normal_matrices import NormalMatrices, block_length, first_state, normal_matrices_of
 from ident.fit.products import add_block_products, add_products, completed
 from ident.fit.reduction import excited_band
-from ident.fit.settling import ROUNDS, Least, Settling, better
+from ident.fit.settling import Least, Settling, better
 from ident.matrix import Matrix
 from ident.parallel import cores, each
 from ident.parameter import AtReversals
 from ident.presets import Preset
+from ident.rounding import TINY
 from ident.run import MOTIONS, Run
 from ident.simulation.equilibrium import equilibrium
 from ident.simulation.simulate import Simulation, side_by_side
@@ -38,12 +40,11 @@ from ident.simulation.steps import Modes, steps_at_jumps, steps_at_passages, ste
 Array = NDArray[np.float64]
 BegunOver = tuple[float, float | None]
 """The horizon and the memory (s) of the windows over which first states are found."""
-_TOGETHER = 1024  # lanes simulated in one go: what is done once for all of them costs little
-_BLOCKS = 32  # of a record: see ident.fit.normal_matrices
-_REACH = 1e-3  # of a state's size, for sensitivities to the first state
-_BLOCK = 512  # samples simulated at a time: their residuals stay in the cache of the core
-_FIRST = 16  # samples that tell where a record begins: the fewest of a window
-_BOUND = 1e3  # times all other samples of a record count these: what drifts later does not move its beginning
+_OF = FIT_CRITERIA.first_states
+_TOGETHER = 1024
+"""Lanes simulated in one go: what is done once for all of them costs little. No answer depends on it."""
+_BLOCK = 512
+"""Samples simulated at a time: their residuals stay in the cache of the core. No answer depends on it."""
 
 
 @dataclass
@@ -119,7 +120,7 @@ class SimulatedRuns:
         """
         found: dict[str, NormalMatrices] = {}
         settling, pending = Settling(), self.runs if runs is None else runs
-        for _ in range(1 if len(strides) else ROUNDS):
+        for _ in range(1 if len(strides) else _OF.rounds):
             todo = list(self.together(len(strides) + 1 + len(self.chain.begun), of=pending))
             parts = each(lambda runs: self._normal_matrices(runs, values, strides, steps), todo)
             for some, part in zip(todo, parts, strict=True):
@@ -162,7 +163,7 @@ class SimulatedRuns:
 
         J are the differences of the vectors behind the first to it, over `strides`.
         """
-        length, anchoring = max(16, -(-runs[0].length // _BLOCKS)), self.anchoring(runs[0])
+        length, anchoring = block_length(runs[0]), self.anchoring(runs[0])
         free = runs[0].output not in self.absolute
         records = np.column_stack([run.centred if free else run.measured for run in runs])
         if window := anchoring.window:
@@ -185,11 +186,11 @@ class SimulatedRuns:
 
         A constant has no part in it: what is one of the record, such as an offset, does not begin it elsewhere.
         """
-        first, measured = rows[:_FIRST], np.array([run.measured[:_FIRST] for run in runs]).T
+        first, measured = rows[: _OF.begins], np.array([run.measured[: _OF.begins] for run in runs]).T
         sums = np.zeros_like(like)
         add_products(first.mean(axis=0, keepdims=True), measured.mean(axis=0, keepdims=True), sums.shape[1] - 2, sums)
         sums[:, -2, :] = sums[:, :, -2] = 0.0
-        return sums * (_BOUND * runs[0].length)
+        return sums * (_OF.bound * runs[0].length)
 
     def anchoring(self, run: Run, count: int = 1) -> Anchoring:
         """How the windows of a run begin, of its samples or of means of `count` of them."""
@@ -387,7 +388,7 @@ class SimulatedRuns:
         for names, sizes in ((self.preset.core.states, self.sizes), (self._of_effects, self.sizes_of_effects)):
             known = [self.chain.begun.index(name) for name in names]
             reach[known] = np.where(sizes > 0, sizes, reach[known])
-        return np.asarray(_REACH * reach)
+        return np.asarray(_OF.reach * reach)
 
     # Shares ------------------------------------------------------------------------------------------------------
 
@@ -429,7 +430,7 @@ class SimulatedRuns:
         if of is AtReversals.SPEED:
             return steps_at_passages(self._way_in_a_sample * rate, size)
         moves = self._motion.get("x", 0.0) > 0 and "m0" in values
-        jumps = 2.0 * np.abs(size) / np.maximum(values["m0"] * rate**2 * self._motion["x"], 1e-300) if moves else 0.0
+        jumps = 2.0 * np.abs(size) / np.maximum(values["m0"] * rate**2 * self._motion["x"], TINY) if moves else 0.0
         return steps_at_jumps(jumps + np.zeros(len(size)))
 
     @cached_property

@@ -20,16 +20,16 @@ from ident.chain.chain import Chain
 from ident.chain.conditions import conditions
 from ident.effects.effect import Effect
 from ident.equations.equation import Equation
+from ident.fit.criteria import FIT_CRITERIA
 from ident.fit.fitness import Fitness
 from ident.fit.result import Combination
-from ident.fit.uncertainty import DETERMINED, Covariance
+from ident.fit.uncertainty import Covariance
 from ident.run import MOTIONS, Run
 
 Array = NDArray[np.float64]
 NAME = "lag to a slow command"
 _LATE = ("lag", "lag2", "delay")  # the second argument of each is its time
-_SLOW = 1e-3  # of the machine's slowest pole that does not integrate
-_STILL = 1e-6  # of the fastest pole: it integrates
+_OF = FIT_CRITERIA.determination
 
 
 def slow_lag(objective: Fitness, found: Covariance) -> Iterator[Combination]:
@@ -47,7 +47,7 @@ def slow_lag(objective: Fitness, found: Covariance) -> Iterator[Combination]:
 
     here = float(lag(found.point[None])[0])
     error = found.deviation(lag) if np.isfinite(here) and here > 0 else np.inf
-    if error < DETERMINED * here:
+    if error < _OF.determined * here:
         yield Combination(NAME, here, objective.preset.display.recorded.clock, error)
 
 
@@ -57,7 +57,7 @@ def lags(objective: Fitness, run: Run, points: Array) -> Array:
     known = {name: np.array(value) for name, value in conditions(run, objective.matrix.actuator).items()} | values
     model = core.linearise({name: np.broadcast_to(known[name], len(points)) for name in core.symbols}, run.output)
     poles = np.abs(np.linalg.eigvals(model.A))
-    omega = _SLOW * float(np.min(poles, where=poles > _STILL * poles.max(initial=0.0), initial=np.inf))
+    omega = _OF.slow * float(np.min(poles, where=poles > _OF.integrating * poles.max(initial=0.0), initial=np.inf))
     if not 0 < omega < np.inf:
         return np.full(len(points), np.nan)
     response = model.frequency_response(np.array([0.5, 1.0]) * omega / (2 * np.pi))

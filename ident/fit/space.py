@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from ident.cached import cached_property
 from ident.equations.equation import Equation
 from ident.errors import Unusable
+from ident.fit.criteria import FIT_CRITERIA
 from ident.fit.given import of_model
 from ident.fit.settings import Settings
 from ident.fit.typical import measured_by
@@ -19,13 +20,11 @@ from ident.fit.typical import typical as sizes_of
 from ident.matrix import Matrix
 from ident.presets import Preset
 from ident.presets.convention import Convention, of_runs
+from ident.rounding import TINY
 from ident.run import Run
 from ident.simulation.steps import FASTEST
 
 Array = NDArray[np.float64]
-_OF_STEPS = 10.0  # times as far as where it says much reaches the power of a single step, which falls by 1/f² alone
-_SAME_AREA = 0.02  # relative difference of piston areas that still is the same machine
-_EDGE = 1e-6  # of an axis
 
 
 @dataclass(frozen=True)
@@ -85,14 +84,15 @@ class Space:
         for i, axis in enumerate(self.axes):
             ratio = float(known[axis.name] / _scale(axis, known, self.typical))
             if axis.logarithmic:
-                point[i] = np.log(max(ratio / axis.lower, 1e-300)) / np.log(axis.upper / axis.lower)
+                point[i] = np.log(max(ratio / axis.lower, TINY)) / np.log(axis.upper / axis.lower)
             else:
                 point[i] = (ratio - axis.lower) / (axis.upper - axis.lower)
         return np.clip(point, 0.0, 1.0)
 
     def at_bound(self, name: str, point: Array) -> bool:
         """Whether a searched parameter ended at a bound of its axis."""
-        return not _EDGE < float(point[self.names.index(name)]) < 1 - _EDGE
+        edge = FIT_CRITERIA.optima.edge
+        return not edge < float(point[self.names.index(name)]) < 1 - edge
 
     def bounds(self, values: Mapping[str, float]) -> dict[str, tuple[float, float]]:
         """Lower and upper SI bound of each searched parameter, the others being at `values`."""
@@ -137,10 +137,10 @@ def search_space(preset: Preset, matrix: Matrix, settings: Settings, band: float
     given = {preset.parameter(name).in_equations: bounds for name, bounds in settings.bounds.items()}
     fixed = {preset.parameter(name).in_equations: value for name, value in settings.fixed.items()}
     area, known_for = matrix.actuator.piston_area, preset.search.bounds_hold_for
-    same = known_for is not None and area is not None and abs(area / known_for - 1) < _SAME_AREA
+    same = known_for is not None and area is not None and abs(area / known_for - 1) < FIT_CRITERIA.ranges.same_area
     same = same and _stated(preset, runs)
     if all(run.stepped for run in runs):
-        band /= _OF_STEPS
+        band /= FIT_CRITERIA.ranges.of_steps
     typical = sizes_of(matrix, runs, band)
     if preset.data.driven_by == "velocity":
         typical["V"] = typical["U"]  # the speed is prescribed, whether it was recorded or not

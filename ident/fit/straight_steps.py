@@ -16,7 +16,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
-_FARTHEST = 600.0  # ln of the factor by which a parameter may rise in a step: beyond 709 it is no number
+_FARTHEST = 600.0
+"""ln of the factor by which a parameter may rise in a step: beyond 709 it is no number. No answer depends on it."""
 
 
 def led(

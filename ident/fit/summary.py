@@ -14,7 +14,8 @@ from ident.chain.chain import integrates
 from ident.checks.missing_input import missing_inputs
 from ident.checks.unit_factor import unit_causes
 from ident.fit.contradicted import contradicting
-from ident.fit.ends import SETTLED, parted
+from ident.fit.criteria import FIT_CRITERIA
+from ident.fit.ends import parted
 from ident.fit.far_bounds import far_bounds
 from ident.fit.fitness import Fitness
 from ident.fit.information import aic
@@ -29,7 +30,7 @@ from ident.fit.simulated_fitness import SimulatedFitness
 from ident.fit.slow_answer import slow_lag
 from ident.fit.space import Space
 from ident.fit.transducer import Offset, offset_at, offsets_that_count, rest_of
-from ident.fit.uncertainty import COMBINED, DETERMINED, Covariance, covariance
+from ident.fit.uncertainty import Covariance, covariance
 from ident.matrix import Matrix
 from ident.noise.floor import Floors
 from ident.presets.preset import Combined
@@ -41,14 +42,14 @@ from ident.words.engineering import quantity
 from ident.words.error import error_said
 from ident.words.message import message
 from ident.words.messages import MESSAGES
+from ident.words.percent import PER_CENT
 from ident.words.plus_minus import determined
 from ident.words.run_name import run_name
 
-_DRAWN = 100  # parameter vectors within their standard errors
+_OF = FIT_CRITERIA.determination
 _AT_BOUND = "the estimate is at its bound: the best value is outside it"
 _VAGUE = "its standard error is {:.3g} times its value"
-_FELT = 1.001  # times the error: a strength that is not off by chance
-HARDLY = 0.8  # of the output left: no fit to be trusted
+HARDLY = _OF.hardly
 _SAID_FIRST = tuple(MESSAGES[key].partition("{")[0] for key in ("hardly", "missing_input.fit", "contradicted"))
 Array = NDArray[np.float64]
 
@@ -86,8 +87,8 @@ def summarise(
     deviation = {name: abs(values[name]) * error for name, error in relative.items()}
     deviation |= {name: found.deviation(_value(objective, name)) for name in space.names if name in strengths}
     ranges = {name: upper - lower for name, (lower, upper) in space.bounds(values).items()}
-    weak = [name for name in relative if relative[name] > DETERMINED]
-    weak += [name for name in deviation if name in strengths and deviation[name] > DETERMINED * ranges[name]]
+    weak = [name for name in relative if relative[name] > _OF.determined]
+    weak += [name for name in deviation if name in strengths and deviation[name] > _OF.determined * ranges[name]]
     vague = {
         name: deviation[name] / abs(values[name])
         for name in deviation
@@ -192,7 +193,7 @@ def _window(fitness: Fitness, point: Array, known: Covariance, left_out: tuple[s
         return None
     error: dict[str, float | None] = {"fit": None, "held_out": None, "verify": None}
     free_run: dict[str, tuple[float, ...]] = {}
-    scatter = known.drawn(_DRAWN)
+    scatter = known.drawn(_OF.drawn)
     for use in ("fit", "verify"):
         if runs := tuple(run for run in fitness.matrix.of_use(use) if run.id not in left_out):
             found = fitness.fresh(runs).exact(point, sensitivities=False).runs
@@ -201,7 +202,7 @@ def _window(fitness: Fitness, point: Array, known: Covariance, left_out: tuple[s
                 [run.errors_beside(scatter) for run in fitness.whole().fresh(runs).exact(point).runs], runs
             )
             if np.all(np.isfinite(free)):  # a free run that goes astray has no interval
-                free_run[use] = tuple(float(end) for end in np.quantile(free, (0.025, 0.975)))
+                free_run[use] = tuple(float(end) for end in np.quantile(free, _OF.interval))
     clock = fitness.preset.display.recorded.clock
     return Window(fitness.horizon, error, free_run, fitness.memory, clock if clock == SAMPLE else "")
 
@@ -254,7 +255,7 @@ def _determined(
     for name, error in relative.items():
         shared = {n for one in space.conventions for n in one.shared}
         if (
-            error <= DETERMINED
+            error <= _OF.determined
             and name not in (*shared, *bounded)
             and not (space.convention and name in objective.preset.data.share_force)
         ):
@@ -268,7 +269,7 @@ def _determined(
 
         error = found.relative(quantity)
         open_ = any(one.held.keys() & combined.equation.names for one in space.conventions)
-        if error <= (DETERMINED if open_ else COMBINED):  # all that is known of what a convention holds
+        if error <= (_OF.determined if open_ else _OF.combined):  # all that is known of what a convention holds
             value = float(quantity(found.point[None])[0])
             unit = objective.preset.display.recorded.shown(combined.unit)
             yield Combination(combined.text.replace("**", "^"), value, unit, abs(value) * error)
@@ -291,8 +292,8 @@ def _reason(objective: Fitness, name: str, relative: Mapping[str, float], point:
         return "every value within its bounds explains these runs equally well"
     size = (
         "no influence on these runs"
-        if relative[name] > 10
-        else f"standard error {100 * relative[name]:.0f} % of the value"
+        if relative[name] > _OF.no_influence
+        else f"standard error {PER_CENT * relative[name]:.0f} % of the value"
     )
     return f"{size}; correlated with other parameters (see the identifiable combinations)"
 
@@ -302,7 +303,7 @@ def _felt(objective: Fitness, name: str, point: Array) -> bool:
     space = objective.space
     off = space.point({n: 0.0 if n == name else float(value[0]) for n, value in space.values(point[None]).items()})
     here, without = objective.errors(np.stack([point, off]))
-    return bool(without > _FELT * here)
+    return bool(without > _OF.felt * here)
 
 
 def _notes(
@@ -430,7 +431,7 @@ def _fast_modes(objective: Fitness, point: Array, state: Mapping[str, Any], sear
 
 def _alone(starts: Starts | None) -> Iterator[str]:
     """What is said of an optimum that hardly a start came to."""
-    if starts and starts.agree < min(SETTLED, starts.tried):
+    if starts and starts.agree < min(FIT_CRITERIA.optima.settled, starts.tried):
         yield (
             f"Only {starts.agree} of {starts.tried} optimiser starts reached this error, so a better optimum may "
             "exist. Try another seed."

@@ -22,13 +22,14 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from ident.fit.normal_matrices import RECOGNISED, TOLD, NormalMatrices
+from ident.fit.criteria import FIT_CRITERIA
+from ident.fit.normal_matrices import NormalMatrices
+from ident.rounding import EPSILON, TINY
 from ident.run import Run, over_runs
 from ident.words.error import MEAN_COUNTS
 
 Array = NDArray[np.float64]
-_ROUNDS = 200  # of reweighting
-_SETTLED = 1e-13  # of the largest mean: a step that changes nothing
+_OF = FIT_CRITERIA.offsets
 
 
 @dataclass(frozen=True)
@@ -49,7 +50,7 @@ class Offset:
 
         A large one may be chance where weak parameters move the mean, but no user wants the error that it makes.
         """
-        return self.stated or self.large or abs(self.value) > RECOGNISED * self.std_error
+        return self.stated or self.large or abs(self.value) > _OF.recognised * self.std_error
 
 
 class Read(Protocol):
@@ -103,8 +104,8 @@ def offset_of(runs: Sequence[NormalMatrices]) -> float:
 
 def _best(runs: Sequence[NormalMatrices], prior: _Prior) -> float:
     means = np.array([run.means[-1] for run in runs])
-    b, least = float(np.median(means)), _SETTLED * float(np.abs(means).max())
-    for _ in range(_ROUNDS if len(runs) > 1 or prior.std_error < np.inf else 0):
+    b, least = float(np.median(means)), _OF.still * float(np.abs(means).max())
+    for _ in range(_OF.rounds if len(runs) > 1 or prior.std_error < np.inf else 0):
         weights = np.array([_weight(run, b) for run in runs])
         told = prior.share(weights.tolist(), runs, b)
         last, b = b, (1.0 - told) * float((means * weights).sum() / weights.sum()) + told * prior.value
@@ -202,9 +203,11 @@ def is_large(runs: Sequence[NormalMatrices]) -> bool:
 
 def _solved(curvature: Array, slope: Array) -> Array:
     """H⁻¹ s along the directions that the data see."""
-    scale = np.sqrt(np.maximum(np.diag(curvature), 1e-300))
+    scale = np.sqrt(np.maximum(np.diag(curvature), TINY))
     return np.asarray(
-        np.linalg.pinv(curvature / scale / scale[:, None], 1e-9, hermitian=True) @ (slope / scale) / scale
+        np.linalg.pinv(curvature / scale / scale[:, None], FIT_CRITERIA.determination.lost, hermitian=True)
+        @ (slope / scale)
+        / scale
     )
 
 
@@ -215,13 +218,13 @@ def _weight(run: NormalMatrices, b: float) -> float:
 
 def _power(run: NormalMatrices, b: float) -> float:
     """Σ of the squares of the residual about an offset."""
-    return float(max(run.centred + run.informing * (run.means[-1] - b) ** 2, 1e-24 * run.total))
+    return float(max(run.centred + run.informing * (run.means[-1] - b) ** 2, EPSILON**2 * run.total))
 
 
 def _by_transducer(runs: Sequence[NormalMatrices], asked: Sequence[bool]) -> Mapping[str, list[int]]:
     """The numbers of the runs that are asked for, by their transducer: those that tell a mean of a shared offset."""
     found: dict[str, list[int]] = {}
     for i, (run, is_asked) in enumerate(zip(runs, asked, strict=True)):
-        if is_asked and run.transducer and run.informing > TOLD * run.length:
+        if is_asked and run.transducer and run.informing > _OF.told * run.length:
             found.setdefault(run.transducer, []).append(i)
     return found

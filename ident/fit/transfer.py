@@ -33,7 +33,7 @@ def values_at(
     runs, count = model.system.shape[2:]
     flat, kernel, scaled_nodes = model.system.reshape(-1), _kernel(pattern), nodes / band
     for run in range(runs):
-        polynomials, out = np.empty((2 * n + 3) * count), np.empty((count, 2 * len(nodes)))
+        polynomials, out = np.empty((2 * (n + 1) + 1) * count), np.empty((count, 2 * len(nodes)))
         kernel(flat, scaled_nodes, 1.0 / band, polynomials, out, run * count, count, runs * count)
         yield out, polynomials[-count:] > 0
 

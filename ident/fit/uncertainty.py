@@ -14,14 +14,13 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
+from ident.fit.criteria import FIT_CRITERIA
 from ident.fit.levenberg_marquardt import Shape
+from ident.rounding import EPSILON, TINY
 
 Array = NDArray[np.float64]
-_LOST = 1e-9  # relative to the largest eigenvalue of the scaled H: below it a direction is not determined at all
-_BLIND = 1e4  # logarithmic standard deviation that stands for "not at all"
-_STRAIGHT = 3e-5  # of a slope: three times the error of a difference over a stride of the search
-DETERMINED = 0.5  # largest relative standard error that still is knowledge
-COMBINED = 0.1  # for a combination, which has to be worth reporting
+_OF = FIT_CRITERIA.determination
+DETERMINED = _OF.determined
 
 
 class Scattered(Shape, Protocol):
@@ -66,7 +65,7 @@ class Covariance:
     def correlation(self, quantities: Mapping[str, Callable[[Array], Array]]) -> dict[str, dict[str, float]]:
         """Correlations of quantities by name."""
         slopes = {name: self._slope(q) for name, q in quantities.items()}
-        deviation = {name: np.sqrt(max(self._joint(d, d), 1e-300)) for name, d in slopes.items()}
+        deviation = {name: np.sqrt(max(self._joint(d, d), TINY)) for name, d in slopes.items()}
         return {
             a: {b: float(np.clip(self._joint(df, dg) / deviation[a] / deviation[b], -1, 1)) for b, dg in slopes.items()}
             for a, df in slopes.items()
@@ -75,13 +74,13 @@ class Covariance:
     def _joint(self, df: Array, dg: Array) -> float:
         # A direction is known as well as differences tell it: what moves by less along a blind one is not blind.
         lost = [
-            np.where(np.abs(d) > _STRAIGHT * np.linalg.norm(h), d, 0.0)
+            np.where(np.abs(d) > _OF.straight * np.linalg.norm(h), d, 0.0)
             for h, d in ((df, df @ self.blind), (dg, dg @ self.blind))
         ]
-        return float(df @ self.seen @ dg + _BLIND**2 * (lost[0] @ lost[1]))
+        return float(df @ self.seen @ dg + _OF.blind**2 * (lost[0] @ lost[1]))
 
     def _slope(self, quantity: Callable[[Array], Array]) -> Array:
-        p, step = len(self.point), 1e-6
+        p, step = len(self.point), _OF.step
         ends = quantity(np.concatenate([self.point + step * np.eye(p), self.point - step * np.eye(p)]))
         return np.asarray((ends[:p] - ends[p:]) / (2 * step))
 
@@ -98,9 +97,9 @@ def covariance(here: Scattered, point: Array, valley: Array | None = None, scatt
     blocks = len(here.scores)
     # The optimum makes the scores of the blocks sum to zero in p directions: so much less do they scatter (HC1).
     S = here.scores.T @ here.scores * (blocks / (blocks - p) if blocks > p else 1.0) if scatter is None else scatter
-    scale = np.sqrt(np.maximum(np.diag(H), 1e-12 * max(np.diag(H).max(), 1e-300)))
+    scale = np.sqrt(np.maximum(np.diag(H), EPSILON * max(np.diag(H).max(), TINY)))
     strengths, directions = np.linalg.eigh(H / scale[:, None] / scale)
-    seen = strengths > _LOST * strengths[-1]
+    seen = strengths > _OF.lost * strengths[-1]
     inverse = (directions[:, seen] / strengths[seen]) @ directions[:, seen].T / scale[:, None] / scale
     blind = directions[:, ~seen] * (scale.min() / scale)[:, None]  # of any length
-    return Covariance(point, inverse @ S @ inverse, blind / np.maximum(np.linalg.norm(blind, axis=0), 1e-300), valley)
+    return Covariance(point, inverse @ S @ inverse, blind / np.maximum(np.linalg.norm(blind, axis=0), TINY), valley)

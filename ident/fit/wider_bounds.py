@@ -12,21 +12,17 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from ident.fit.ends import AGREE
+from ident.fit.criteria import FIT_CRITERIA
 from ident.fit.fitness import Fitness
 from ident.fit.linear_fitness import LinearFitness
 from ident.fit.multistart import Beyond, Optimum, multistart
 from ident.fit.simulated_fitness import SimulatedFitness
 from ident.fit.space import Axis, Space
 from ident.progress import Report
+from ident.rounding import EPSILON
 
 Array = NDArray[np.float64]
-FURTHER = 10.0
-"""Times as far reaches a range that was too narrow. Why: a decade is a step that a polish takes at once."""
-ROUNDS = 3
-"""Times that a range is widened at most: a thousandfold. Why: beyond it the parameter is not seen, and at its bound."""
-EPSILON = 1e-12
-"""Of a range: so far rounding may move a value at its bound. Test: tests/fit/test_wider_bounds.py"""
+_OF = FIT_CRITERIA.ranges
 WIDENED = ("kg", "s")
 """Units of what is searched beyond its bound: masses, lags and delays. A ratio at its bound says what it is."""
 
@@ -42,7 +38,7 @@ def beyond_bounds(
     which it is searched, too, where the first starts do not end together.
     """
     best, stated = found, {*given, *_stated(objective)}
-    for _ in range(ROUNDS):
+    for _ in range(_OF.rounds):
         space, count = best.fitness.space, best.fitness.evaluations
         names = [name for name in _at_end(best) if name not in stated]
         if not names or not space.scale_free:
@@ -51,7 +47,7 @@ def beyond_bounds(
         wider = wider_at(space, best.point, names)
         over = _over(objective, wider, count)
         trial = multistart(_over(searched, wider, 0), over, list(_starts(best, wider, values, names)), report, drawn)
-        if not trial.here.error < best.here.error * (1.0 - AGREE):
+        if not trial.here.error < best.here.error * (1.0 - FIT_CRITERIA.optima.agree):
             best.fitness.evaluations = trial.fitness.evaluations
             break
         bounds = space.bounds(values)
@@ -70,7 +66,7 @@ def wider_at(space: Space, point: Array, names: Collection[str]) -> Space:
 
 def reaching(space: Space, values: Mapping[str, float], names: Collection[str]) -> Space:
     """The space, with the axes of these parameters reaching as far as `values`, a decade at a time."""
-    for _ in range(ROUNDS):
+    for _ in range(_OF.rounds):
         bounds = space.bounds(values)
         beyond = [name for name in names if _is_beyond(values[name], *bounds[name])]
         if not beyond:
@@ -119,8 +115,8 @@ def _upper(best: Optimum, name: str) -> bool:
 
 def _wider(axis: Axis, upwards: bool) -> Axis:
     if upwards:
-        return replace(axis, upper=axis.upper * FURTHER)
-    return replace(axis, lower=axis.lower * FURTHER if axis.lower < 0 else axis.lower / FURTHER)
+        return replace(axis, upper=axis.upper * _OF.further)
+    return replace(axis, lower=axis.lower * _OF.further if axis.lower < 0 else axis.lower / _OF.further)
 
 
 def _over(fitness: Fitness, space: Space, evaluations: int) -> Fitness:

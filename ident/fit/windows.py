@@ -19,6 +19,7 @@ from ident.chain.chain import linear_model
 from ident.chain.conditions import zeros
 from ident.effects.effect import off_values
 from ident.fit.anchoring import innovations
+from ident.fit.criteria import FIT_CRITERIA
 from ident.fit.ends import End
 from ident.fit.levenberg_marquardt import STEPS
 from ident.fit.multistart import Optimum
@@ -28,13 +29,8 @@ from ident.progress import Progress, Report
 from ident.run import Run
 
 Array = NDArray[np.float64]
-_TIMES = (1.0, 3.0, 10.0)  # of the slowest time constant that does not integrate
-_LEAST = 16  # samples of a window
-_PARTS = 4  # windows of a record at least
-_GAINS = np.logspace(-4.0, 0.0, 25)
-_LONGER = 1.5  # times a horizon: another one
-_STILL = 1e-6  # of the fastest mode: it integrates
-_BRIEFEST, _MEMORIES = 0.3, 25  # samples of the briefest memory of a speed's filter, and how many are tried
+_OF = FIT_CRITERIA.windows
+_GAINS = np.logspace(np.log10(_OF.least_gain), 0.0, _OF.gains)
 
 
 def in_windows(optimum: Optimum, report: Report, whole: bool = True) -> Optimum:
@@ -129,7 +125,7 @@ def longer(fitness: SimulatedFitness, point: Array) -> list[float | None]:
     if own is None:
         return []
     _, horizons = _begun_anew(fitness, point)
-    return [*(each for each in horizons if each > _LONGER * own), None]
+    return [*(each for each in horizons if each > _OF.longer * own), None]
 
 
 def _left(fitness: SimulatedFitness, point: Array, memory: float | None) -> float:
@@ -159,7 +155,7 @@ def _most_likely(fitness: SimulatedFitness, left: dict[str, Array]) -> tuple[flo
     """The memory (s) of the speed's filter by which least of residuals is unforeseen, and its mean logarithm."""
     fastest, longest = max(run.sample_rate for run in fitness.runs), min(run.duration for run in fitness.runs)
     tried = []
-    for memory in np.geomspace(_BRIEFEST / fastest, longest, _MEMORIES):
+    for memory in np.geomspace(_OF.briefest / fastest, longest, _OF.memories):
         with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
             found = [np.mean(innovations(left[r.id], memory * r.sample_rate) ** 2) for r in fitness.runs]
             score = float(np.mean(np.log(found)))
@@ -175,7 +171,7 @@ def _begun_anew(fitness: SimulatedFitness, point: Array) -> tuple[float | None, 
     """
     values = {name: float(value[0]) for name, value in fitness.space.values(point[None]).items()}
     longest = _longest(fitness)
-    least = _LEAST / min(run.sample_rate for run in fitness.runs)
+    least = FIT_CRITERIA.first_states.begins / min(run.sample_rate for run in fitness.runs)
     times = [_time_constants(fitness, values, run) for run in fitness.runs]
     lasting = max(sum(t > longest for t in of) for of in times)
     slowest = max((t for of in times for t in of if t <= longest), default=0.0)
@@ -184,12 +180,12 @@ def _begun_anew(fitness: SimulatedFitness, point: Array) -> tuple[float | None, 
         outputs = fitness.outputs(point)
         memory, _ = _most_likely(fitness, {run.id: run.measured - outputs[run.id] for run in fitness.runs})
         slowest = max(slowest, memory)
-    return memory, sorted({h for share in _TIMES if (h := max(share * slowest, least)) <= longest})
+    return memory, sorted({h for share in _OF.times if (h := max(share * slowest, least)) <= longest})
 
 
 def _longest(fitness: SimulatedFitness) -> float:
     """The length of the longest window, s: what lasts longer lasts as long as a run."""
-    return min(run.duration for run in fitness.runs) / _PARTS
+    return min(run.duration for run in fitness.runs) / _OF.parts
 
 
 def _time_constants(fitness: SimulatedFitness, values: dict[str, float], run: Run) -> list[float]:
@@ -197,6 +193,6 @@ def _time_constants(fitness: SimulatedFitness, values: dict[str, float], run: Ru
     seen = fitness.preset.core.observed(run.output, zeros(run, fitness.matrix.actuator))
     model = linear_model(fitness.preset.core, values, run, fitness.matrix.actuator).of_states(seen)
     size = np.abs(np.linalg.eigvals(model.A[0]))
-    integrating = size <= _STILL * size.max(initial=0.0)
+    integrating = size <= FIT_CRITERIA.determination.integrating * size.max(initial=0.0)
     with np.errstate(divide="ignore"):
         return list(np.where(integrating, np.inf, 1.0 / size))

@@ -13,10 +13,13 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from ident.noise.criteria import NOISE_CRITERIA
+from ident.rounding import EPSILON
+
 Array = NDArray[np.float64]
-_ORDER = 32  # samples of the past; of a short record a tenth
-_BLOCK = 65_536  # samples at a time: records may be long
-_FLAT = 1e-12  # of the largest: a combination of past values that does not move
+_OF = NOISE_CRITERIA.innovations
+_BLOCK = 65_536
+"""Samples at a time: records may be long. No answer depends on it, but for rounding."""
 
 
 def prediction_errors(residual: Array) -> Array:
@@ -40,14 +43,14 @@ class Autoregression:
     def of(cls, series: Array) -> Autoregression:
         """The equation of a series (n,) without its mean, by least squares."""
         n = len(series)
-        order, steps = min(_ORDER, n // 10), _steps(series)
-        scale = max(float(np.abs(steps).max(initial=0.0)), _FLAT)
+        order, steps = min(_OF.order, n // _OF.samples_of_a_coefficient), _steps(series)
+        scale = max(float(np.abs(steps).max(initial=0.0)), EPSILON)
         gram, cross, scaled = np.zeros((order, order)), np.zeros(order), steps / scale
         for block in _slices(order, n):
             past = _past(series, scaled, order, block)
             gram += past.T @ past
             cross += past.T @ steps[block]
-        return cls(np.linalg.lstsq(gram, cross, rcond=_FLAT)[0] if order else cross, scale)
+        return cls(np.linalg.lstsq(gram, cross, rcond=EPSILON)[0] if order else cross, scale)
 
     @property
     def polynomial(self) -> Array:

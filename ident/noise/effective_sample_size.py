@@ -6,6 +6,8 @@ import numpy as np
 import scipy.fft
 from numpy.typing import NDArray
 
+from ident.noise.criteria import NOISE_CRITERIA
+
 Array = NDArray[np.float64]
 
 
@@ -14,7 +16,7 @@ def independent_samples(residual: Array) -> float:
     n, r = len(residual), residual - residual.mean()
     length = scipy.fft.next_fast_len(2 * n, real=True)
     power = np.abs(scipy.fft.rfft(r, length)) ** 2
-    correlation = scipy.fft.irfft(power, length)[: max(n // 4, 1)]
+    correlation = scipy.fft.irfft(power, length)[: max(int(NOISE_CRITERIA.innovations.lags * n), 1)]
     if not correlation[0] > 0:
         return float(n)
     rho = correlation / correlation[0]

@@ -13,18 +13,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ident.matrix import Matrix
+from ident.noise.criteria import NOISE_CRITERIA
 from ident.noise.effective_sample_size import independent_samples
-from ident.noise.periodic import EFFICIENCY, fundamental, periodic_noise
+from ident.noise.periodic import fundamental, periodic_noise
 from ident.noise.power_density import power_density
 from ident.noise.repeats import Repeat, repeated
 from ident.parallel import each
 from ident.run import USES, Run, over_runs
 
 Array = NDArray[np.float64]
-_CLEAR = 1.6  # times the band edge: beyond it a Hann window lets less than 1e-6 of the band's power through
-_LEAST = 0.2  # of the Nyquist frequency must be left above that, to average over
+_OF = NOISE_CRITERIA.spectral_floor
 _UPPER_HALF = 0.5  # of the spectrum shows the noise
-_FEW, _OF_ONE_SIZE = 3, 0.02  # records, and their spread in logarithms, from which nothing is told of the noise's size
 
 
 def noise_floor(run: Run, band: float) -> float | None:
@@ -34,16 +33,16 @@ def noise_floor(run: Run, band: float) -> float | None:
     frequencies: exact for white noise, a lower bound for noise that lives in the band. Of a record that a periodic
     command made it is what differs between samples of one phase.
     """
-    nyquist, clear = run.sample_rate / 2, _CLEAR * band / (2 * np.pi)
-    if clear > (1 - _LEAST) * nyquist or run.length < 256:
+    nyquist, clear = run.sample_rate / 2, _OF.clear * band / (2 * np.pi)
+    if clear > (1 - _OF.free) * nyquist or run.length < _OF.shortest:
         return None
     periodic = None if "command" not in run.channels else periodic_noise(run.command, run.measured, run.sample_rate)
     if periodic is not None:
         return periodic / float(np.std(run.measured))
-    segment = min(run.length, 8192)
+    segment = min(run.length, _OF.window)
     frequency, power = power_density(run.measured, run.sample_rate, segment)
     # Kinks of friction and dead zones reach far beyond the command's band; half-way up they are gone.
-    density = float(np.mean(power[(frequency > max(clear, nyquist / 2)) & (frequency < 0.98 * nyquist)]))
+    density = float(np.mean(power[(frequency > max(clear, _UPPER_HALF * nyquist)) & (frequency < _OF.end * nyquist)]))
     return float(np.sqrt(density * nyquist) / np.std(run.measured))
 
 
@@ -117,7 +116,10 @@ def noise_floors(runs: Sequence[Run], band: float, left_out: Collection[str] = (
 def _of_one_output(runs: Sequence[Run], pairs: Sequence[Repeat], band: float) -> Floors:
     if not pairs:
         fitted = [(run.length, _is_periodic(run)) for run in runs if run.use == "fit"]
-        degrees_of_freedom = sum(length * (EFFICIENCY if periodic else _UPPER_HALF) for length, periodic in fitted)
+        degrees_of_freedom = sum(
+            length * (NOISE_CRITERIA.periodic_noise.efficiency if periodic else _UPPER_HALF)
+            for length, periodic in fitted
+        )
         in_band = bool(fitted) and all(periodic for _, periodic in fitted)
         seen = zip(runs, by_spectrum(runs, band), strict=True)
         return Floors({run.id: floor for run, floor in seen}, max(degrees_of_freedom, 1.0), in_band=in_band)
@@ -141,6 +143,6 @@ def like_transducer(sizes: Array, floors: Sequence[float | None]) -> bool | None
     `sizes` are standard deviations, `floors` those of the noise over them. None where that cannot be told.
     """
     known = np.array([np.nan if floor is None else floor for floor in floors])
-    if len(sizes) < _FEW or not np.all(known > 0) or np.std(np.log(sizes)) < _OF_ONE_SIZE:
+    if len(sizes) < _OF.fewest or not np.all(known > 0) or np.std(np.log(sizes)) < _OF.spread:
         return None
     return bool(np.std(np.log(known * sizes)) < np.std(np.log(known)))

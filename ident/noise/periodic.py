@@ -15,19 +15,15 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from ident.noise.criteria import NOISE_CRITERIA
+from ident.rounding import TINY
+
 Array = NDArray[np.float64]
-PERIODS = 4
-"""Periods from which a record tells what repeats."""
-EFFICIENCY = 0.25
-"""Independent samples that an estimate is worth, over those that it is made of: a median of residuals that have two of
-three samples in common."""
-_PERIODS_OF_A_THIRD, _SAMPLES_OF_A_THIRD = 4.5, 256
-"""Of a record, from which each third is looked at by itself: the first may hold a start."""
-_NOT_REPEATED = 0.05
-"""Of a periodic command's standard deviation what differs between samples of one phase, at most: a sensor's noise."""
-_FUNDAMENTAL, _MAIN_LOBE = 0.5, 3
-"""Of a periodic command's power what its highest line has, at least, within so many bins: of repeated steps 0.8."""
-_NORMAL = 0.6745  # the median of |e| over the standard deviation, of normal noise
+_OF = NOISE_CRITERIA.periodic_noise
+_MAIN_LOBE = 3
+"""Bins from the top of a line to where its main lobe ends, under the window of Blackman (Harris 1978)."""
+_NORMAL = 0.6745
+"""The median of |e| over the standard deviation, of normal noise (Hampel 1974)."""
 
 
 def fundamental(signal: Array, sample_rate: float) -> float | None:
@@ -40,10 +36,10 @@ def fundamental(signal: Array, sample_rate: float) -> float | None:
     spectrum = np.abs(np.fft.rfft(_windowed(signal))) ** 2
     highest = int(np.argmax(spectrum[1:])) + 1
     line = spectrum[max(highest - _MAIN_LOBE, 1) : highest + _MAIN_LOBE + 1].sum()
-    if highest < PERIODS or highest >= n // 4 or line < _FUNDAMENTAL * spectrum[1:].sum():
+    if highest < _OF.periods or highest >= n // _OF.samples_of_a_period or line < _OF.highest_line * spectrum[1:].sum():
         return None
     cycles = line_frequency(signal, highest + _between_bins(spectrum, highest))
-    return cycles * sample_rate / n if not_repeated(signal, cycles / n) < _NOT_REPEATED * np.std(signal) else None
+    return cycles * sample_rate / n if not_repeated(signal, cycles / n) < _OF.not_repeated * np.std(signal) else None
 
 
 def line_frequency(signal: Array, cycles: float) -> float:
@@ -68,7 +64,9 @@ def periodic_noise(command: Array, measured: Array, sample_rate: float) -> float
     base = fundamental(command, sample_rate)
     if base is None:
         return None
-    count = 3 if len(command) > 3 * max(_PERIODS_OF_A_THIRD * sample_rate / base, _SAMPLES_OF_A_THIRD) else 1
+    # Half a period more than are asked for, so that the highest line of a part does not lie a bin below them.
+    least = max((_OF.periods + 0.5) * sample_rate / base, NOISE_CRITERIA.spectral_floor.shortest)
+    count = _OF.parts if len(command) > _OF.parts * least else 1
     found = []
     for u, y in zip(np.array_split(command, count), np.array_split(measured, count), strict=True):
         periods = {base, fundamental(u, sample_rate) or base}
@@ -93,13 +91,13 @@ def not_repeated(signal: Array, frequency: float) -> float:
 
 
 def _windowed(signal: Array) -> Array:
-    """A signal less its mean under Blackman's window, whose side lobes lie 58 dB below its main lobe."""
+    """A signal less its mean under Blackman's window, whose side lobes lie 58 dB below its main lobe (Harris 1978)."""
     phase = 2 * np.pi * np.arange(len(signal)) / len(signal)
     return np.asarray((signal - signal.mean()) * (0.42 - 0.5 * np.cos(phase) + 0.08 * np.cos(2 * phase)))
 
 
 def _between_bins(power: Array, highest: int) -> float:
     """By how many bins a line is off the highest bin: the top of a parabola through the logarithms of three."""
-    left, top, right = np.log(np.maximum(power[highest - 1 : highest + 2], 1e-300))
+    left, top, right = np.log(np.maximum(power[highest - 1 : highest + 2], TINY))
     bend = left - 2 * top + right
     return float(0.5 * (left - right) / bend) if bend < 0 else 0.0

@@ -1,10 +1,10 @@
 """Whether two runs repeat one measurement: the one rule, used by the noise floor and by the checks.
 
 Two runs repeat each other if sample rate, length and every measured input agree sample by sample: the RMS of the
-difference of the inputs, mean counted, is at most `EXACT` of their standard deviation, or at most `NOISES` times the
-noise with which they were recorded. Labels (specimen, gain, amplitude …) can only part runs: two that are labelled
-alike but were commanded differently are no repeats. A trigger that came up to `MOST_SHIFT` samples earlier or later is
-taken out.
+difference of the inputs, mean counted, is at most `exact` of their standard deviation, or at most `noises` times the
+noise with which they were recorded (:class:`ident.noise.criteria.Repeats`). Labels (specimen, gain, amplitude …) can
+only part runs: two that are labelled alike but were commanded differently are no repeats. A trigger that came up to
+`shift` samples earlier or later is taken out.
 """
 
 from __future__ import annotations
@@ -16,26 +16,16 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ident.beginning import ROUNDING
+from ident.noise.criteria import NOISE_CRITERIA
+from ident.rounding import ROUNDING
 from ident.run import BENCH, DISTURBANCES, MOTIONS, Run
 
 Array = NDArray[np.float64]
 
-EXACT = 1e-3
-"""RMS difference of two inputs over their standard deviation, up to which they are one: what 10 bits round."""
-NOISES = 3.0
-"""RMS difference of two recorded inputs over the noise of each; the noise of two makes 1.4 of it."""
-MOST_NOISE = 0.05
-"""Noise of a recorded input over its standard deviation. Above it a random input cannot be told from its noise."""
-MOST_SHIFT = 5
-"""Samples by which one record may begin later than the other, and by which their lengths may differ."""
-SETTLED = 0.1
-"""Share of a record, from its first sample on, in which the states that it begins with die away."""
-_MOST_OF_A_RECORD = 0.05  # that a shift may take: of fewer than 100 samples it is less than MOST_SHIFT
-_NO_CHANCE = 0.9  # RMS difference with a shift over that without: noise alone makes less of a difference in 100 samples
-_CLOCKS_APART = 0.5  # samples between the ends of two records of one clock, at most
-_SAME_START = 0.05  # of the way that a step goes
-_GLANCE, _FAR = 64, 0.5  # samples that show most inputs to be different, and the RMS over the deviation that says so
+_OF = NOISE_CRITERIA.repeats
+_GLANCE = 64
+"""Samples that show most inputs to be different. No answer depends on it: inputs that are one differ by far less than
+half of their size."""
 _DRIVES = ("command", "drive_force", *MOTIONS)
 
 
@@ -49,7 +39,7 @@ class Repeat(NamedTuple):
     def outputs(self) -> tuple[Array, Array]:
         """The outputs of both over the samples that they have in common, once they have settled, (n,) each."""
         x, y = overlap(self.first.measured, self.second.measured, self.shift)
-        settled = int(SETTLED * len(x))
+        settled = int(_OF.settled * len(x))
         return x[settled:], y[settled:]
 
     def difference(self) -> Array:
@@ -104,7 +94,7 @@ def recording_noise(u: Array, v: Array) -> float:
     offset and a gain are no noise), is judged by its mean square successive difference (von Neumann 1941), half of
     which is the variance of white noise: σ² = ½ · ½ ⟨(d[k+1] − d[k])²⟩, the first ½ since d has the noise of both.
     Noise that a filter ahead of the recorder smooths is underestimated: with a cut-off at 0.4 of the Nyquist
-    frequency by a half, which `NOISES` makes up for.
+    frequency by a half, which `noises` makes up for.
     """
     inputs, difference = 0.5 * (u + v), u - v
     inputs, difference = inputs - inputs.mean(), difference - difference.mean()
@@ -123,7 +113,7 @@ def _outputs(runs: Sequence[Run]) -> dict[str, set[str]]:
 
 
 def _repeat(a: Run, b: Run, outputs: dict[str, set[str]]) -> Repeat | None:
-    if abs(a.length - b.length) > MOST_SHIFT or not _of_one_clock(a, b):
+    if abs(a.length - b.length) > _OF.shift or not _of_one_clock(a, b):
         return None
     names = _inputs(a, outputs[a.record or a.id])
     if names != _inputs(b, outputs[b.record or b.id]) or any(a.units.get(n) != b.units.get(n) for n in names):
@@ -141,7 +131,8 @@ def _repeat(a: Run, b: Run, outputs: dict[str, set[str]]) -> Repeat | None:
 
 
 def _of_one_clock(a: Run, b: Run) -> bool:
-    return abs(a.sample_rate - b.sample_rate) * a.length <= _CLOCKS_APART * a.sample_rate
+    """Whether the ends of two records are less than half a sample apart."""
+    return abs(a.sample_rate - b.sample_rate) * a.length <= 0.5 * a.sample_rate
 
 
 def _inputs(run: Run, outputs: set[str]) -> list[str]:
@@ -156,7 +147,7 @@ def _near_at_a_glance(u: Array, v: Array) -> bool:
     at = np.linspace(most, count - 1 - most, _GLANCE).astype(int)
     shifted = v[at + np.arange(-most, most + 1)[:, None]]
     apart = np.sqrt(np.mean((shifted - u[at]) ** 2, axis=1)).min()
-    return bool(apart <= _FAR * _size(u, v))
+    return bool(apart <= 0.5 * _size(u, v))
 
 
 def _shift(u: Array, v: Array) -> int:
@@ -164,20 +155,20 @@ def _shift(u: Array, v: Array) -> int:
     most = _most_shift(u, v)
     apart = {shift: _rms(*overlap(u, v, shift)) for shift in sorted(range(-most, most + 1), key=abs)}
     best = min(apart, key=lambda shift: apart[shift])
-    return best if apart[best] < _NO_CHANCE * apart[0] else 0
+    return best if apart[best] < _OF.less_by_a_shift * apart[0] else 0
 
 
 def _most_shift(u: Array, v: Array) -> int:
-    return min(MOST_SHIFT, int(_MOST_OF_A_RECORD * min(len(u), len(v))))
+    return min(_OF.shift, int(_OF.shift_of_a_record * min(len(u), len(v))))
 
 
 def _agree(u: Array, v: Array) -> bool:
     """Whether two inputs are one, sample by sample."""
     apart, size = _rms(u, v), _size(u, v)
-    if apart <= EXACT * size:
+    if apart <= _OF.exact * size:
         return True
     noise = recording_noise(u, v)
-    return noise <= MOST_NOISE * size and apart <= NOISES * noise
+    return noise <= _OF.most_noise * size and apart <= _OF.noises * noise
 
 
 def _rms(u: Array, v: Array) -> float:
@@ -194,7 +185,7 @@ def _size(u: Array, v: Array) -> float:
 def _same_start(a: Run, b: Run) -> bool:
     """Whether two outputs begin at one place: a step that was held before the record began is to one level from it."""
     size = max(np.ptp(a.measured), np.ptp(b.measured))
-    return bool(abs(a.measured[0] - b.measured[0]) <= _SAME_START * size)
+    return bool(abs(a.measured[0] - b.measured[0]) <= _OF.same_start * size)
 
 
 def groups(pairs: Sequence[Repeat]) -> Iterator[dict[str, int]]:

@@ -6,6 +6,8 @@ import math
 
 from ident.words.number import fixed, places, plain
 
+PER_CENT = 100.0
+"""Of a whole. No answer depends on it: a unit."""
 _DECIMALS = 3  # in print, where a column of numbers stays narrow
 TIMES = 9.995
 """The fraction, 1, from which on it is said as so many times: no per cent of four digits is ever printed.

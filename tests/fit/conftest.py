@@ -9,8 +9,8 @@ import pytest
 from tests.conftest import short_searches
 
 USUAL = {
-    "test_ends.py", "test_fifth_order.py", "test_far_bounds.py", "test_paper_search.py", "test_recovery.py",
-    "test_wider_bounds.py",
+    "test_criteria_of_search.py", "test_ends.py", "test_fifth_order.py", "test_far_bounds.py", "test_paper_search.py",
+    "test_recovery.py", "test_wider_bounds.py",
 }  # fmt: skip
 """Files about the search itself: what it finds, and where it ends."""
 

@@ -12,11 +12,13 @@ from scipy.signal import butter, lfilter
 from ident.checks.check import check
 from ident.fit.reduction import excited_band
 from ident.matrix import Actuator, Matrix
+from ident.noise.criteria import NOISE_CRITERIA
 from ident.noise.floor import noise_floors
-from ident.noise.repeats import MOST_SHIFT, recording_noise, repeated
+from ident.noise.repeats import recording_noise, repeated
 from ident.run import Run, Specimen
 
 RATE, LENGTH = 1000.0, 4000
+MOST_SHIFT = NOISE_CRITERIA.repeats.shift
 NOISE = 0.01  # of the output's standard deviation
 Command = Callable[[np.random.Generator], np.ndarray]
 

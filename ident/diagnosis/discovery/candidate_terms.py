@@ -12,7 +12,6 @@ from numpy.typing import NDArray
 from ident.chain.conditions import CONDITIONS
 from ident.diagnosis.auxiliary_channels import auxiliary_channels, units_of
 from ident.diagnosis.candidate_models import CandidateModels
-from ident.diagnosis.criteria import EPSILON
 from ident.diagnosis.discovery import free_curves
 from ident.diagnosis.discovery.compressibility_terms import OIL
 from ident.diagnosis.discovery.regression import regression
@@ -25,6 +24,7 @@ from ident.errors import Unusable
 from ident.parameter import Parameter
 from ident.presets import Preset
 from ident.residuals.decimation import Response
+from ident.rounding import EPSILON
 
 Array = NDArray[np.float64]
 _PLACES = {

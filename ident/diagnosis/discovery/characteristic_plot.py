@@ -5,10 +5,11 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from ident.diagnosis.criteria import CRITERIA, EPSILON
+from ident.diagnosis.criteria import CRITERIA
 from ident.diagnosis.discovery.term import Signals, Term
 from ident.presets import Preset
 from ident.residuals.views import view_called
+from ident.rounding import EPSILON
 
 Array = NDArray[np.float64]
 

@@ -17,11 +17,12 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from ident.diagnosis.criteria import CRITERIA, TINY
+from ident.diagnosis.criteria import CRITERIA
 from ident.diagnosis.discovery.regression import Regression
 from ident.diagnosis.discovery.term import Curve, Term
 from ident.diagnosis.discovery.term_candidate import TermCandidate
 from ident.diagnosis.discovery.term_library import TermLibrary
+from ident.rounding import TINY
 from ident.units.grammar import powers_of
 
 Array = NDArray[np.float64]

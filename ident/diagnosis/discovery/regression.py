@@ -24,16 +24,17 @@ import scipy.linalg
 from numpy.typing import NDArray
 
 from ident.cached import cached_property
-from ident.diagnosis.criteria import CRITERIA, TINY
+from ident.diagnosis.criteria import CRITERIA
 from ident.diagnosis.discovery.regressors import Regressors, batches
 from ident.diagnosis.discovery.run_data import RunData
 from ident.diagnosis.discovery.term import Term
 from ident.parallel import each
 from ident.residuals.decimation import Response
+from ident.rounding import TINY
 
 Array = NDArray[np.float64]
 _RUNS_AT_ONCE = 4
-"""Runs whose columns lie side by side in memory: no result depends on their number."""
+"""Runs whose columns lie side by side in memory. No answer depends on it."""
 
 
 @dataclass(frozen=True)

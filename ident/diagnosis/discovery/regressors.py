@@ -9,16 +9,19 @@ import numpy as np
 import scipy.linalg
 from numpy.typing import NDArray
 
-from ident.diagnosis.criteria import CRITERIA, EPSILON, TINY
+from ident.diagnosis.criteria import CRITERIA
 from ident.diagnosis.discovery.run_data import RunData
 from ident.diagnosis.discovery.term import Term
 from ident.residuals.decimation import Response
+from ident.rounding import EPSILON, TINY
 
 Array = NDArray[np.float64]
 _BATCH = 128
-"""Terms whose responses are worked out together: the responses to all terms at once are large."""
+"""Terms whose responses are worked out together: the responses to all terms at once are large. No answer depends
+on it."""
 _COLUMNS_AT_ONCE = 32
-"""Terms whose samples are simulated to the output at once: they stay in the processor's cache."""
+"""Terms whose samples are simulated to the output at once: they stay in the processor's cache. No answer depends on
+it."""
 
 
 @dataclass(frozen=True)

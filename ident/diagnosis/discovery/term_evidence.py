@@ -16,8 +16,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ident.diagnosis.criteria import CRITERIA, TINY
+from ident.diagnosis.criteria import CRITERIA
 from ident.fit.windows import unforeseen
+from ident.rounding import TINY
 from ident.run import Run
 
 Array = NDArray[np.float64]

@@ -22,6 +22,11 @@ from ident.units.grammar import powers_of
 
 ALONE = "valve"
 """A place whose terms read its own signal alone."""
+_OF_ONE = (
+    ("{a} * abs({a})", "square", 2), ("abs({a})", "size", 1), ("sgn({a})", "sign", 0), ("{a}**3", "cube", 3),
+    ("{a}**2", "even square", 2),
+)  # fmt: skip
+"""Functions of one signal: text, kind, and the power of its unit. No answer depends on it: the text says it."""
 
 
 @dataclass(frozen=True)
@@ -49,10 +54,7 @@ class TermLibrary(Site):
             yield from compressibility_terms(self)
 
     def _of_one(self, place: str, at: str, a: str) -> Iterator[Term]:
-        for text, kind, power in (
-            ("{a} * abs({a})", "square", 2), ("abs({a})", "size", 1), ("sgn({a})", "sign", 0), ("{a}**3", "cube", 3),
-            ("{a}**2", "even square", 2),
-        ):  # fmt: skip
+        for text, kind, power in _OF_ONE:
             plain = Term(place, at, text.format(a=a), kind, (a,), self.unit((a, power)))
             yield self._dragging(plain, a, "1" if kind == "sign" else "")
         scale = Shape("a0", float(np.std(self.typical[a])), self.units[a], free=False)
@@ -164,7 +166,7 @@ class TermLibrary(Site):
         step = 1.0 / self.seconds
         for number in range(1, int(self.band / (2 * np.pi) / step)):
             f = Shape("fp", number * step, "1/s", spread=1.0 + CRITERIA.terms.frequency_spread / number)
-            for phase in (0.0, 0.25):  # sin(2 π (f t + 1/4)) = cos(2 π f t)
+            for phase in (0.0, 0.5 / 2):  # sin(2 π (f t + 1/4)) = cos(2 π f t)
                 turn = Shape("g", phase, "1", lower=-0.5, upper=0.5)
                 text = f"{at} * sin(2 * pi * (fp * t + g))"
                 yield Term(place, at, text, "periodic", (at, "t"), self.unit((at, 1)), (f, turn))

@@ -8,9 +8,10 @@ from typing import Any
 
 import numpy as np
 
-from ident.diagnosis.criteria import CRITERIA, TINY
+from ident.diagnosis.criteria import CRITERIA
 from ident.diagnosis.discovery.term import CURVE, LIMIT, STATE, Signals, Term, ratio
 from ident.effects.effect import Effect
+from ident.rounding import TINY
 
 STRENGTH = "s"
 

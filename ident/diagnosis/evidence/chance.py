@@ -16,14 +16,15 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import csr_array
 
-from ident.diagnosis.criteria import TINY
 from ident.diagnosis.evidence.criteria import EVIDENCE_CRITERIA
 from ident.diagnosis.evidence.disturbance import Disturbance
+from ident.rounding import TINY
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 _SURROGATES_AT_ONCE = 25
-"""Surrogates that lie in memory together: of records of a hundred thousand samples they take 40 MB."""
+"""Surrogates that lie in memory together: of records of a hundred thousand samples they take 40 MB. No answer
+depends on it, but that other phases are drawn, as random."""
 
 
 def bar(

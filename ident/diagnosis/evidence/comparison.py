@@ -39,7 +39,6 @@ from numpy.typing import NDArray
 from scipy.special import chdtri  # the quantile of χ², without scipy.stats, which takes half a second to load
 
 from ident.cached import cached_property
-from ident.diagnosis.criteria import TINY
 from ident.diagnosis.evidence.blocks import BlockMean, block_mean, block_ratio
 from ident.diagnosis.evidence.criteria import EVIDENCE_CRITERIA, EvidenceCriteria
 from ident.diagnosis.evidence.disturbance import Disturbance
@@ -47,6 +46,7 @@ from ident.diagnosis.evidence.energy_bands import EnergyBands, Record
 from ident.diagnosis.evidence.free_run import FreeRun, drives_away
 from ident.noise.autoregression import prediction_errors
 from ident.noise.effective_sample_size import independent_samples
+from ident.rounding import TINY
 
 Array = NDArray[np.float64]
 NO_DIFFERENCE = BlockMean(0.0, 0.0, 1)

@@ -24,8 +24,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ident.cached import cached_property
-from ident.diagnosis.criteria import EPSILON
 from ident.diagnosis.evidence.criteria import EVIDENCE_CRITERIA, EvidenceCriteria
+from ident.rounding import EPSILON
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]

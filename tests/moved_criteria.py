@@ -1,6 +1,6 @@
-"""Move each number of a diagnosis by 30 % up and down, and see the test that it names fail.
+"""Move each number that decides by 30 % up and down, and see the test that it names fail.
 
-python -m tests.diagnosis.moved_criteria [SECTION.NAME | SECTION | FILE OF TESTS …]
+python -m tests.moved_criteria [ROOM | SECTION | SECTION.NAME | FILE OF TESTS …]
 
 Of a ratio near one, as of a cosine, its distance from one is moved. Where no test fails, either way, the number decides
 nothing that a test sees: the table says so, and the run ends with 1. A number of one test is moved in a process of its
@@ -22,20 +22,11 @@ from typing import Any
 
 import pytest
 
-from tests.diagnosis.criteria_source import named_tests
+from tests.criteria_source import ROOMS, ROOT, Number, documented
 
-ROOT = Path(__file__).resolve().parents[2]
-FOLDER = "tests/diagnosis/"
 MODULES = {
-    "ident.diagnosis.criteria": ROOT / "ident/diagnosis/criteria.py",
-    "ident.diagnosis.evidence.criteria": ROOT / "ident/diagnosis/evidence/criteria.py",
-    "ident.diagnosis.discovery.criteria": ROOT / "ident/diagnosis/discovery/criteria.py",
-}
-BELOW = (
-    "ident.fit.identification", "ident.simulation.simulate", "ident.checks.check", "ident.design.proposal",
-    "ident.residuals.views", "ident.custom.definition", "scipy.stats", "scipy.optimize", "scipy.signal",
-)  # fmt: skip
-"""Rooms that know no number of a diagnosis, loaded once for all processes."""
+    ".".join(file.relative_to(ROOT).with_suffix("").parts): file for room in ROOMS for file in room.files
+}  # fmt: skip
 UP, DOWN = 1.3, 0.7
 CAUGHT, PASSED, FAULT = 1, 0, 99  # what a process ends with
 
@@ -94,7 +85,7 @@ class _Finder(importlib.abc.MetaPathFinder):
         return importlib.util.spec_from_file_location(name, MODULES[name], loader=loader)
 
 
-def ended(owner: str, name: str, factor: float, test: str) -> int:
+def ended(number: Number, factor: float) -> int:
     """What pytest ends with on one test with a number moved, in a process of its own."""
     child = os.fork()
     if child:
@@ -102,15 +93,15 @@ def ended(owner: str, name: str, factor: float, test: str) -> int:
     with Path(os.devnull).open("w") as silent:
         os.dup2(silent.fileno(), 1)
         os.dup2(silent.fileno(), 2)
-    change = _Moved(owner, name, factor)
+    change = _Moved(number.section, number.name, factor)
     sys.meta_path.insert(0, _Finder(change))
-    code = int(pytest.main(["-x", "-q", "-p", "no:cacheprovider", "--full", str(ROOT / FOLDER / test)]))
+    code = int(pytest.main(["-x", "-q", "-p", "no:cacheprovider", "--full", str(ROOT / number.test)]))
     os._exit(code if change.found else FAULT)
 
 
-def outcome(owner: str, name: str, test: str) -> str:
+def outcome(number: Number) -> str:
     """The ways in which a moved number makes its test fail: "up and down", "up", "down" or "neither"."""
-    codes = {way: ended(owner, name, factor, test) for way, factor in (("up", UP), ("down", DOWN))}
+    codes = {way: ended(number, factor) for way, factor in (("up", UP), ("down", DOWN))}
     if faults := {way: code for way, code in codes.items() if code not in (CAUGHT, PASSED)}:
         return f"fault: {faults}"
     return " and ".join(way for way, code in codes.items() if code == CAUGHT) or "neither"
@@ -119,16 +110,17 @@ def outcome(owner: str, name: str, test: str) -> str:
 def main(asked: Sequence[str]) -> int:
     """The table of all numbers, or of those that are asked for; 1 where one moves no test."""
     os.environ["PYTEST_DISABLE_PLUGIN_AUTOLOAD"] = "1"
-    for module in BELOW:
-        importlib.import_module(module)
-    assert not MODULES.keys() & sys.modules.keys()
     lost = 0
-    for full_name, test in named_tests().items():
-        owner, name = full_name.split(".")
-        if not asked or {full_name, owner, test.partition("::")[0]} & {*asked}:
-            found = outcome(owner, name, test)
-            lost += found not in ("up and down", "up", "down")
-            print(f"{full_name:44} {found:12} {test}", flush=True)
+    for room in ROOMS:
+        for module in room.below:  # loaded once for all processes
+            importlib.import_module(module)
+        assert not {name for name, file in MODULES.items() if file in room.files} & sys.modules.keys()
+        for number in (one for one in documented() if one.room == room):
+            asked_by = {room.name, number.section, number.full_name, number.test.partition("::")[0].rpartition("/")[2]}
+            if not asked or asked_by & {*asked}:
+                found = outcome(number)
+                lost += found not in ("up and down", "up", "down")
+                print(f"{number.full_name:44} {found:12} {number.test}", flush=True)
     return 1 if lost else 0
 
 
