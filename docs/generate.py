@@ -17,6 +17,7 @@ import typer
 
 from app.cli.program import program
 from app.main import routed
+from ident.bench.criteria import BENCH_CRITERIA
 from ident.diagnosis.criteria import CRITERIA
 from ident.effects import CATALOGUE
 from ident.equations.equation import Equation
@@ -185,10 +186,15 @@ def parameters(of: Iterable[Parameter]) -> list[str]:
 
 
 CRITERIA_HEAD = (
-    "Every number that decides in a [diagnosis](diagnosis.md), in a fit or about the noise of a record, by the stage",
+    "Every number that decides in a [diagnosis](diagnosis.md), in a fit, on a bench or about noise, by the stage",
     "or step that it decides in, as the `criteria.py` of each folder has it. Read a row as: value, unit, what it is.",
 )
-CRITERIA_OF: dict[str, Any] = {"Diagnosis": CRITERIA, "Fit": FIT_CRITERIA, "Noise": NOISE_CRITERIA}
+CRITERIA_OF: dict[str, Any] = {
+    "Diagnosis": CRITERIA,
+    "Fit": FIT_CRITERIA,
+    "Noise": NOISE_CRITERIA,
+    "Bench": BENCH_CRITERIA,
+}
 
 
 def criteria() -> str:

@@ -40,6 +40,7 @@ ROOMS = (
     _room("noise", "ident.run"),
     _room("fit", "ident.noise.floor", "ident.checks.check", "ident.custom.definition", "ident.simulation.simulate"),
     _room("diagnosis", "ident.fit.identification", "ident.design.proposal", "ident.residuals.views"),
+    _room("bench", "ident.diagnosis.diagnose"),
 )
 """In the order in which they import each other."""
 

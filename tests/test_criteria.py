@@ -11,17 +11,29 @@ from typing import Any
 
 import pytest
 
+from ident.bench.criteria import BENCH_CRITERIA
 from ident.diagnosis.criteria import CRITERIA
 from ident.fit.criteria import FIT_CRITERIA
 from ident.noise.criteria import NOISE_CRITERIA
 from tests.criteria_source import ROOMS, ROOT, Room, documented
 
-OF_ROOMS: dict[str, Any] = {"noise": NOISE_CRITERIA, "fit": FIT_CRITERIA, "diagnosis": CRITERIA}
+OF_ROOMS: dict[str, Any] = {
+    "noise": NOISE_CRITERIA,
+    "fit": FIT_CRITERIA,
+    "diagnosis": CRITERIA,
+    "bench": BENCH_CRITERIA,
+}
 FREE = {0, 1, 2, 0.5}
 CITED = re.compile(r"\b(18|19|20)\d\d\b")
 """The year of a source: where a formula comes from."""
 SIZE = "No answer depends on it"
 """What is written below a size that is a matter of memory or time alone, or below the factor of a unit."""
+NOT_YET = {
+    "chain_response", "continued", "describing_function", "diagnosis", "effect_ranking", "exact_response", "frequency",
+    "identification", "laws", "least_margins", "model", "outputs", "position_error", "position_loop", "report",
+    "residual", "response", "scatter", "sine_fit", "smoothing", "speed_table", "straightness", "synthesis",
+}  # fmt: skip
+"""Files of the bench whose numbers do not stand in its criteria yet: formulas, simulated records, and what decides."""
 WITH_CRITERIA = [room for room in ROOMS if room.name in OF_ROOMS]
 
 
@@ -59,8 +71,8 @@ def deciding(source: str) -> Iterator[tuple[int, float]]:
 
     Free are 0, 1, 2 and ½, a place in a sequence, a power that is written as one (the cube of a ratio), the digits of
     a text, what stands in
-    a function whose docstring cites the source of its formula, and a constant below which its source is cited, or that
-    no answer depends on it.
+    a function whose docstring cites the source of its formula, or says that no answer depends on it, and a constant
+    below which the same stands.
     """
     tree = ast.parse(source)
     free = {id(inner) for node in ast.walk(tree) for part in _free(node) for inner in ast.walk(part)}
@@ -81,7 +93,7 @@ def _free(node: ast.AST) -> Iterator[ast.AST]:
             yield node
         case ast.BinOp(op=ast.Pow(), right=ast.Constant(value=int()) as power):
             yield power
-        case ast.FunctionDef() if CITED.search(ast.get_docstring(node) or ""):
+        case ast.FunctionDef() if _says_why(node.body[0]):
             yield node
         case ast.Module() | ast.ClassDef():
             for one, below in zip(node.body, node.body[1:], strict=False):
@@ -99,7 +111,8 @@ def _says_why(node: ast.stmt) -> bool:
 
 @pytest.mark.parametrize("room", WITH_CRITERIA, ids=lambda room: room.name)
 def test_no_number_decides_outside_of_the_criteria(room: Room):
-    files = [file for file in sorted(room.folder.rglob("*.py")) if file not in room.files]
+    left = {room.folder / f"{name}.py" for name in NOT_YET} if room.name == "bench" else set()
+    files = [file for file in sorted(room.folder.rglob("*.py")) if file not in {*room.files, *left}]
     assert not [
         f"{file.relative_to(ROOT)}:{line}: {value}"
         for file in files

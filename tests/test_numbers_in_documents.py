@@ -14,7 +14,8 @@ from pathlib import Path
 import pytest
 
 from app.pages import next_view
-from ident.bench import acceptance, time_constant
+from ident.bench import acceptance
+from ident.bench.criteria import BENCH_CRITERIA
 from ident.comparison import frequency_response, profile
 from ident.diagnosis.criteria import CRITERIA
 from ident.figures import bode, residual_curve, sensitivity, time
@@ -139,7 +140,7 @@ def of_others() -> Iterator[Tie]:
 
     B = "bench.md"
     yield B, "a delay beyond {} of its standard deviations and {} % of T", (
-        word(time_constant._TOLD), per_cent(time_constant._SEEN),
+        word(BENCH_CRITERIA.time_constants.told), per_cent(BENCH_CRITERIA.time_constants.seen),
     )  # fmt: skip
     yield B, "Quantities: `{}`", (" ".join(acceptance.QUANTITIES),)
 

@@ -41,11 +41,13 @@ QUANTITIES = {
 """What a limit may be set for: unit and meaning."""
 _PRINTED = {"1": (100.0, "%"), "s": (1e3, "ms"), "Pa": (1e-6, "MPa"), "m/s": (1e3, "mm/s"), "dB": (1.0, "dB"),
             "rad": (180.0 / math.pi, "°")}  # fmt: skip
+"""By SI unit, what a value is multiplied by for a reader, and in which unit it is then. No answer depends on it."""
 _CHARACTERISTIC = {
     "gain": "gain", "gain_forward": "forward", "gain_back": "back", "nonlinearity": "nonlinearity",
     "asymmetry": "asymmetry",
 }  # fmt: skip
 _SLOPE = (1e-8, "MPa/%")
+"""The same of the slope of a pressure. No answer depends on it."""
 
 
 @dataclass(frozen=True)

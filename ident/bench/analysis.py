@@ -14,8 +14,9 @@ from functools import lru_cache, partial
 
 import numpy as np
 
+from ident.bench.criteria import BENCH_CRITERIA
 from ident.bench.frequency import Response, frequency_response
-from ident.bench.least_squares import BUT_ONE, LAST, ROUGH, Solution, solve
+from ident.bench.least_squares import Solution, solve
 from ident.bench.model import CONSTANTS, Model
 from ident.bench.motion import groups
 from ident.bench.observed import Observed, errors, observe
@@ -32,7 +33,8 @@ from ident.parallel import each
 from ident.rig.regulator import PositionControl
 from ident.words.shown import Shown
 
-FIRST_T = 0.02  # s, where the search for T begins
+FIRST_T = BENCH_CRITERIA.time_constants.first
+"""s, where the search for T begins."""
 _ROUNDS = 1  # of the refinement, behind each of which the records are weighed anew
 SPEED = ("speed-levels", "speed-continuous")
 
@@ -127,7 +129,9 @@ def _whole(bench: BenchSet, model: Model, seen: dict[str, Observed], found: Anal
     lag = dynamics(model, drifting)
     if any(record.jumps for record in still):
         # A loop crossed in milliseconds is as wide by T as by B: the sines tell the two apart.
-        told = solve(Residual(replace(model, T=lag.T.value), drifting, ("T", "B")), steps=8).model
+        told = solve(
+            Residual(replace(model, T=lag.T.value), drifting, ("T", "B")), steps=BENCH_CRITERIA.fits.whole
+        ).model
         lag = dynamics(told, drifting)
         model = told
     at_rest = static(still, replace(model, T=lag.T.value), _of(seen, still))
@@ -144,7 +148,12 @@ def _whole(bench: BenchSet, model: Model, seen: dict[str, Observed], found: Anal
     )  # fmt: skip
 
 
-def fit_whole(start: Model, observed: Sequence[Observed], steps: int = 8, way: Way = ROUGH) -> Solution:
+def fit_whole(
+    start: Model,
+    observed: Sequence[Observed],
+    steps: int = BENCH_CRITERIA.fits.whole,
+    way: Way = BENCH_CRITERIA.fits.rough,
+) -> Solution:
     """Every value of the model at once on all records."""
     return solve(Residual(start, tuple(observed), (*CONSTANTS, *start.table.names)), steps=steps, way=way)
 
@@ -157,9 +166,9 @@ def refined(start: Model, observed: Sequence[Observed], records: Sequence[Record
     step, start = step_of(records), replace(start, table=replace(start.table, kind=SPLINE))
     exact = each(lambda pair: pair[0].exact(pair[1], start, step), list(zip(observed, records, strict=True)))
     for _ in range(_ROUNDS):
-        start = fit_whole(start, exact, way=BUT_ONE).model
+        start = fit_whole(start, exact, way=BENCH_CRITERIA.fits.but_one).model
         exact = each(partial(Observed.reweighed, model=start), exact)
-    return fit_whole(start, exact, way=LAST)
+    return fit_whole(start, exact, way=BENCH_CRITERIA.fits.last)
 
 
 def _of(seen: dict[str, Observed], records: Sequence[Record]) -> tuple[Observed, ...]:
@@ -168,7 +177,10 @@ def _of(seen: dict[str, Observed], records: Sequence[Record]) -> tuple[Observed,
 
 @lru_cache
 def load_compiled() -> None:
-    """Have the compiled functions at hand: their first call loads them from the disk, or compiles them."""
+    """Have the compiled functions at hand: their first call loads them from the disk, or compiles them.
+
+    No answer depends on it, nor on the values with which they are called here.
+    """
     ramp = np.linspace(0.0, 0.1, 16)
     record = Record("ramp", "static", 100.0, "linear", ramp, ramp, ramp, 1e-3)
     groups(record)

@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from ident.bench.criteria import BENCH_CRITERIA
 from ident.bench.model import Model
 from ident.bench.residual import Normal, Residual
 from ident.cached import cached_property
@@ -15,15 +16,7 @@ from ident.fit.levenberg_marquardt import Way, levenberg_marquardt
 from ident.fit.uncertainty import Covariance, covariance
 
 Array = NDArray[np.float64]
-_STEPS = 12
-ROUGH = Way(converged=1e-5, longest=0.7, rough=1e-4)
-"""Where the play turns, the sum of squares is not smooth: `rough`. A value goes no farther than twofold in one step."""
-
-BUT_ONE = Way(converged=1e-6, longest=0.7, rough=1e-6)
-"""Of the fit before the last one, which only says how the records are weighed in that."""
-LAST = Way(converged=1e-10, longest=0.7, rough=1e-7)
-"""Of the last fit, whose standard errors count: of 10⁵ readings a standard error is 1e-5 of the sum of squares. A
-thousandth of one, 1e-6 of that again, is what any other search for this optimum may differ by."""
+_OF = BENCH_CRITERIA.fits
 
 
 @dataclass(frozen=True, eq=False)
@@ -79,7 +72,7 @@ class Solution:
         return {name: value(name) for name in self.residual.names}
 
 
-def solve(residual: Residual, steps: int = _STEPS, start: Array | None = None, way: Way = ROUGH) -> Solution:
+def solve(residual: Residual, steps: int = _OF.steps, start: Array | None = None, way: Way = _OF.rough) -> Solution:
     """The least sum of squares near `start`, the origin by default, in at most so many steps."""
     tried = 0
 

@@ -5,13 +5,13 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from ident.bench.criteria import BENCH_CRITERIA
 from ident.bench.records import Record
 from ident.simulation.jit import jit
 
 Array = NDArray[np.float64]
 Groups = NDArray[np.int8]
-_NONE = 1e-6  # of a step: less is the rounding of a reading, no change of it
-_LONGER = 4.0  # times the usual time between two steps: so long a pause is a rest
+_OF = BENCH_CRITERIA.movements
 
 
 def groups(record: Record) -> Groups:
@@ -20,18 +20,18 @@ def groups(record: Record) -> Groups:
     A position that flickers by one step is freed of it by a play of that size; that changes only where the
     link has moved. Two changes the same way belong to one movement unless they are much further apart than usual.
     """
-    step = record.resolution or 3.0 * float(np.std(np.diff(record.position)))
+    step = record.resolution or _OF.noise * float(np.std(np.diff(record.position)))
     steady = np.empty(record.length)
-    without_flicker(record.position, 0.75 * step, steady)
+    without_flicker(record.position, _OF.flicker * step, steady)
     change = np.diff(steady)
-    at = np.flatnonzero(np.abs(change) > _NONE * step)
+    at = np.flatnonzero(np.abs(change) > BENCH_CRITERIA.records.changed * step)
     edges = np.zeros(record.length + 1, dtype=np.int64)
-    if len(at) < 3:
+    if len(at) < _OF.fewest:
         return edges[:-1].astype(np.int8)
     way = np.sign(change[at]).astype(np.int64)
     apart, same = np.diff(at), way[1:] == way[:-1]
-    usual = max(float(np.median(apart[same])) if same.any() else 1.0, 0.02 * record.rate)
-    joined = same & (apart <= _LONGER * usual)
+    usual = max(float(np.median(apart[same])) if same.any() else 1.0, _OF.usual * record.rate)
+    joined = same & (apart <= _OF.pause * usual)
     np.add.at(edges, at[:-1][joined], way[:-1][joined])
     np.add.at(edges, at[1:][joined], -way[:-1][joined])
     return np.sign(np.cumsum(edges))[:-1].astype(np.int8)

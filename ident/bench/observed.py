@@ -14,31 +14,35 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from ident.bench.criteria import BENCH_CRITERIA
 from ident.bench.exact_response import CONSTANTS as EXACT
 from ident.bench.exact_response import respond_exact
 from ident.bench.model import Model, Models, by_chain
-from ident.bench.readings import LEAST, Readings, readings
+from ident.bench.readings import Readings, readings
 from ident.bench.records import Record
 from ident.bench.response import compared, residuals, rest
 from ident.cached import cached_property
 from ident.noise.effective_sample_size import independent_samples
+from ident.rounding import ROUNDING
 from ident.time_budget import check_time
 
 Array = NDArray[np.float64]
-IMPERFECT = 2e-3  # of a record's standard deviation
-_SETTLED = 0.25  # s at the start of a record that its unknown past may have shaped
-_MOVED = 3.0 + 1e-6  # steps of the converter that are no accident; three of them are, however they are rounded
+_OF = BENCH_CRITERIA.comparison
+_WHITE = np.sqrt(12.0)
+"""The step of a converter over the deviation of its white error (Widrow 1956)."""
+_UNKNOWN = 1e-6
+"""Deviation of a position, m, of which nothing is known yet. No answer depends on it: it is weighed anew."""
 _NOTHING = np.empty(0)
-_NO_MOVES = np.zeros((0, 2, 1, 4))
-STEPS = 4
+_NO_MOVES = np.zeros((0, 2, 1, 2 * 2))
+STEPS = 2 * 2
 """Parts of a sample in which a whole record is simulated with an effect that :func:`respond_exact` does not know."""
 
 
 def rate_wanted(record: Record) -> float:
     """Hz at which a record still holds what the model can show: the lag is exact at any rate."""
     if record.kind == "static":
-        return 1000.0 if record.jumps else 250.0
-    return max(125.0, 80.0 * (record.frequency or 0.0))
+        return _OF.rough_rate if record.jumps else _OF.static_rate
+    return max(_OF.least_rate, _OF.samples_of_a_period * (record.frequency or 0.0))
 
 
 @dataclass(frozen=True, eq=False)
@@ -66,9 +70,9 @@ class Observed:
         """
         small = record.reduced(rate or rate_wanted(record))
         skip = _unsettled(small)
-        parts = tuple((max(a, skip), b) for a, b in small.parts if b - max(a, skip) >= 8)
+        parts = tuple((max(a, skip), b) for a, b in small.parts if b - max(a, skip) >= BENCH_CRITERIA.records.shortest)
         used = np.concatenate([small.position[a:b] for a, b in parts]) if parts else small.position
-        scale = float(np.hypot(max(record.resolution / np.sqrt(12.0), 1e-7), IMPERFECT * np.std(used)))
+        scale = float(np.hypot(max(record.resolution / _WHITE, _OF.finest), _OF.imperfect * np.std(used)))
         noise = None
         if pressure and small.pressure is not None and small.kind == "static":
             noise = float(np.std(np.diff(small.pressure)) / np.sqrt(2.0)) + 1.0
@@ -208,19 +212,19 @@ class Observed:
         """
         whole = Observed.of(record, self.positions > 0, self.pressure_scale is not None, np.inf, self.drifting)
         moved = np.diff(model.answer(record.current, record.rate, record.hold).position, prepend=0.0)
-        told = readings(record.position, step, moved, step / np.sqrt(12.0) or 1e-6)
+        told = readings(record.position, step, moved, step / _WHITE or _UNKNOWN)
         return replace(whole, readings=told, moving=model)
 
     def reweighed(self, model: Model) -> Observed:
         """Itself with the deviations that the residual of a fitted model shows beyond those of converter and gauges."""
         found, out = self.residual(model), self
-        if self.readings is not None and self.positions > 8:
+        if self.readings is not None and self.positions > BENCH_CRITERIA.records.shortest:
             told, r = self.readings, found[: self.positions]
             off = (r * told.deviations[self.within]) ** 2
-            least = LEAST * told.step / np.sqrt(12.0)
+            least = _OF.least_reading * told.step / _WHITE
             beyond = max(float(np.mean(off) - np.mean(told.known[self.within] ** 2)), 0.0)
             memory = len(r) / independent_samples(r)
-            out = replace(self, readings=replace(told, extra=max(np.sqrt(beyond * memory), least, 1e-9)))
+            out = replace(self, readings=replace(told, extra=max(np.sqrt(beyond * memory), least, ROUNDING)))
         if self.pressure_scale is not None and self.noise is not None:
             r = found[self.positions :] * self.pressure_scale / self.noise
             larger = float(np.std(r)) * np.sqrt(len(r) / independent_samples(r))
@@ -266,7 +270,7 @@ class Observed:
             return self
         own = [found[:count]] if self.pressure_scale is None else [found[:count], found[count:]]
         larger = [float(np.std(r)) * np.sqrt(len(r) / independent_samples(r)) for r in own]
-        least = 1e-7 / self.position_scale
+        least = _OF.finest / self.position_scale
         position = self.position_scale * max(larger[0], least)
         pressure = None if self.pressure_scale is None else self.pressure_scale * max(larger[-1], 1.0)
         return replace(self, position_scale=position, pressure_scale=pressure)
@@ -288,13 +292,13 @@ def _unsettled(record: Record) -> int:
 
     A sine is compared from its second period on. Else the play is known once the link has moved: it pushes then.
     """
-    if record.kind == "frequency" and record.frequency and record.length > 2.2 * record.rate / record.frequency:
+    if record.kind == "frequency" and record.frequency and record.length > _OF.periods * record.rate / record.frequency:
         return round(record.rate / record.frequency)
     away = np.abs(record.position - record.position[0]) > max(
-        _MOVED * record.resolution, 1e-4 * np.ptp(record.position)
+        (_OF.moved + BENCH_CRITERIA.records.changed) * record.resolution, _OF.moved_share * np.ptp(record.position)
     )
     moved = int(np.argmax(away)) if away.any() else 0
-    return min(max(moved, round(_SETTLED * record.rate)), record.length // 3)
+    return min(max(moved, round(_OF.settled * record.rate)), record.length // _OF.parts)
 
 
 def observe(
@@ -308,7 +312,7 @@ def errors(model: Model, observed: Sequence[Observed]) -> dict[str, float]:
     """RMS position error of each record over the deviation of its position, the mean of each part taken off."""
     found = {}
     for given in observed:
-        one = given if np.isfinite(given.position_scale) else replace(given, position_scale=1e-6)
+        one = given if np.isfinite(given.position_scale) else replace(given, position_scale=_UNKNOWN)
         count = sum(end - first for first, end in one.parts)
         measured = np.concatenate([one.record.position[first:end] for first, end in one.parts])
         difference = one.residual(model)[:count] * one.position_scale

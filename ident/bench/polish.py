@@ -11,16 +11,15 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from ident.bench.criteria import BENCH_CRITERIA
 from ident.bench.least_squares import Solution, solve
 from ident.bench.model import Model
 from ident.bench.observed import Observed
 from ident.bench.residual import Residual
+from ident.fit.criteria import FIT_CRITERIA
 from ident.fit.ends import End, parted
 
-_STEPS = 60  # at most: from afar it takes more than 50
-_ROUGH = 1e-4  # relative difference of sums of squares that folds make
-_FARTHER = 1.01  # times the error: so far from the records is another optimum
-_WEAK = 0.5  # relative standard error above which a value is not determined
+_OF = BENCH_CRITERIA.fits
 _ASTRAY = "No member of the search leads as near to the records as the procedures: the fit starts from their values."
 
 
@@ -29,20 +28,26 @@ def polished(
 ) -> tuple[Solution, list[str]]:
     """The best end, and what is to be said of the others; `own` is the procedures' model, where the bounds allow it."""
     starts = [*([] if own is None else [own]), *searched]
-    found = [solve(Residual(start, observed, names), steps=_STEPS if names else 0) for start in starts]
+    found = [solve(Residual(start, observed, names), steps=_OF.polish if names else 0) for start in starts]
     least = min(solution.cost for solution in found)
-    best = next(solution for solution in found if solution.cost <= (1 + _ROUGH) * least)
-    others = [_end(solution) for solution in found if solution.cost > (1 + _ROUGH) * least]
+    best = next(solution for solution in found if solution.cost <= (1 + _OF.folds) * least)
+    others = [_end(solution) for solution in found if solution.cost > (1 + _OF.folds) * least]
     sure = {name: best.deviations[name] for name in names if name not in weak(best)}
     told = list(parted([_end(best), *others], sure, {name: name for name in sure}))
-    astray = own is not None and min(_end(solution).error for solution in found[1:]) > _FARTHER * _end(found[0]).error
+    astray = (
+        own is not None and min(_end(solution).error for solution in found[1:]) > _OF.farther * _end(found[0]).error
+    )
     return best, [_ASTRAY, *told] if astray else told
 
 
 def weak(solution: Solution) -> list[str]:
     """The values that the records do not determine."""
     size = {name: solution.residual.reach.get(name, abs(value)) for name, value in solution.values.items()}
-    return [name for name, deviation in solution.deviations.items() if not 0 < deviation < _WEAK * size[name]]
+    return [
+        name
+        for name, deviation in solution.deviations.items()
+        if not 0 < deviation < FIT_CRITERIA.determination.determined * size[name]
+    ]
 
 
 def _end(solution: Solution) -> End:

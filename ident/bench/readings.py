@@ -13,15 +13,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from ident.bench.criteria import BENCH_CRITERIA
 from ident.simulation.jit import jit
 
 Array = NDArray[np.float64]
-_CHANGED = 1e-6  # of a step: less is the rounding of a reading, no change of it
-LEAST = 0.1
-"""Deviation of a reading, in those of a converter's white error (step/√12), below which no weight counts on it. A link
-that nearly stands when its reading changes would tell more than the rest of a record together, of a way that the model
-has to know to a thousandth of a step; 0.7 µm at 12 bits over 100 mm."""
-_AROUND = 3  # samples to either side within which the fastest counts: a link that stops or starts is not timed by one
+_AROUND = BENCH_CRITERIA.comparison.around
 
 
 @dataclass(frozen=True)
@@ -57,7 +53,7 @@ def readings(position: Array, step: float, moved: Array, extra: float) -> Readin
         picked = np.arange(1, len(position))
         return Readings(picked, position[1:], np.zeros(len(picked)), 0.0, extra, step)
     change = np.diff(position)
-    picked = np.flatnonzero(np.abs(change) > _CHANGED * step) + 1
+    picked = np.flatnonzero(np.abs(change) > BENCH_CRITERIA.records.changed * step) + 1
     values = 0.5 * (position[picked] + position[picked - 1])
     way = np.maximum(fastest(moved)[picked], _by_spacing(picked, np.abs(change[picked - 1])))
     return Readings(picked, values, step * np.array([in_steps(one) for one in way / step]), 0.5, extra, step)
@@ -86,6 +82,9 @@ def _by_spacing(picked: NDArray[np.int64], change: Array) -> Array:
 
 @jit(nogil=True, error_model="numpy")
 def in_steps(moved: float) -> float:
-    """The deviation of a reading at a change, in steps, where the link goes so many steps in a sample."""
+    """The deviation of a reading at a change, in steps, where the link goes so many steps in a sample.
+
+    That of even errors over a width w is w/√12 (Widrow 1956).
+    """
     f = moved % 1.0
     return float(np.sqrt((f * f if moved < 1.0 else (1.0 - f) ** 3 + f**3) / 12.0))

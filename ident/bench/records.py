@@ -8,21 +8,19 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from ident.bench.criteria import BENCH_CRITERIA
 from ident.bench.sine_fit import dominant
 from ident.cached import cached_property
 from ident.errors import Unusable
 from ident.matrix import Matrix
 from ident.resolution import resolution
 from ident.rig.regulator import PositionControl
+from ident.rounding import ROUNDING
 from ident.run import BENCH, Run
 from ident.words.run_name import run_name
 
 Array = NDArray[np.float64]
-_END = 0.02  # s at the same extreme reading: the actuator or its transducer is at its end
-_BRIEF, _ROUGH = 4e-3, 5e-5  # s, rated currents: beyond it means over so short a time hide what the play sees
-_OFF_GRID = 0.1  # of a step: farther from a whole number of them is no reading of the same converter
-_FIRST, _LONGER = 30.0, 10.0  # steps over which their number is told by the smallest; how much further each time
-_FAR = 0.02 + 1e-9  # of rated current: farther from the middle, not by rounding alone, an actuator that is free moves
+_OF = BENCH_CRITERIA.records
 
 
 @dataclass(frozen=True, eq=False)
@@ -57,9 +55,9 @@ class Record:
     @cached_property
     def jumps(self) -> bool:
         """Whether the current jumps about within a few ms, as a sharp regulator on a position in steps makes it."""
-        m = max(1, int(_BRIEF * self.rate))
+        m = max(1, int(_OF.brief * self.rate))
         blocks = self.current[: self.length // m * m].reshape(-1, m)
-        return bool(np.sqrt(np.mean(np.var(blocks, axis=1))) > _ROUGH)
+        return bool(np.sqrt(np.mean(np.var(blocks, axis=1))) > _OF.rough)
 
     @cached_property
     def parts(self) -> tuple[tuple[int, int], ...]:
@@ -67,16 +65,16 @@ class Record:
 
         An end is where the reading stays at the record's extreme while the current is far from its middle value.
         """
-        far = np.abs(self.current - np.median(self.current)) > _FAR
+        far = np.abs(self.current - np.median(self.current)) > _OF.far_current + ROUNDING
         low, high = self.position.min(), self.position.max()
-        margin = 0.6 * self.resolution
+        margin = _OF.end_margin * self.resolution
         stuck = far & ((self.position <= low + margin) | (self.position >= high - margin))
-        return tuple(_between(stuck, max(8, round(_END * self.rate))))
+        return tuple(_between(stuck, max(_OF.shortest, round(_OF.at_end * self.rate))))
 
     def reduced(self, rate: float) -> Record:
         """The record as means of blocks of samples, at `rate` or just above; unchanged where it is no faster."""
-        m = int(self.rate / rate * (1 + 1e-9))  # a rate told by a clock may be short of the round one
-        if m < 2 or self.length < 16 * m:
+        m = int(self.rate / rate * (1 + ROUNDING))  # a rate told by a clock may be short of the round one
+        if m < 2 or self.length < _OF.fewest_means * m:
             return self
         cut = self.length // m * m
 
@@ -91,7 +89,9 @@ class Record:
             None if self.pressure is None else means(self.pressure), self.resolution, self.frequency,
             self.position_range, self.use,
         )  # fmt: skip
-        made.__dict__["parts"] = tuple((-(-a // m), b // m) for a, b in self.parts if b // m - -(-a // m) >= 8)
+        made.__dict__["parts"] = tuple(
+            (-(-a // m), b // m) for a, b in self.parts if b // m - -(-a // m) >= _OF.shortest
+        )
         return made
 
 
@@ -100,7 +100,7 @@ def _between(stuck: NDArray[np.bool_], least: int) -> list[tuple[int, int]]:
     edges = np.flatnonzero(np.diff(np.concatenate([[0], stuck.astype(int), [0]])))
     cuts = [(a, b) for a, b in edges.reshape(-1, 2) if b - a >= least]
     starts, ends = [0, *(b for _, b in cuts)], [*(a for a, _ in cuts), len(stuck)]
-    return [(int(a), int(b)) for a, b in zip(starts, ends, strict=True) if b - a >= 8]
+    return [(int(a), int(b)) for a, b in zip(starts, ends, strict=True) if b - a >= _OF.shortest]
 
 
 @dataclass(frozen=True, eq=False)
@@ -194,15 +194,15 @@ def _refined(step: float, records: Sequence[Record]) -> float:
     """
     readings = np.unique(np.concatenate([record.position for record in records]))
     away = readings[1:] - readings[0]
-    reach = _FIRST * step
-    while reach < _LONGER * away[-1]:
+    reach = _OF.first_reach * step
+    while reach < _OF.further_reach * away[-1]:
         near = away[away <= reach]
         n = np.round(near / step)
         step = float(n @ near / (n @ n)) if n.any() else step
-        reach *= _LONGER
+        reach *= _OF.further_reach
     return step
 
 
 def _in_steps(position: Array, step: float) -> bool:
     off = (position - position[0]) / step
-    return bool(np.max(np.abs(off - np.round(off))) < _OFF_GRID)
+    return bool(np.max(np.abs(off - np.round(off))) < _OF.off_grid)

@@ -14,6 +14,7 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
+from ident.bench.criteria import BENCH_CRITERIA
 from ident.bench.least_squares import Solution, solve
 from ident.bench.model import Model
 from ident.bench.observed import Observed
@@ -23,14 +24,13 @@ from ident.bench.smoothing import METHODS, bezier, differentiated, fir, iir, on_
 from ident.bench.speed_table import SpeedTable
 from ident.bench.straightness import Straightness, of_table
 from ident.errors import Unusable
+from ident.rounding import ROUNDING, TINY
 from ident.words.nearest import did_you_mean
 from ident.words.run_name import run_name
 
 Array = NDArray[np.float64]
-_EVEN = 2e-3 + 1e-9  # of rated current: within it, rounding apart, a level is one
-_SHORTEST = 0.1  # s of a level, after it has settled
-_SURE = 0.7  # of the speed of a level: where friction takes more, the level is no point of the characteristic
-_FLOOR = 0.2  # of the speed on a curve: where friction takes more, the factor is too uncertain to divide by
+_OF = BENCH_CRITERIA.speed
+_EVEN = _OF.even + ROUNDING
 
 
 @dataclass(frozen=True)
@@ -68,7 +68,7 @@ class Speed:
     bezier_ends: tuple[float, float]
 
 
-def speed(model: Model, records: Sequence[Record], observed: Sequence[Observed], degree: int = 7) -> Speed:
+def speed(model: Model, records: Sequence[Record], observed: Sequence[Observed], degree: int = _OF.degree) -> Speed:
     """The characteristic from speed records; `model` gives everything but the table. Raises Unusable without motion."""
     found = levels(model, records)
     curves = [curve(model, record) for record in records if record.kind == "speed-continuous"]
@@ -91,29 +91,31 @@ def speed(model: Model, records: Sequence[Record], observed: Sequence[Observed],
 
 def fit_table(model: Model, observed: Sequence[Observed]) -> Solution:
     """The speeds at the table's nodes that give the measured positions."""
-    return solve(Residual(model, tuple(observed), model.table.names), steps=3)
+    return solve(Residual(model, tuple(observed), model.table.names), steps=_OF.steps)
 
 
 def levels(model: Model, records: Sequence[Record]) -> list[Level]:
     """Mean speeds at the fixed levels of current, where there are any."""
     out = []
-    settle = 6.0 * model.T
+    settle = _OF.lags * model.T
     for record in records:
         after = _after_play(model, record)
         for first, end in _constant(record):
             begin = first + round(settle * record.rate)
             for a, b in record.parts:
                 low, high = max(begin, a), min(end, b)
-                if high - low < _SHORTEST * record.rate:
+                if high - low < _OF.shortest * record.rate:
                     continue
                 measured = float(np.polyfit(record.time[low:high], record.position[low:high], 1)[0])
                 share = float(np.mean(factor(model, after[low:high])))
-                if share > _SURE:
+                if share > _OF.sure:
                     out.append(Level(record.id, float(after[low:high].mean()), measured, measured / share))
     return sorted(out, key=lambda level: level.current)
 
 
-def curve(model: Model, record: Record, method: str = "iir", cutoff: float = 15.0, degree: int = 7) -> Curve:
+def curve(
+    model: Model, record: Record, method: str = "iir", cutoff: float = _OF.cutoff, degree: int = _OF.degree
+) -> Curve:
     """Speed against the current as the valve has it: smoothed by `method`, the current corrected by lag and play.
 
     `cutoff` in Hz is for the filters, `degree` for the Bézier curve, which is held at zero in the zero shift.
@@ -122,9 +124,9 @@ def curve(model: Model, record: Record, method: str = "iir", cutoff: float = 15.
         raise Unusable("unknown-method", f"no smoothing {method!r}", "smoothing", did_you_mean(method, METHODS))
     after = _after_play(model, record)
     raw = differentiated(record.position, record.rate)
-    share = np.maximum(factor(model, after), _FLOOR)
+    share = np.maximum(factor(model, after), _OF.floor)
     if method == "bezier":
-        moving = factor(model, after) > _FLOOR
+        moving = factor(model, after) > _OF.floor
         heights, ends = bezier(after[moving], raw[moving] / share[moving], degree, model.I0)
         free = on_bezier(heights, ends, after)
         smooth = free * factor(model, after)
@@ -137,7 +139,7 @@ def curve(model: Model, record: Record, method: str = "iir", cutoff: float = 15.
 def factor(model: Model, after_play: Array) -> Array:
     """sqrt(max(0, 1 − needed/available)): what friction leaves of the speed."""
     available = np.minimum(model.kp * np.abs(after_play - model.I0), model.Ps)
-    return np.asarray(np.sqrt(np.maximum(0.0, 1.0 - model.dPfr / np.maximum(available, 1e-300))))
+    return np.asarray(np.sqrt(np.maximum(0.0, 1.0 - model.dPfr / np.maximum(available, TINY))))
 
 
 def through(points: Array, like: SpeedTable) -> SpeedTable:
@@ -161,11 +163,11 @@ def _points(found: Sequence[Level], curves: Sequence[Curve]) -> Array:
         return np.array([(level.current, level.free_speed) for level in found])
     rows = []
     for c in curves:
-        edges = np.linspace(c.corrected.min(), c.corrected.max(), 41)
+        edges = np.linspace(c.corrected.min(), c.corrected.max(), _OF.places + 1)
         place = np.digitize(c.corrected, edges)
-        for i in range(1, 42):
+        for i in range(1, _OF.places + 2):
             inside = (place == i) & (np.abs(c.free_speed) > 0)
-            if inside.sum() > 3:
+            if inside.sum() >= _OF.fewest:
                 rows.append((float(c.corrected[inside].mean()), float(np.median(c.free_speed[inside]))))
     return np.array(rows)
 
@@ -178,6 +180,6 @@ def _constant(record: Record) -> list[tuple[int, int]]:
     """Ranges of samples in which the current stays at one level."""
     change = np.abs(np.diff(record.current)) > _EVEN
     edges = np.concatenate([[0], np.flatnonzero(change) + 1, [record.length]])
-    least = _SHORTEST * record.rate
+    least = _OF.shortest * record.rate
     long = [(int(a), int(b)) for a, b in pairwise(edges) if b - a >= least]
     return [(a, b) for a, b in long if np.ptp(record.current[a:b]) <= 2 * _EVEN]

@@ -14,7 +14,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from ident.bench.least_squares import LAST, Solution, solve
+from ident.bench.criteria import BENCH_CRITERIA
+from ident.bench.least_squares import Solution, solve
 from ident.bench.model import Model, dead_space
 from ident.bench.motion import groups, onsets
 from ident.bench.observed import Observed, observe
@@ -28,10 +29,7 @@ from ident.words.run_name import run_name
 
 Array = NDArray[np.float64]
 NAMES = ("B", "I0", "kp", "dPfr")
-_SEARCHED = 50.0  # Hz, for the choice among starts
-_SEARCHED_ROUGH = 250.0  # Hz, where the current jumps about
-_NARROWER = (1.0, 0.5, 0.25)  # times the width at which movements began: a current that jumps goes far beyond it
-_SHARES = (0.3, 0.6, 0.85)  # of the dead space that hysteresis may be
+_OF = BENCH_CRITERIA.static
 
 
 @dataclass(frozen=True)
@@ -50,7 +48,7 @@ class Static:
 
 def static(records: Sequence[Record], start: Model, observed: Sequence[Observed]) -> Static:
     """The quantities from these records together; `start` gives T and the speeds, with which positions tell too."""
-    return _result(records, solve(Residual(start, tuple(observed), NAMES), steps=4))
+    return _result(records, solve(Residual(start, tuple(observed), NAMES), steps=_OF.steps))
 
 
 def refined_static(records: Sequence[Record], whole: Solution) -> Static:
@@ -64,7 +62,7 @@ def refined_static(records: Sequence[Record], whole: Solution) -> Static:
     table = whole.model.table
     sides = [names[:_speeds_seen(table, seen)] for names in (table.names[: len(table.fractions)],
                                                             table.names[len(table.fractions) :])]  # fmt: skip
-    solution = solve(Residual(whole.model, observed, (*NAMES, *sides[0], *sides[1])), way=LAST)
+    solution = solve(Residual(whole.model, observed, (*NAMES, *sides[0], *sides[1])), way=BENCH_CRITERIA.fits.last)
     return _result(records, replace(solution, scatter=scatter(solution)))
 
 
@@ -104,14 +102,14 @@ def first_values(records: Sequence[Record], T: float, supply: float) -> Model:
     """
     zero, width, friction = by_groups(records)
     rough = any(record.jumps for record in records)
-    slow = observe(records, position=False, rate=_SEARCHED_ROUGH if rough else _SEARCHED)
+    slow = observe(records, position=False, rate=_OF.rough_rate if rough else _OF.rate)
     tried = []
-    for narrower in _NARROWER if rough else (1.0,):
-        for share in _SHARES:
+    for narrower in _OF.narrower if rough else (1.0,):
+        for share in _OF.shares:
             dead_space = narrower * width
             kp = friction / ((1.0 - share) * dead_space)
             model = Model(T, share * dead_space, zero, kp, friction, SpeedTable.straight(1.0), supply)
-            tried.append(solve(Residual(model, slow, NAMES), steps=4))
+            tried.append(solve(Residual(model, slow, NAMES), steps=_OF.steps))
     return min(tried, key=lambda solution: solution.cost).model
 
 
@@ -130,7 +128,7 @@ def by_groups(records: Sequence[Record]) -> tuple[float, float, float]:
                        run_name(records[0].id), "let the set position go further than the dead space")  # fmt: skip
     high, low = (float(np.median(np.concatenate(moving[sign]))) for sign in (1, -1))
     zero, width = 0.5 * float(np.median(up) + np.median(down)), 0.5 * float(np.median(up) - np.median(down))
-    return zero, max(width, 1e-5), max(0.5 * (high - low), 1.0)
+    return zero, max(width, _OF.least_width), max(0.5 * (high - low), 1.0)
 
 
 def _pressure(record: Record) -> Array:

@@ -13,19 +13,22 @@ import numpy as np
 import scipy  # optimize, which takes a third of a second to load, is loaded where it is first used
 from numpy.typing import NDArray
 
-from ident.bench.least_squares import LAST, Solution, solve
+from ident.bench.criteria import BENCH_CRITERIA
+from ident.bench.least_squares import Solution, solve
 from ident.bench.model import Model
 from ident.bench.observed import Observed
 from ident.bench.quantity import Found
 from ident.bench.residual import Residual
 from ident.bench.scatter import scatter
 from ident.effects.command_delay import COMMAND_DELAY
+from ident.words.percent import PER_CENT
 
 Array = NDArray[np.float64]
-_LARGEST, _SMALLEST = 1.0, 1e-4  # s
-_STEPS = 25
+_OF = BENCH_CRITERIA.time_constants
+_LARGEST = 1.0  # s
+_MILLISECONDS = 1e3
+"""Of a second. No answer depends on it: a unit."""
 _DELAY = COMMAND_DELAY.added[0].in_equations
-_TOLD, _SEEN = 4.0, 0.02  # standard deviations, share of T, from which on a delay is said to be there
 
 
 @dataclass(frozen=True)
@@ -77,32 +80,38 @@ class Target:
 
 def gradient_descent(target: Target, start: float) -> tuple[float, float, int]:
     """T, the target there, and the number of steps: T is moved against the slope; a step that fails is halved."""
-    place, reach = np.log(start), 0.3
+    place, reach = np.log(start), _OF.first_step
     here = target.error(start)
-    for count in range(_STEPS):
-        slope = (target.error(float(np.exp(place + 1e-3))) - here) / 1e-3
-        trial = float(np.clip(place - reach * np.sign(slope), np.log(_SMALLEST), np.log(_LARGEST)))
+    for count in range(_OF.steps):
+        slope = (target.error(float(np.exp(place + _OF.last_step))) - here) / _OF.last_step
+        trial = float(np.clip(place - reach * np.sign(slope), np.log(_OF.smallest), np.log(_LARGEST)))
         there = target.error(float(np.exp(trial)))
         if there < here:
-            place, here, reach = trial, there, reach * 1.2
+            place, here, reach = trial, there, reach * _OF.longer
         else:
-            reach *= 0.35
-        if reach < 1e-3:
+            reach *= _OF.shorter
+        if reach < _OF.last_step:
             return float(np.exp(place)), here, count + 1
-    return float(np.exp(place)), here, _STEPS
+    return float(np.exp(place)), here, _OF.steps
 
 
 def by_library(target: Target, start: float) -> float:
     """T by SciPy's least squares on the same residuals, each record with one weight whatever its length."""
 
     def stacked(place: Array) -> Array:
-        T = float(np.exp(np.clip(place[0], np.log(_SMALLEST), np.log(_LARGEST))))
+        T = float(np.exp(np.clip(place[0], np.log(_OF.smallest), np.log(_LARGEST))))
         return np.concatenate([r / np.sqrt(len(r)) for r in target.residuals(T)])
 
     found = scipy.optimize.least_squares(
-        stacked, [np.log(start)], method="lm", diff_step=1e-3, xtol=1e-4, ftol=1e-6, max_nfev=30
+        stacked,
+        [np.log(start)],
+        method="lm",
+        diff_step=_OF.last_step,
+        xtol=_OF.change,
+        ftol=_OF.gain,
+        max_nfev=_OF.evaluations,
     )
-    return float(np.exp(np.clip(found.x[0], np.log(_SMALLEST), np.log(_LARGEST))))
+    return float(np.exp(np.clip(found.x[0], np.log(_OF.smallest), np.log(_LARGEST))))
 
 
 def dynamics(model: Model, observed: Sequence[Observed]) -> Dynamics:
@@ -122,12 +131,14 @@ def delay_check(whole: Solution, drifting: Sequence[Observed]) -> tuple[Array, D
     """
     model, names, free = whole.model, (*whole.residual.names, _DELAY), frozenset({_DELAY})
     observed, rounds = whole.residual.observed, 1
-    near = solve(Residual(model, tuple(drifting), ("T", "B", _DELAY), free), steps=5)
-    if abs(near.values[_DELAY]) > _SEEN * model.T:
+    near = solve(Residual(model, tuple(drifting), ("T", "B", _DELAY), free), steps=_OF.near)
+    if abs(near.values[_DELAY]) > _OF.seen * model.T:
         model, rounds = near.model, 2
         observed = tuple(one.reweighed(model) for one in observed)
     for more in reversed(range(rounds)):
-        both = solve(Residual(model, observed, names, free), steps=8, way=LAST)
+        both = solve(
+            Residual(model, observed, names, free), steps=BENCH_CRITERIA.fits.whole, way=BENCH_CRITERIA.fits.last
+        )
         if more:
             model = both.model
             observed = tuple(one.reweighed(model) for one in observed)
@@ -142,11 +153,12 @@ def delay_check(whole: Solution, drifting: Sequence[Observed]) -> tuple[Array, D
     }
     T, B, model = both.values["T"], both.values["B"], whole.model
     doubt = ""
-    if abs(delay.value) > max(_TOLD * delay.deviation, _SEEN * model.T):
+    if abs(delay.value) > max(_OF.told * delay.deviation, _OF.seen * model.T):
+        late, lag = _MILLISECONDS * delay.value, _MILLISECONDS * T
         doubt = (
-            f"The records ask for a pure delay of {1e3 * delay.value:.2g} ms, which the four blocks lack: with it T "
-            f"would be {1e3 * T:.3g} ms instead of {1e3 * model.T:.3g} ms and B {100 * B:.3g} % instead of "
-            f"{100 * model.B:.3g} %; correlation of T and delay {correlation['T']['delay']:.2f}, of B and delay "
+            f"The records ask for a pure delay of {late:.2g} ms, which the four blocks lack: with it T would be "
+            f"{lag:.3g} ms instead of {_MILLISECONDS * model.T:.3g} ms and B {PER_CENT * B:.3g} % instead of "
+            f"{PER_CENT * model.B:.3g} %; correlation of T and delay {correlation['T']['delay']:.2f}, of B and delay "
             f"{correlation['B']['delay']:.2f}."
         )
     return around, DelayCheck(delay, T, B, correlation, doubt)
