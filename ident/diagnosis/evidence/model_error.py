@@ -22,11 +22,11 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import minimize_scalar
 
-from ident.rounding import EPSILON
 from ident.diagnosis.evidence.blocks import BlockMean, block_ratio
 from ident.diagnosis.evidence.criteria import EVIDENCE_CRITERIA, EvidenceCriteria
 from ident.linear_filter import linear_filter
 from ident.noise.autoregression import Autoregression
+from ident.rounding import EPSILON
 
 Array = NDArray[np.float64]
 
