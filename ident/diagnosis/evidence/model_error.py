@@ -6,7 +6,7 @@ size, its sign, its square and its cube with the sign kept, their products, and 
 
     A(q) e = Σ c_j A(q) φ_j + ν      φ_j the features, ν white
 
-with A(q) the autoregression of what the features leave of e (Cochrane and Orcutt 1949): so ν has no memory, and the
+with A(q) the autoregression of e less its prediction by the features (Cochrane and Orcutt 1949): so ν has no memory, and the
 coefficients c are efficient whatever the colour of the noise. Their penalty is that which makes A(q) e most likely
 (MacKay 1992). Each record is cut into stretches; the odd ones predict the even ones, and the even ones the odd ones.
 The share of the power of A(q) e that is predicted there has its error from blocks of all records in a row. It is above
@@ -37,7 +37,7 @@ def predicted_share(
 ) -> BlockMean:  # fmt: skip
     """The share of the power of the whitened residuals (n,) of some runs that their inputs predict out of fold.
 
-    At most `most_averaged` neighbouring samples of a long record make one. Where that leaves too many, parts of the
+    At most `most_averaged` neighbouring samples of a long record make one. Where these are too many, parts of the
     record stand for it.
     """
     slopes = [np.gradient(y) if len(y) > 1 else y for y in outputs]
@@ -58,7 +58,7 @@ def predicted_share(
 def _shortened(
     runs: Sequence[tuple[Array, ...]], most_averaged: int, criteria: EvidenceCriteria
 ) -> list[tuple[Array, ...]]:  # fmt: skip
-    """The signals of runs averaged over neighbouring samples, and where that leaves too many the first part of each of
+    """The signals of runs averaged over neighbouring samples, and where these are too many the first part of each of
     twelve stretches of each run."""
     total, most = sum(len(run[0]) for run in runs), criteria.model_error_samples
     every = max(1, min(-(-total // most), most_averaged))
