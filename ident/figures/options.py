@@ -82,11 +82,13 @@ def number(options: Mapping[str, Any], name: str) -> float | None:
         raise Unusable("not-a-number", f"{name} is {value!r}", "figure option", "give a number") from None
 
 
-def whole_number(options: Mapping[str, Any], name: str) -> int | None:
-    """An option that is a whole number. Raises Unusable."""
+def whole_number(options: Mapping[str, Any], name: str, least: int, most: int) -> int | None:
+    """An option that is a whole number from `least` to `most`. Raises Unusable."""
     value = number(options, name)
     if value is None:
         return None
     if not value.is_integer():
         raise Unusable("not-a-number", f"{name} is {value:g}", "figure option", "give a whole number")
+    if not least <= value <= most:
+        raise Unusable("out-of-range", f"{name} is {value:g}", "figure option", f"give {least} to {most}")
     return int(value)

@@ -81,7 +81,7 @@ def _draw(study: Study, look: Look, options: Options) -> Chart:
     (compared,) = study.compared((run,)).runs
     if compared.unstable:
         raise unstable_on(run)
-    lags = whole_number(options, "lags")
+    lags = whole_number(options, "lags", 1, run.length // 2)
     return residual_correlation(compared, study.matrix.actuator, study.fit, look, lags=lags)
 
 

@@ -56,6 +56,16 @@ class HandMade:
     modelled: np.ndarray
     unstable: bool = False
 
+    @property
+    def residual(self) -> np.ndarray:
+        """Measured − modelled, (n,)."""
+        return self.run.measured - self.modelled
+
+    @property
+    def unit(self) -> str:
+        """The unit of the residual."""
+        return self.run.units[self.run.output]
+
     def response(self, frequency: np.ndarray) -> np.ndarray:
         """The exact one."""
         return second_order(self.run, frequency)

@@ -312,6 +312,8 @@ def test_a_residual_of_a_model_that_runs_away_is_not_drawn(name, matrix, fit):
 def test_lags_are_a_whole_number(matrix, fit):
     with pytest.raises(Unusable, match=r"lags is 2\.7"):
         figure("residual-correlation", study(matrix, fit), lags="2.7")
+    with pytest.raises(Unusable, match=r"lags is 0.*give 1 to 512"):
+        figure("residual-correlation", study(matrix, fit), lags="0")
 
 
 def test_the_map_is_in_multiples_of_the_noise_on_one_scale_of_colours(matrix, fit):

@@ -6,11 +6,11 @@ size, its sign, its square and its cube with the sign kept, their products, and 
 
     A(q) e = Σ c_j A(q) φ_j + ν      φ_j the features, ν white
 
-with A(q) the autoregression of e less its prediction by the features (Cochrane and Orcutt 1949). So ν has no memory, and
-the coefficients c are efficient whatever the colour of the noise. Their penalty is that which makes A(q) e most likely
-(MacKay 1992). Each record is cut into stretches; the odd ones predict the even ones, and the even ones the odd ones.
-The share of the power of A(q) e that is predicted there has its error from blocks of all records in a row. It is above
-zero where an input has a part in the residual.
+with A(q) the autoregression of e less its prediction by the features (Cochrane and Orcutt 1949). So ν has no memory,
+and the coefficients c are efficient whatever the colour of the noise. Their penalty is that which makes A(q) e most
+likely (MacKay 1992). Each record is cut into stretches; the odd ones predict the even ones, and the even ones the odd
+ones. The share of the power of A(q) e that is predicted there has its error from blocks of all records in a row. It is
+above zero where an input has a part in the residual.
 """
 
 from __future__ import annotations
