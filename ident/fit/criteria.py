@@ -127,8 +127,8 @@ class LibrarySearches:
     """[vectors] Of a generation of CMA-ES. Why: four times its default for a dozen parameters, for local optima.
     Test: test_criteria_of_search.py::test_the_searches_of_other_libraries_have_so_many_vectors"""
     deviation: float = 0.25
-    """[of an axis] Standard deviation of its first generation. Why: a quarter of the range, as its author advises
-    (Hansen 2016).
+    """[of an axis] Standard deviation of its first generation. Why: the range is then two deviations to either
+    side.
     Test: test_criteria_of_search.py::test_the_first_generation_of_cma_es_has_a_deviation_of_a_quarter"""
     change: float = 1e-7
     """[error] Change over its last generations at which CMA-ES ends. Why: the refinement takes over.

@@ -22,7 +22,7 @@ class Innovations:
     Test: test_criteria.py::test_a_sample_is_predicted_from_the_32_before_it_or_a_tenth_of_the_record"""
     lags: float = 0.25
     """[of the record] Longest lag at which a correlation counts. Why: a quarter of the record holds each lag four times
-    (Box and Jenkins 1976, 2.1.5).
+    (Box and Jenkins 1976).
     Test: test_criteria.py::test_a_residual_that_repeats_itself_after_less_than_a_quarter_of_the_record_tells_less"""
 
 

@@ -68,7 +68,6 @@ def test_a_speed_is_smoothed_at_fifteen_hertz(monkeypatch):
 
 @pytest.mark.parametrize("of", [speed.speed, speed.curve])
 def test_the_curve_through_the_levels_is_of_the_seventh_degree(of):
-    """As in the paper (Kononykhin 2019)."""
     assert signature(of).parameters["degree"].default == 7
 
 
