@@ -16,7 +16,7 @@ from ident.simulation.kernel import Filter, constant
 Array = NDArray[np.float64]
 _TERMS = 18  # of a series in a ≤ 1
 _SERIES = [
-    np.array([[[(-1) ** k * factorial(m) / factorial(m + k + 1)]] for m in (1, 2)]) for k in reversed(range(_TERMS))
+    np.array([[(-1) ** k * factorial(m) / factorial(m + k + 1)] for m in (1, 2)]) for k in reversed(range(_TERMS))
 ]
 
 
@@ -38,24 +38,22 @@ def pack_filter(rows: Array, known: Filter, values: Mapping[str, Array]) -> None
 def _of_first_order(T: Array, step: Array) -> Array:
     """The gains of T x' = u − x, (9, lanes)."""
     start = [np.where(T > 0, 1.0, 0.0), np.where(T > 0, 0.0, 1.0)]
-    (half_left, left), *responses = _of_lag(T, np.array([step / 2, step]))
-    (of_constant, of_ramp, _), whole = zip(*responses, strict=True)
-    half = [half_left, of_constant - of_ramp, of_ramp]
-    return np.array([*start, *half, left, *_through_three(*whole)])
+    phi, of_constant, of_ramp, _ = _of_lag(T, step / 2)
+    half = [phi, of_constant - of_ramp, of_ramp]
+    phi, *responses = _of_lag(T, step)
+    return np.array([*start, *half, phi, *_through_three(*responses)])
 
 
 def _of_lag(T: Array, duration: Array) -> tuple[Array, Array, Array, Array]:
     """What a lag has left of its state after a duration, and its responses to the inputs 1, σ and σ², σ = t/duration.
 
-    `T` (lanes,) are time constants, `duration` (d, lanes) one or several of each; all that is found is (d, lanes).
     With a = duration/T they are e⁻ᵃ and ∫ a e^(−a (1 − σ)) σᵐ dσ = m! Σ (−1)ᵏ aᵏ⁺¹/(m + k + 1)!, by parts from a = 1.
     """
     with np.errstate(divide="ignore"):
         a = duration / np.maximum(T, 0.0)
     short, series = np.minimum(a, 1.0), np.zeros((2, *a.shape))
     for terms in _SERIES:
-        series += terms
-        series *= short
+        series = (series + terms) * short
     of_ramp, of_parabola = series
     of_constant, long = -np.expm1(-a), np.maximum(a, 1.0)
     ramp = np.where(a > 1.0, 1.0 - of_constant / long, of_ramp)

@@ -68,8 +68,7 @@ class Simulation:
     @cached_property
     def shape(self) -> tuple[int, int]:
         """(runs, vectors)."""
-        shapes = {np.shape(value) for value in self.values.values()}
-        wide = [(1, 1, *shape)[-2:] for shape in shapes]
+        wide = [(1, 1, *np.shape(value))[-2:] for value in self.values.values()]
         return max(len(self.runs), *(runs for runs, _ in wide)), max(vectors for _, vectors in wide)
 
     def outputs(self, length: int = 4096) -> Iterator[tuple[Array, int, int]]:
@@ -262,16 +261,9 @@ def _begun_late(command: _Input, held: Array) -> Array:
 
 def side_by_side(parts: Sequence[Simulation]) -> Simulation:
     """Simulations of the same runs, with as many steps, as one: lanes that one vector would leave empty are filled."""
-    first, *others = parts
-    if not others:
-        return first
-    ends, begun = np.cumsum([part.shape[1] for part in parts]), [one.start for one in parts if one.start is not None]
-    wide = np.empty((len(first.values), first.shape[0], ends[-1]))
-    for part, end in zip(parts, ends, strict=True):
-        for row, name in zip(wide, first.values, strict=True):
-            row[:, end - part.shape[1] : end] = part.values[name]
-    values = dict(zip(first.values, wide, strict=True))
-    return replace(first, values=values, start=np.concatenate(begun, axis=1) if begun else None)
+    names, begun = parts[0].values, [part.start for part in parts if part.start is not None]
+    wide = {name: np.hstack([np.broadcast_to(part.values[name], part.shape) for part in parts]) for name in names}
+    return replace(parts[0], values=wide, start=np.concatenate(begun, axis=1) if begun else None)
 
 
 def responses(
