@@ -74,7 +74,7 @@ def _shortened(
 
 def _averaged(signal: Array, every: int) -> Array:
     """The means of so many neighbouring samples each."""
-    return signal[: len(signal) // every * every].reshape(-1, every).mean(axis=1)
+    return np.asarray(signal[: len(signal) // every * every].reshape(-1, every).mean(axis=1))
 
 
 def _alike(signals: Sequence[Array]) -> list[Array]:
@@ -103,7 +103,8 @@ def _filtered(polynomial: Array, signal: Array) -> Array:
 
 def _lags(samples: float, criteria: EvidenceCriteria) -> Array:
     """Lags of 4, 16, 64 … samples, of which a record holds ten."""
-    return np.exp2(2.0 * np.arange(1, int(np.log2(max(samples / criteria.correlation_times, 1.0)) / 2) + 1))
+    octaves = float(np.log2(max(samples / criteria.correlation_times, 1.0)))
+    return np.asarray(np.exp2(2.0 * np.arange(1, int(octaves / 2) + 1)))
 
 
 def _features(signals: Sequence[Array], lags: Array) -> list[Array]:
