@@ -152,7 +152,7 @@ def search_space(preset: Preset, matrix: Matrix, settings: Settings, band: float
     fixed = {name: value for name, value in known.items() if name not in given} | fixed
     convention = None
     forced = force or preset.data.driven_by != "command"
-    scales = preset.scales_by(measured_by(runs))
+    scales = preset.scales_by_position if measured_by(runs) == "displacement" else preset.scales
     free = {scale.name for scale in scales} - fixed.keys() - given.keys()
     if free & set(preset.data.share_force[:1]) and not (same or forced or _loaded(runs)):
         convention = preset.data.share_force[0]
