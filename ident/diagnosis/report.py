@@ -35,7 +35,7 @@ def report(
     unknown: Errors = {**NO_ERRORS, **fit.noise_floor}
     floor = in_time(lambda: selection.models.floors.of_use(selection.models.matrix)) or unknown
     ladder = _ladder(steps, selection.added)
-    verdict = replace(conclude(findings), text=_text(selection, steps, findings, floor["fit"]))
+    verdict = replace(conclude(findings), text=_text(selection, steps, findings, floor))
     return Diagnosis(
         model=fit.model,
         effects=base.effects,
@@ -95,8 +95,8 @@ def _held(selection: Selection) -> tuple[str, ...]:
     return (f"Held at the usual value, which these data did not ask to change: {', '.join(values)}.",) if values else ()
 
 
-def _text(selection: Selection, steps: Rungs, findings: Findings, floor: float | None) -> str:
-    """The verdict in sentences."""
+def _text(selection: Selection, steps: Rungs, findings: Findings, floor: Errors) -> str:
+    """The verdict in sentences; `floor` has the noise floors by use."""
     models, verdict = selection.models, conclude(findings)
     against = tuple(filter(None, map(contradiction, findings.verify)))
     in_band = in_time(lambda: models.floors.in_band)
@@ -105,12 +105,23 @@ def _text(selection: Selection, steps: Rungs, findings: Findings, floor: float |
     fewer = None if against else better_with_fewer(steps)
     return verdict_text(
         verdict.effects, verdict.indistinguishable, findings.suspects, verdict.unexplained, steps[-1][1].errors,
-        selection.base.error, in_band is not False, floor, against, selection.complete, models.described,
+        selection.base.error, in_band is not False, floor["fit"], against, selection.complete, models.described,
         [name for name in findings.at_bound if name not in unconfirmed], fewer,
         steps[-1][1].unstable.get("verify", ()), verdict.probabilities, verdict.group_probabilities, selection.limit,
         [unconfirmed[name] for name in verdict.unconfirmed],
         verdict.noise_test is not None and verdict.noise_test.predicted is not None,
+        noise_on_validation_data(steps[-1][1].errors, floor),
     )  # fmt: skip
+
+
+def noise_on_validation_data(errors: Errors, floors: Errors) -> float | None:
+    """The error that noise makes on validation data where the model has twice as much of it there as on estimation
+    data; None where it has not, or a floor is not known."""
+    fit, there, floor, floor_there = errors.get("fit"), errors.get("verify"), floors.get("fit"), floors.get("verify")
+    if fit is None or there is None or not floor or not floor_there:
+        return None
+    excess = there / (max(fit / floor, 1.0) * floor_there)
+    return floor_there if excess > CRITERIA.noise.colour else None
 
 
 def better_with_fewer(steps: Rungs) -> tuple[float, tuple[str, ...]] | None:

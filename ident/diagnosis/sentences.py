@@ -97,6 +97,7 @@ def verdict_text(
     bounded: Sequence[str] = (), fewer: tuple[float, Sequence[str]] | None = None, unstable: Sequence[str] = (),
     probabilities: Mapping[str, float] = MappingProxyType({}), group_probabilities: Sequence[float] = (),
     limit: int | None = None, unconfirmed: Sequence[VerifyChange] = (), asked: bool = False,
+    noise_there: float | None = None,
 ) -> str:  # fmt: skip
     """The verdict in a few sentences, contradictions first.
 
@@ -107,7 +108,8 @@ def verdict_text(
     effects, "nothing" and something "unlisted", `group_probabilities` has one for each group. `limit` is the largest
     number of effects, where it ended the search. `unconfirmed` are the changes of the validation error by added effects
     that are not named. `asked`: whether the commands predict a part of the residual
-    decided whether it is noise.
+    decided whether it is noise. `noise_there` is the error that noise makes on validation data, where the model has far
+    more of it there than on estimation data.
     """
     named = _described_once(described)
     found = [one.message(named(one.effect)) for one in against]
@@ -133,6 +135,8 @@ def verdict_text(
         found.append(_probable("verdict.unpredicted", "nothing", probabilities, before=before))
     else:
         found.append(_probable("verdict.nothing", "nothing", probabilities, before=before))
+    if noise_there is not None and not unexplained and not against:
+        found.append(message("verdict.validation", error=errors["verify"], noise=noise_there))
     found += [_shows_nothing(named(change.effect), change) for change in unconfirmed]
     found += [message("verdict.bounded", effect=named(name)) for name in bounded]
     found += [_group(group, added, named, unexplained) for group in groups]

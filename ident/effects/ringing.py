@@ -123,5 +123,6 @@ def _poles(found: Array) -> NDArray[np.complex128]:
 def _answer(found: Array, u: Array) -> Array:
     """The output of the model alone for the command u, (n,); poles outside of the unit circle are mirrored into it."""
     poles = _poles(found)
-    poles = np.where(np.abs(poles) > 1.0, 1.0 / np.conj(poles), poles)
+    outside = np.abs(poles) > 1.0
+    poles[outside] = 1.0 / np.conj(poles[outside])
     return linear_filter(found[ORDER:], np.real(np.poly(poles)), u)

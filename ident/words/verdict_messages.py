@@ -114,6 +114,10 @@ VERDICT: Mapping[str, str] = {
     "verdict.nothing": "Nothing is missing: the error of {before:error} is measurement noise.",
     "verdict.nothing_probable":
         "Nothing is missing (probability {probability:probability}): the error of {before:error} is measurement noise.",
+    "verdict.validation":
+        "This holds on estimation data. On validation data the error is {error:error}, and noise makes {noise:error} "
+        "of it: the machine was different in these runs, or the model lacks something that the estimation data do "
+        "not show.",
     "verdict.predicted": "The command predicts a part of the residual, so the residual is not noise alone.",
     "verdict.none": "No effect in the library lowers the error of {before:error} by more than chance.",
     "verdict.missing_input":

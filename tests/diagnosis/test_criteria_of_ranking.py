@@ -23,6 +23,7 @@ from ident.diagnosis.ranking import (
     _target,
     rank_each,
 )
+from ident.diagnosis.verdict import Residual
 from ident.effects.dead_zone import DEAD_ZONE
 from ident.errors import Unusable
 from ident.matrix import Actuator, Matrix
@@ -102,7 +103,7 @@ def test_optima_at_half_the_strength_and_at_twice_are_begun_from_nearby(optimum)
 @pytest.mark.parametrize(("most", "added", "searched"), [(3, 3, False), (3, 2, True), (4, 4, True)])
 def test_terms_are_searched_for_unless_a_small_limit_ended_the_selection(most, added, searched):
     """Where the user says nothing four effects are added."""
-    models = SimpleNamespace(residual_above_noise=lambda _: True)
+    models = SimpleNamespace(last_residual=lambda _: Residual(0.02, 0.01))
     selection: Any = SimpleNamespace(added=("e",) * added, models=models, fitted=None)
     stages: Any = SimpleNamespace(attempt=lambda _stage, ask, _instead: ask())
     budget: Any = SimpleNamespace(most=most, propose=None)

@@ -12,7 +12,7 @@ from ident.diagnosis.candidate_models import CandidateModels
 from ident.diagnosis.discovery.proposal import Proposal
 from ident.diagnosis.evidence.blocks import BlockMean
 from ident.diagnosis.evidence.comparison import SPANS, Evidence
-from ident.diagnosis.report import better_with_fewer
+from ident.diagnosis.report import better_with_fewer, noise_on_validation_data
 from ident.diagnosis.sentences import proposed_text, verdict_text, why_of_evidence
 from ident.diagnosis.verification import Contradiction
 from ident.effects import EFFECTS
@@ -116,6 +116,24 @@ def test_where_no_command_was_repeated_it_is_said_whether_the_command_predicts_t
     assert with_probability.startswith("Nothing seems to be missing (probability 90 %): the command predicts nothing")
     missing = verdict_text((), (), (), True, {"fit": 0.07}, 0.07, in_band=False, floor=0.05, asked=True)
     assert "The command predicts a part of the residual, so the residual is not noise alone." in missing
+
+
+@pytest.mark.parametrize(
+    ("errors", "floors", "noise"),
+    [
+        ({"fit": 0.0123, "verify": 0.377}, {"fit": 0.0123, "verify": 0.0120}, 0.0120),
+        ({"fit": 0.0123, "verify": 0.0265}, {"fit": 0.0123, "verify": 0.0100}, 0.0100),
+        ({"fit": 0.0123, "verify": 0.0185}, {"fit": 0.0123, "verify": 0.0100}, None),
+        ({"fit": 0.05, "verify": 0.07}, {"fit": 0.01, "verify": 0.01}, None),  # as far above its noise
+        ({"fit": 0.01, "verify": 0.4}, {"fit": 0.01, "verify": None}, None),
+    ],
+)
+def test_nothing_is_missing_on_estimation_data_alone_where_validation_data_have_more_than_noise(errors, floors, noise):
+    """More than twice its noise, beyond what the estimation data have of theirs."""
+    assert noise_on_validation_data(errors, floors) == noise
+    text = verdict_text((), (), (), False, errors, errors["fit"], floor=floors["fit"], noise_there=noise)
+    assert text.startswith("Nothing is missing: the error of")
+    assert ("On validation data the error is" in text) is (noise is not None)
 
 
 @pytest.mark.parametrize("against", [True, False])

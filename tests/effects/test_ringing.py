@@ -149,3 +149,10 @@ def test_a_record_is_looked_at_once_by_the_effects_of_two_masses(monkeypatch):
     assert looked_at == [400, 200, 200]
     assert needs.resonant(other)
     assert len(looked_at) == 6
+
+
+def test_a_model_of_fewer_poles_has_an_answer():
+    """Its last coefficient is zero, and so is a pole; another one lies outside of the unit circle."""
+    found = np.array([2.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0])
+    answer = of_records._answer(found, np.eye(6)[0])
+    assert answer == pytest.approx(0.5 ** np.arange(6))
