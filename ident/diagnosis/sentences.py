@@ -96,7 +96,7 @@ def verdict_text(
     against: Sequence[Contradiction] = (), complete: bool = True, described: Callable[[str], str] = title,
     bounded: Sequence[str] = (), fewer: tuple[float, Sequence[str]] | None = None, unstable: Sequence[str] = (),
     probabilities: Mapping[str, float] = MappingProxyType({}), group_probabilities: Sequence[float] = (),
-    limit: int | None = None, unconfirmed: Sequence[VerifyChange] = (), asked: bool = False,
+    limit: int | None = None, unconfirmed: Sequence[VerifyChange] = (), by_prediction: bool = False,
     noise_there: float | None = None,
 ) -> str:  # fmt: skip
     """The verdict in a few sentences, contradictions first.
@@ -107,9 +107,9 @@ def verdict_text(
     these effects; `unstable` are the validation runs on which the model is unstable with them. `probabilities` has the
     effects, "nothing" and something "unlisted", `group_probabilities` has one for each group. `limit` is the largest
     number of effects, where it ended the search. `unconfirmed` are the changes of the validation error by added effects
-    that are not named. `asked`: whether the commands predict a part of the residual
-    decided whether it is noise. `noise_there` is the error that noise makes on validation data, where the model has far
-    more of it there than on estimation data.
+    that are not named. `by_prediction`: whether a prediction of the residual by the inputs decided whether it is noise.
+    `noise_there` is the error that noise makes on validation data, where the model has far more of it there than on
+    estimation data.
     """
     named = _described_once(described)
     found = [one.message(named(one.effect)) for one in against]
@@ -131,7 +131,7 @@ def verdict_text(
         found.append(message("verdict.none", before=before))
     elif floor is None:
         found.append(message("verdict.white", before=before))
-    elif asked:
+    elif by_prediction:
         found.append(_probable("verdict.unpredicted", "nothing", probabilities, before=before))
     else:
         found.append(_probable("verdict.nothing", "nothing", probabilities, before=before))
@@ -144,7 +144,7 @@ def verdict_text(
         found.append(message("verdict.others", others=others))
     found += [message("verdict.label", run=one.run, what=one.what, evidence=one.evidence) for one in suspects]
     if unexplained:
-        found += _remaining(complete, limit, probabilities, in_band, floor, asked)
+        found += _remaining(complete, limit, probabilities, in_band, floor, by_prediction)
     return said(found)
 
 

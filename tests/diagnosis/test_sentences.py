@@ -108,13 +108,13 @@ def test_where_the_noise_floor_was_measured_is_said_where_it_is_not_that_of_the_
 
 def test_where_no_command_was_repeated_it_is_said_whether_the_command_predicts_the_residual():
     probable = {"nothing": 0.9, "unlisted": 0.05}
-    noise = verdict_text((), (), (), False, {"fit": 0.07}, 0.07, in_band=False, floor=0.05, asked=True)
+    noise = verdict_text((), (), (), False, {"fit": 0.07}, 0.07, in_band=False, floor=0.05, by_prediction=True)
     assert noise == "Nothing seems to be missing: the command predicts nothing of the residual, 7.00 %."
     with_probability = verdict_text(
-        (), (), (), False, {"fit": 0.07}, 0.07, in_band=False, floor=0.05, asked=True, probabilities=probable
+        (), (), (), False, {"fit": 0.07}, 0.07, in_band=False, floor=0.05, by_prediction=True, probabilities=probable
     )
     assert with_probability.startswith("Nothing seems to be missing (probability 90 %): the command predicts nothing")
-    missing = verdict_text((), (), (), True, {"fit": 0.07}, 0.07, in_band=False, floor=0.05, asked=True)
+    missing = verdict_text((), (), (), True, {"fit": 0.07}, 0.07, in_band=False, floor=0.05, by_prediction=True)
     assert "The command predicts a part of the residual, so the residual is not noise alone." in missing
 
 
