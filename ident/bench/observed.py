@@ -31,7 +31,8 @@ _OF = BENCH_CRITERIA.comparison
 _WHITE = np.sqrt(12.0)
 """The step of a converter over the deviation of its white error (Widrow 1956)."""
 _UNKNOWN = 1e-6
-"""Deviation of a position, m, of which nothing is known yet. No answer depends on it: it is weighed anew."""
+"""Deviation of a position, m, of which nothing is known yet. No answer depends on it: the weight is worked out
+again."""
 _NOTHING = np.empty(0)
 _NO_MOVES = np.zeros((0, 2, 1, 2 * 2))
 STEPS = 2 * 2

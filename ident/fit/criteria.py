@@ -110,7 +110,7 @@ class SearchOptions:
 
 
 @dataclass(frozen=True)
-class LibrarySearches:
+class CrossCheckSearches:
     """The searches of other libraries, as cross-checks."""
 
     generations: int = 150
@@ -305,7 +305,7 @@ class Criteria:
 
     search: GeneticSearch = GeneticSearch()
     search_options: SearchOptions = SearchOptions()
-    library_searches: LibrarySearches = LibrarySearches()
+    cross_check_searches: CrossCheckSearches = CrossCheckSearches()
     band: Band = Band()
     reduced: ReducedRecords = ReducedRecords()
     first_states: FirstStates = FirstStates()

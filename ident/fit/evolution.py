@@ -13,7 +13,7 @@ from ident.fit.criteria import FIT_CRITERIA
 
 Array = NDArray[np.float64]
 Errors = Callable[[Array], Array]
-_OF = FIT_CRITERIA.library_searches
+_OF = FIT_CRITERIA.cross_check_searches
 GENERATIONS = dict.fromkeys(("differential-evolution", "cma-es"), _OF.generations)
 _SILENT = -9
 """Of pycma: it prints nothing. No answer depends on it."""

@@ -26,6 +26,7 @@ from ident.diagnosis.evidence.blocks import BlockMean, block_ratio
 from ident.diagnosis.evidence.criteria import EVIDENCE_CRITERIA, EvidenceCriteria
 from ident.linear_filter import linear_filter
 from ident.noise.autoregression import Autoregression
+from ident.residuals.decimation import averaged
 from ident.rounding import EPSILON
 
 Array = NDArray[np.float64]
@@ -38,7 +39,7 @@ def predicted_share(
     """The share of the power of the whitened residuals (n,) of some runs that their inputs predict out of fold.
 
     At most `most_averaged` neighbouring samples of a long record make one. Where these are too many, parts of the
-    record stand for it.
+    record are used.
     """
     slopes = [np.gradient(y) if len(y) > 1 else y for y in outputs]
     runs = [(r, *given, y, v) for r, given, y, v in zip(residuals, inputs, outputs, slopes, strict=True)]
@@ -48,7 +49,7 @@ def predicted_share(
     whitened = [_whitened(part[0], _features(of, lags)) for part, *of in zip(parts, *of_all_runs, strict=True)]
     e, rows = np.concatenate([e for e, _ in whitened]), np.concatenate([rows for _, rows in whitened], axis=1)
     fold = np.concatenate([np.arange(len(e)) * criteria.enough_blocks // max(len(e), 1) % 2 for e, _ in whitened])
-    penalty, predicted = _most_likely_penalty(rows, e), np.zeros(len(e))
+    (_, penalty), predicted = _most_likely(rows, e), np.zeros(len(e))
     for held_out in (0, 1):
         seen = fold != held_out
         predicted[~seen] = _coefficients(rows[:, seen], e[seen], penalty) @ rows[:, ~seen]
@@ -62,19 +63,14 @@ def _shortened(
     twelve stretches of each run."""
     total, most = sum(len(run[0]) for run in runs), criteria.model_error_samples
     every = max(1, min(-(-total // most), most_averaged))
-    averaged = [tuple(_averaged(signal, every) for signal in run) for run in runs]
+    coarse = [tuple(averaged(signal, every) for signal in run) for run in runs]
     if total <= every * most:
-        return averaged
+        return coarse
     share = every * most / total
     stretches = [
-        tuple(zip(*(np.array_split(signal, criteria.enough_blocks) for signal in run), strict=True)) for run in averaged
+        tuple(zip(*(np.array_split(signal, criteria.enough_blocks) for signal in run), strict=True)) for run in coarse
     ]
     return [tuple(signal[: int(len(signal) * share)] for signal in stretch) for of in stretches for stretch in of]
-
-
-def _averaged(signal: Array, every: int) -> Array:
-    """The means of so many neighbouring samples each."""
-    return np.asarray(signal[: len(signal) // every * every].reshape(-1, every).mean(axis=1))
 
 
 def _alike(signals: Sequence[Array]) -> list[Array]:
@@ -89,7 +85,7 @@ def _whitened(residual: Array, features: Sequence[Array]) -> tuple[Array, Array]
     and over the same deviation."""
     e, rows = residual - residual.mean(), np.array([feature - feature.mean() for feature in features])
     size = float(e.std()) or 1.0
-    noise = e / size - _coefficients(rows, e / size, _most_likely_penalty(rows, e / size)) @ rows
+    noise = e / size - _most_likely(rows, e / size)[0] @ rows
     polynomial = Autoregression.of(noise).polynomial
     innovations, behind = _filtered(polynomial, e), np.array([_filtered(polynomial, row) for row in rows])
     size = float(innovations.std()) if len(innovations) and innovations.any() else 1.0
@@ -120,8 +116,8 @@ def _lagged(signal: Array, lag: float) -> Array:
     return linear_filter(np.array([1 - kept]), np.array([1.0, -kept]), signal)
 
 
-def _most_likely_penalty(rows: Array, e: Array) -> float:
-    """The penalty on the squares of the coefficients that makes e (n,) most likely (MacKay 1992).
+def _most_likely(rows: Array, e: Array) -> tuple[Array, float]:
+    """The coefficients of the features, and the penalty on their squares that makes e (n,) most likely (MacKay 1992).
 
     −2 ln p = n ln(Σ e² − Σ z²/(d + λ)) + Σ ln(1 + d/λ)      d the eigenvalues of Φ Φᵀ, z Φ e in their directions
     """
@@ -129,7 +125,7 @@ def _most_likely_penalty(rows: Array, e: Array) -> float:
     d, z = np.maximum(d, 0.0), directions.T @ (rows @ e)
     power, largest = float(e @ e), float(d.max(initial=0.0))
     if not power > 0 or not largest > 0:
-        return 1.0
+        return np.zeros(len(rows)), 1.0
 
     def unlikely(logarithm: float) -> float:
         penalty = float(np.exp(logarithm))
@@ -137,7 +133,8 @@ def _most_likely_penalty(rows: Array, e: Array) -> float:
         return len(e) * float(np.log(remaining)) + float(np.sum(np.log1p(d / penalty)))
 
     bounds = np.log(largest) + np.log(EPSILON) / 2, np.log(largest) - np.log(EPSILON) / 2
-    return float(np.exp(minimize_scalar(unlikely, bounds=bounds, method="bounded").x))
+    penalty = float(np.exp(minimize_scalar(unlikely, bounds=bounds, method="bounded").x))
+    return np.asarray(directions @ (z / (d + penalty))), penalty
 
 
 def _coefficients(rows: Array, e: Array, penalty: float) -> Array:
