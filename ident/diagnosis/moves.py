@@ -270,6 +270,20 @@ class Moves:
             selection = self.keep(replace(selection, alternatives=alternatives))
         return selection
 
+    def most_probable(self, selection: Selection) -> Selection | None:
+        """Go to the most probable set of as many effects, of those that the search refitted.
+
+        A name is never less probable than that of another set that a user reads beside it.
+        """
+        best = self.refitted_sets.most_probable(selection.fitted)
+        if best is None:
+            return None
+        selection, _ = self._backward(self.step(replace(selection, changes=selection.changes + 1), best))
+        selection, in_place = self._in_place_of_each(selection)
+        groups = zip(selection.added, in_place, strict=True)
+        alternatives = {name: indistinguishable_group(name, selection.fitted, ranking) for name, ranking in groups}
+        return self.keep(replace(selection, alternatives=alternatives))
+
     def _is_better(self, fitted: FittedModel, name: str, other: Candidate) -> bool:
         """Whether another effect is better in the place of `name`; the same effect, refitted, is at a better
         optimum."""

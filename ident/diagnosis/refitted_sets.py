@@ -17,7 +17,7 @@ from ident.diagnosis.evidence.comparison import common_disturbance, gain, most
 from ident.diagnosis.evidence.probability import NOTHING, SetGains
 from ident.diagnosis.fitted_model import FittedModel
 from ident.diagnosis.free_shapes import freed_widths
-from ident.diagnosis.model_comparison import both_probable
+from ident.diagnosis.model_comparison import both_probable, runs_away
 
 
 @dataclass
@@ -30,7 +30,7 @@ class RefittedSets:
     def met(self, models: Iterable[FittedModel]) -> None:
         """Record each model whose held-out error is finite and below that of the known model with the same effects."""
         for model in models:
-            added = frozenset(model.effects) - frozenset(self.base.effects)
+            added = self._added(model)
             best = self.best.get(added)
             known = model.finite and np.isfinite(model.held_out.score)
             if added and known and (best is None or model.held_out.score < best.held_out.score):
@@ -42,6 +42,21 @@ class RefittedSets:
         others = [model for model in as_many if {*model.effects} != {*fitted.effects}]
         probable = [model for model in others if both_probable(fitted, model)]
         return sorted(probable, key=lambda model: model.held_out.score)
+
+    def most_probable(self, fitted: FittedModel) -> FittedModel | None:
+        """The model of another set of as many effects that is more probable than the fitted one; None where none is.
+
+        Two models may be apart by more than the noise, and neither be better beyond chance. The gains of all sets under
+        one disturbance decide then, as they decide the probabilities that a user is shown.
+        """
+        gains, here = self.gains().gains, self._added(fitted)
+        least = gains.get(here, np.inf) * (1.0 + CRITERIA.equality.tie)
+        rivals = [of for of in self.best if len(of) == len(here) and gains[of] > least]
+        freely = [of for of in rivals if not runs_away(fitted, self.best[of])]
+        return self.best[max(freely, key=lambda of: gains[of])] if freely else None
+
+    def _added(self, model: FittedModel) -> frozenset[str]:
+        return frozenset(model.effects) - frozenset(self.base.effects)
 
     def gains(self) -> SetGains:
         """The gain of each set in nats, less the charge for its free widths."""

@@ -4,7 +4,8 @@ Forward: the best effect of the ranking is added while it improves the model bey
 became redundant are taken out. Then each added effect is compared with all others in its place: a better one is
 exchanged for it, and effects that are indistinguishable from it are its alternatives. Where all of this ends above the
 noise, the search continues from all promising effects at once, from the next best sets, from strong
-effects, and from pairs of effects in the place of one; then it begins again with an effect whose widths are free.
+effects, and from pairs of effects in the place of one; then it begins again with an effect whose widths are free. At
+the end the most probable of the sets with as many effects is taken.
 """
 
 from __future__ import annotations
@@ -39,7 +40,8 @@ def select(moves: Moves, selection: Selection) -> Selection:
                 selection = farther
                 break
             selection = add_and_exchange(moves, farther)
-        moves.keep(replace(moves.prune_path(selection) or selection, complete=True))
+        selection = moves.prune_path(selection) or selection
+        moves.keep(replace(moves.most_probable(selection) or selection, complete=True))
     return moves.with_what_was_met(moves.latest)
 
 

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from ident.diagnosis import refitted_sets
 from ident.diagnosis.criteria import CRITERIA
 from ident.diagnosis.evidence.comparison import Residuals
 from ident.diagnosis.evidence.energy_bands import EnergyBands, Record
@@ -16,6 +17,7 @@ from ident.diagnosis.evidence.probability import NOTHING
 from ident.diagnosis.refitted_sets import RefittedSets
 
 NOISE = 0.01 * np.random.default_rng(21).standard_normal(600)
+FITNESS = SimpleNamespace(horizon=None)
 BANDS = EnergyBands((Record(1.0, floor=1e-4),), (600,))
 
 
@@ -24,7 +26,9 @@ def refit(*effects: str, left: float, finite: bool = True, free: Sequence[str] =
     residuals = Residuals((NOISE + left * np.sin(np.arange(600) / 7.0),), BANDS)
     held_out = SimpleNamespace(score=residuals.power**0.5)
     space = SimpleNamespace(names=free)
-    return SimpleNamespace(effects=effects, finite=finite, held_out=held_out, residuals_held_out=residuals, space=space)
+    return SimpleNamespace(
+        effects=effects, finite=finite, held_out=held_out, residuals_held_out=residuals, space=space, fitness=FITNESS
+    )
 
 
 def test_the_best_refit_of_each_set_is_kept_and_its_gain_is_over_the_fitted_model():
@@ -37,6 +41,23 @@ def test_the_best_refit_of_each_set_is_kept_and_its_gain_is_over_the_fitted_mode
     assert found.gains[NOTHING] == 0.0
     assert found.gains[frozenset("a")] > 50
     assert found.most == pytest.approx(found.gains[frozenset("a")], rel=0.05)
+
+
+def test_the_most_probable_set_has_the_largest_gain_of_those_with_as_many_effects():
+    """Not of more effects, nor one that runs away, nor the fitted set itself."""
+    sets = RefittedSets(refit(left=0.1))
+    named, rival, pair = refit("a", left=0.02), refit("b", left=0.01), refit("a", "c", left=0.0)
+    sets.met([named, rival, pair])
+    assert sets.most_probable(named) is rival
+    assert sets.most_probable(rival) is None
+    assert sets.most_probable(pair) is None
+
+
+def test_a_set_that_runs_away_is_not_the_most_probable(monkeypatch):
+    sets, named = RefittedSets(refit(left=0.1)), refit("a", left=0.02)
+    sets.met([named, refit("b", left=0.01)])
+    monkeypatch.setattr(refitted_sets, "runs_away", lambda before, after: before is named and after.effects == ("b",))
+    assert sets.most_probable(named) is None
 
 
 def test_a_width_that_was_freed_is_charged_as_a_parameter():

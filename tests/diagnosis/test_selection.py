@@ -53,7 +53,7 @@ class Judged:
 
     effects = ("a", "b", "c")
     floor = 0.1
-    freed = spring = shown = worsening = together = ""
+    freed = spring = shown = worsening = together = probable = ""
 
     def __init__(self, scores: dict[str, float], needed: set[str], far: str, late: str, off: str) -> None:
         self.off = off
@@ -172,6 +172,10 @@ class Judged:
         """Those that take the place of a spring."""
         return [name for name in names if name == self.spring]
 
+    def most_probable(self, fitted):
+        """The effect that is more probable than the first alone."""
+        return self.refit((self.probable,), {}) if self.probable and fitted.effects == ("a",) else None
+
     def is_shown(self, effect):
         """Whether the records show it by themselves."""
         return effect == self.shown
@@ -184,6 +188,7 @@ class Judged:
         for module, names in ((moves, ranked + judged), *equal, (refitted_sets, ("both_probable",))):
             for name in names:
                 monkeypatch.setattr(module, name, getattr(self, name))
+        monkeypatch.setattr(refitted_sets.RefittedSets, "most_probable", self.most_probable)
 
 
 def selected(judged: Judged) -> Selection:
@@ -292,6 +297,18 @@ def test_what_is_found_elsewhere_counts_in_the_probabilities(monkeypatch):
     monkeypatch.setattr(moves, "deepened", deepened)
     found = selected(judged)
     assert found.refitted_sets.best[frozenset("b")].held_out.score == 0.1
+
+
+def test_the_most_probable_of_two_effects_that_leave_nearly_as_much_is_named(monkeypatch):
+    """a leaves a little less than b, not beyond chance, and b is more probable: b is named, in a group with a."""
+    judged = Judged({"": 1.0, "a": 0.09, "b": 0.091, "c": 0.8, "ab": 0.09}, needed={"a", "b"}, far="", late="", off="")
+    judged.stand_in(monkeypatch)
+    assert selected(judged).added == ("a",)
+    monkeypatch.setattr(Judged, "probable", "b")
+    found = selected(judged)
+    assert found.added == ("b",)
+    assert found.complete
+    assert "b" in {one.effect for one in found.alternatives["b"]}
 
 
 def test_a_group_holds_what_cannot_be_told_from_the_best_or_from_the_named_effect(monkeypatch):
