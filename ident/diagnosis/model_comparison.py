@@ -57,9 +57,9 @@ def both_probable(first: FittedModel, second: FittedModel) -> bool:
     return finite_held_out(first) and finite_held_out(second) and comparison.both_probable(evidence(first, second))
 
 
-def runs_away(before: FittedModel, after: FittedModel) -> bool:
-    """Whether the free run of the second model is worse beyond its uncertainty, although it is as good over windows."""
-    return not comparison.runs_freely(evidence(before, after))
+def runs_freely(before: FittedModel, after: FittedModel) -> bool:
+    """Whether the free run of the second model is no worse than that of the first beyond its uncertainty."""
+    return comparison.runs_freely(evidence(before, after))
 
 
 def verified_change(effect: str, less: FittedModel, more: FittedModel) -> VerifyChange | None:

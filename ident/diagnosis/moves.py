@@ -273,7 +273,7 @@ class Moves:
     def most_probable(self, selection: Selection) -> Selection | None:
         """Go to the most probable set of as many effects, of those that the search refitted.
 
-        A name is never less probable than that of another set that a user reads beside it.
+        No name is less probable than another set of as many effects that a user reads of.
         """
         best = self.refitted_sets.most_probable(selection.fitted)
         if best is None:

@@ -17,7 +17,7 @@ from ident.diagnosis.evidence.comparison import common_disturbance, gain, most
 from ident.diagnosis.evidence.probability import NOTHING, SetGains
 from ident.diagnosis.fitted_model import FittedModel
 from ident.diagnosis.free_shapes import freed_widths
-from ident.diagnosis.model_comparison import both_probable, runs_away
+from ident.diagnosis.model_comparison import both_probable, runs_freely
 
 
 @dataclass
@@ -51,9 +51,9 @@ class RefittedSets:
         """
         gains, here = self.gains().gains, self._added(fitted)
         least = gains.get(here, np.inf) * (1.0 + CRITERIA.equality.tie)
-        rivals = [of for of in self.best if len(of) == len(here) and gains[of] > least]
-        freely = [of for of in rivals if not runs_away(fitted, self.best[of])]
-        return self.best[max(freely, key=lambda of: gains[of])] if freely else None
+        others = [of for of in self.best if len(of) == len(here) and gains[of] > least]
+        sound = [of for of in others if runs_freely(fitted, self.best[of])]
+        return self.best[max(sound, key=lambda of: gains[of])] if sound else None
 
     def _added(self, model: FittedModel) -> frozenset[str]:
         return frozenset(model.effects) - frozenset(self.base.effects)
