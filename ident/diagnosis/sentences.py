@@ -13,7 +13,7 @@ from ident.diagnosis.discovery.proposal import Proposal
 from ident.diagnosis.evidence.comparison import SPANS, Evidence, generalises, losing_part, matters, runs_freely
 from ident.diagnosis.evidence.criteria import EVIDENCE_CRITERIA
 from ident.diagnosis.evidence.free_run import FreeRun, drifts
-from ident.diagnosis.evidence.probability import is_improbable
+from ident.diagnosis.evidence.probability import is_improbable, is_rather_noise
 from ident.diagnosis.result import Explanation, Suspect
 from ident.diagnosis.run_consistency import InconsistentParameter
 from ident.diagnosis.total_delay import TotalDelay
@@ -175,7 +175,10 @@ def _remaining(
 ) -> Iterator[Message]:  # fmt: skip
     """The messages that the residual is more than noise, and why a part of it may be noise or a further effect."""
     examined = complete and limit is None
-    yield _probable("verdict.unlisted" if examined else "verdict.remains", "unlisted", probabilities)
+    if is_rather_noise(probabilities):
+        yield message("verdict.above_floor", probability=probabilities["unlisted"])
+    else:
+        yield _probable("verdict.unlisted" if examined else "verdict.remains", "unlisted", probabilities)
     if limit is not None:
         yield message("verdict.limited", limit=limit)
     if predicted:

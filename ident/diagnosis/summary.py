@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
-from ident.diagnosis.evidence.probability import is_improbable
+from ident.diagnosis.evidence.probability import is_improbable, is_rather_noise
 from ident.diagnosis.result import Diagnosis, Suspect
 from ident.diagnosis.sentences import has_two
 from ident.words.message import Message, message
@@ -43,6 +43,8 @@ def _missing(diagnosis: Diagnosis) -> Message:
         return message("summary.label", run=verdict.suspects[0].run)
     if not diagnosis.complete:
         return message("summary.stopped" if diagnosis.candidates else "summary.unexamined")
+    if verdict.unexplained and is_rather_noise(verdict.probabilities):
+        return message("summary.above_floor", probability=verdict.probabilities["nothing"])
     if verdict.unexplained:
         return _probable(diagnosis, "unlisted", "summary.unlisted", "summary.unlisted_probable")
     return _probable(diagnosis, "nothing", "summary.nothing", "summary.nothing_probable")
@@ -68,7 +70,8 @@ def _missing_and_helping(diagnosis: Diagnosis, named: Sequence[Message]) -> Mess
     missing = [effect for effect, doubted in zip(named, improbable, strict=True) if not doubted]
     helping = [effect for effect, doubted in zip(named, improbable, strict=True) if doubted]
     if not helping:
-        partly = diagnosis.verdict.standing == "stand_in" and diagnosis.verdict.unexplained
+        remains = diagnosis.verdict.unexplained and not is_rather_noise(of_all)
+        partly = diagnosis.verdict.standing == "stand_in" and remains
         return message("summary.missing_partly" if partly else "summary.missing", effects=missing)
     if not missing:
         return message("summary.helping_by_chance" if _by_chance(diagnosis) else "summary.helping", helping=helping)

@@ -168,10 +168,11 @@ def _probabilities(findings: Findings, criteria: Criteria) -> Probabilities | No
 def _probability(
     findings: Findings, of_sets: Probabilities, named: Names, groups: Sequence[Names], criteria: Criteria
 ) -> float:
-    """The probability that every named effect, or one of its group, acts; without a name, of the verdict."""
+    """The probability that every named effect, or one of its group, acts; without a name, that no listed effect acts,
+    and where the residual is noise, that nothing unlisted does either."""
     if named:
         return of_sets.of(next((group for group in groups if name in group), (name,)) for name in named)
-    return of_sets.with_unlisted[NOTHING] if _unexplained(findings, criteria) else of_sets.nothing
+    return of_sets.nothing + of_sets.with_unlisted[NOTHING] * _unexplained(findings, criteria)
 
 
 def _of_group(group: Names, of_sets: Probabilities, named: Names) -> float:

@@ -24,6 +24,9 @@ SUMMARY: Mapping[str, str] = {
     "summary.unlisted": "Missing: something that no effect in the library explains.",
     "summary.unlisted_probable":
         "Missing: something that no effect in the library explains (probability {probability:probability}).",
+    "summary.above_floor":
+        "Probably nothing is missing (probability {probability:probability}), though the error is larger than its "
+        "noise floor explains.",
     "summary.nothing": "Nothing is missing.",
     "summary.nothing_probable": "Nothing is missing (probability {probability:probability}).",
     "summary.missing_input": "Missing: an input that is not in the record of {run:run}.",
@@ -143,6 +146,9 @@ VERDICT: Mapping[str, str] = {
         "chance, or than the unexplained residual.",
     "verdict.others": "Nearly as probable: {others:all}.",
     "verdict.label": "The label of {run:run} in matrix.yaml looks wrong ({what}): {evidence}.",
+    "verdict.above_floor":
+        "The error is larger than its noise floor explains. Drift and disturbances are a more probable cause than "
+        "something that no effect in the library explains (probability {probability:probability}).",
     "verdict.unlisted": "Something remains that no effect in the library explains.",
     "verdict.unlisted_probable":
         "Something remains that no effect in the library explains (probability {probability:probability}).",

@@ -60,6 +60,12 @@ def test_an_effect_of_a_group_is_said_with_the_others_and_the_probability_of_the
     assert "More probably this has another cause, or is chance." in text
 
 
+def test_an_error_above_its_floor_is_drift_rather_than_something_unlisted_where_that_is_more_probable():
+    for unlisted, said in ((0.09, "Drift and disturbances are a more probable cause"), (0.6, "Something remains that")):
+        text = verdict_text((), (), (), True, {"fit": 0.2}, 0.2, probabilities={"nothing": 0.3, "unlisted": unlisted})
+        assert said in text
+
+
 def test_effects_that_are_nearly_as_probable_as_the_named_one_are_said():
     """Dry friction of two forms explains nearly as much: whoever reads one name alone would think that it is sure."""
     probable = {"presliding_friction": 0.11, "coulomb_friction": 0.1, "backlash": 0.09, "dead_zone": 0.05}

@@ -51,6 +51,9 @@ def test_of_a_stand_in_the_first_line_says_that_more_is_missing_and_the_last_whe
     assert partly.summary[2] == "Next: add it. Then search for unknown terms."
     run = NextRun(amplitude=1e-3, signal="blwn", frequency=10.0, seconds=5.0, sample_rate=1000.0)
     assert replace(partly, next_experiment=run).summary[2] == "Next: add it. Then record the proposed run."
+    named = {"dead_zone": 0.999, "unlisted": 0.1}
+    alone = replace(partly, verdict=replace(partly.verdict, probabilities=named))
+    assert alone.summary[0] == "Missing: dead zone (80.00 ± 0.20 µm, probability over 99 %)."
     limited = replace(partly, max_effects=1).summary[2]
     assert limited == "Next: search again with up to 2 effects in all (--max-effects 2)."
 
@@ -86,6 +89,10 @@ def test_nothing_something_unlisted_and_what_is_contradicted_are_said():
     assert nothing.summary[0] == "Nothing is missing (probability 97 %)."
     assert nothing.summary[1] == "The error on validation data is 11.0 %; the noise floor is 0.500 %."
     assert nothing.summary[2] == "Next: use the model as it is."
+    more = replace(nothing, verdict=Verdict(unexplained=True, probabilities={"nothing": 0.89, "unlisted": 0.09}))
+    assert more.summary[0] == (
+        "Probably nothing is missing (probability 89 %), though the error is larger than its noise floor explains."
+    )
     unlisted = replace(nothing, verdict=Verdict(unexplained=True, probabilities={"unlisted": 0.9}))
     assert unlisted.summary[0] == "Missing: something that no effect in the library explains (probability 90 %)."
     against = lines(standing="contradicted", contradicted_by=("dead_zone",))

@@ -71,6 +71,17 @@ def test_beyond_effects_whose_residual_is_noise_nothing_unlisted_is_probable():
     assert missing.probabilities["unlisted"] > 0.9
 
 
+def test_without_a_name_the_verdict_is_as_probable_as_that_no_listed_effect_acts():
+    """Where the residual is noise, that nothing unlisted acts either."""
+    gains = SetGains({NOTHING: 0.0, frozenset({"lead"}): 10.0}, most=20.0)
+    nothing = replace(LEAD, added=(), set_gains=gains, residual=Residual(0.01, 0.01))
+    verdict = conclude(nothing)
+    assert verdict.probability == pytest.approx(verdict.probabilities["nothing"])
+    above = conclude(replace(nothing, residual=Residual(0.02, 0.01)))
+    assert above.unexplained
+    assert above.probability == pytest.approx(1.0 - above.probabilities["lead"])
+
+
 def test_what_only_a_dispensable_effect_was_contradicted_by_is_a_stand_in():
     """Two effects, and runs to verify that speak against one: beside confirmed terms that one is not needed."""
     two = replace(LEAD, added=("lead", "lag"), verify=(RISES,))

@@ -103,6 +103,14 @@ def is_improbable(probability: float | None, of_all: Mapping[str, float]) -> boo
     return of_all.get("unlisted", 0.0) >= 0.5 or of_all.get("nothing", 0.0) > probability
 
 
+def is_rather_noise(of_all: Mapping[str, float]) -> bool:
+    """Whether it is more probable that nothing unlisted acts, although the residual is above its limit of noise.
+
+    False where the probabilities, those of :attr:`Probabilities.named`, are not known.
+    """
+    return of_all.get("unlisted", 1.0) < 0.5
+
+
 def structure_probabilities(
     gains: Sequence[float], parameters: Sequence[int], criteria: EvidenceCriteria = EVIDENCE_CRITERIA
 ) -> list[float]:
