@@ -395,7 +395,8 @@ class Moves:
         One effect at a time may lead to a wrong set: two lags look like a delay, and then the search adds effects that
         correct the difference.
         """
-        first = selection.path[1].effects[-1] if len(selection.path) > 1 else ""  # the others were tried with it
+        begun = (fitted.effects for fitted in selection.path if len(fitted.effects) > len(selection.base.effects))
+        first = next(begun, ("",))[-1]  # the others were tried with it
         finalists = [c.refit for c in selection.ranking if c.refit is not None and c.effect != first]
         finalists = finalists[: CRITERIA.ranking.finalists]
         if self.most < 2 or len(finalists) < 2:

@@ -240,6 +240,18 @@ def test_two_of_which_neither_helps_beside_what_stands_for_both_are_found(added)
     assert added({**scores, "b": 0.7}, needed={"a", "b", "c"}, late="c") == {"a"}  # b is improbable beside a
 
 
+def test_pairs_are_tried_where_an_effect_only_led_to_a_better_optimum_of_the_given_model(monkeypatch):
+    """The path then begins with two models without an effect, and no effect was tried with all others."""
+    scores = {"": 1.0, "a": 0.5, "b": 0.7, "c": 0.7, "ab": 0.6, "ac": 0.6, "bc": 0.05}
+    judged = Judged(scores, needed={"a", "b", "c"}, far="", late="", off="")
+    judged.stand_in(monkeypatch)
+    search = Moves(judged, judged.refit((), {}), 2, lambda *_: None)  # type: ignore[arg-type]
+    ranked = search.first_ranking(search.latest)
+    found = search.pair_search(replace(ranked, path=(search.base, judged.refit((), {}))))
+    assert found is not None
+    assert set(found.added) == {"b", "c"}
+
+
 @pytest.mark.parametrize(("left", "found"), [(0.05, {"b", "c"}), (0.2, {"a"})])
 def test_effects_that_are_found_only_all_at_once_have_to_explain_everything(added, monkeypatch, left, found):
     """a stands for b and c, of which no search has a refit; what is found at once is taken where it leaves noise."""
