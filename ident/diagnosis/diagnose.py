@@ -122,11 +122,14 @@ class Diagnoser:
         with suppress(TimeIsUp):  # the search below then ends at once, with the first ranking
             longer = longer_horizon(moves, self.budget.report_progress)
         if longer is not None:
-            further = self._moves(longer.models, longer.start)
-            selection = select(further, further.latest)
+            selection = self._searched(self._moves(longer.models, longer.start))
             if selection.added:
                 return selection
-        return select(moves, moves.latest)
+        return self._searched(moves)
+
+    def _searched(self, moves: Moves) -> Selection:
+        """The selection of a search; where a move fails, the latest selection before it."""
+        return self.stages.kept(FURTHER, lambda: select(moves, moves.latest), lambda: moves.latest)
 
     def _moves(self, models: CandidateModels, begin: FittedModel | None = None) -> Moves:
         preset = models.model(self.fit.effects)

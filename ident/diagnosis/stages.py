@@ -48,14 +48,23 @@ class Stages:
         raised."""
         try:
             self.budget.budget.check()
-            return make()
+            return self.kept(stage, make, lambda: instead)
         except TimeIsUp:
             self.miss(stage)
+        return instead
+
+    def kept(self, stage: str, make: Callable[[], Made], so_far: Callable[[], Made]) -> Made:
+        """The result of a stage; where it fails, its result `so_far`. TimeIsUp and an error of the caller's own are
+        raised."""
+        try:
+            return make()
+        except TimeIsUp:
+            raise
         except Exception as error:
             if self.budget.is_stopped_by(error):
                 raise
             self._failed(stage, error)
-        return instead
+        return so_far()
 
     def miss(self, stage: str) -> None:
         """Record that there was no time for a stage."""

@@ -13,8 +13,9 @@ from ident.diagnosis import diagnose as diagnosing
 from ident.diagnosis.budget import SearchBudget
 from ident.diagnosis.discovery import discover
 from ident.diagnosis.discovery.discovery_result import DiscoveryResult
+from ident.diagnosis.moves import Moves
 from ident.diagnosis.result import Diagnosis, Verdict
-from ident.diagnosis.stages import ERROR_BUDGET, LAGS, NEXT_RUN, TERMS, Stages
+from ident.diagnosis.stages import ERROR_BUDGET, FURTHER, LAGS, NEXT_RUN, TERMS, Stages
 from ident.errors import Cancelled, TimeIsUp, Unusable
 from ident.matrix import Matrix
 from ident.progress import Progress
@@ -58,6 +59,15 @@ def test_the_catalogues_verdict_stands_whatever_fails_later(monkeypatch, caplog)
     assert (before.verdict.effects, before.candidates, before.ladder) == (
         found.verdict.effects, found.candidates, found.ladder,
     )  # fmt: skip
+
+
+@pytest.mark.usefixtures("few_effects", "survives")
+def test_an_effect_that_was_added_stays_where_the_search_for_further_ones_fails(monkeypatch):
+    monkeypatch.setattr(Moves, "exchange", failing)
+    found = diagnose(matrix(), most=1, propose=False)
+    assert found.verdict.effects == ("dead_zone",)
+    assert FURTHER in found.not_looked_at
+    assert f"The stage {FURTHER!r} failed: {DEFECT}. What was found before it is valid." in found.notes
 
 
 def test_a_test_sees_what_a_user_is_spared():
