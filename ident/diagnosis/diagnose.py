@@ -129,7 +129,7 @@ class Diagnoser:
 
     def _searched(self, moves: Moves) -> Selection:
         """The selection of a search; where a move fails, the latest selection before it."""
-        return self.stages.kept(FURTHER, lambda: select(moves, moves.latest), lambda: moves.latest)
+        return self.stages.guarded(FURTHER, lambda: select(moves, moves.latest), lambda: moves.latest)
 
     def _moves(self, models: CandidateModels, begin: FittedModel | None = None) -> Moves:
         preset = models.model(self.fit.effects)

@@ -41,6 +41,7 @@ class Moves:
     listener: Callable[[Selection], None] = lambda _selection: None
     start: FittedModel | None = None
     _without: dict[tuple[FittedModel, str], FittedModel] = field(default_factory=dict)
+    _in_place: dict[frozenset[str], Sequence[Candidate]] = field(default_factory=dict)
     _ranking_so_far: list[Candidate] = field(default_factory=list)
     _tried_as_springs: list[str] = field(default_factory=list)
 
@@ -259,6 +260,7 @@ class Moves:
         selection, here = replace(selection, alternatives={}), selection.fitted
         selection, in_place = self._in_place_of_each(selection)
         for name, ranking in zip(selection.added, in_place, strict=True):
+            self._in_place[frozenset(selection.added) - {name}] = ranking
             best = next((c for c in ranking if c.refit is not None), None)
             if best is None or best.refit is None:
                 continue
@@ -271,18 +273,22 @@ class Moves:
         return selection
 
     def most_probable(self, selection: Selection) -> Selection | None:
-        """Go to the most probable set of as many effects, of those that the search refitted.
+        """Exchange one effect for a more probable one, of the sets of effects that the search refitted.
 
-        No name is less probable than another set of as many effects that a user reads of.
+        No name is less probable than another in its place that a user reads of.
         """
         best = self.refitted_sets.most_probable(selection.fitted)
         if best is None:
             return None
-        selection, _ = self._backward(self.step(replace(selection, changes=selection.changes + 1), best))
-        selection, in_place = self._in_place_of_each(selection)
-        groups = zip(selection.added, in_place, strict=True)
-        alternatives = {name: indistinguishable_group(name, selection.fitted, ranking) for name, ranking in groups}
-        return self.keep(replace(selection, alternatives=alternatives))
+        others = {*selection.added} & {*best.effects}
+        (name,) = {*best.effects} - {*selection.base.effects} - others
+        groups = {other: group for other, group in selection.alternatives.items() if other in others}
+        if ranking := self._in_place.get(frozenset(others)):
+            groups[name] = indistinguishable_group(name, best, ranking)
+        selection = self.step(replace(selection, alternatives=groups, changes=selection.changes + 1), best)
+        selection, _ = self._backward(selection, name)
+        groups = {other: group for other, group in groups.items() if other in selection.added}
+        return self.keep(replace(selection, alternatives=groups))
 
     def _is_better(self, fitted: FittedModel, name: str, other: Candidate) -> bool:
         """Whether another effect is better in the place of `name`; the same effect, refitted, is at a better

@@ -44,14 +44,15 @@ class RefittedSets:
         return sorted(probable, key=lambda model: model.held_out.score)
 
     def most_probable(self, fitted: FittedModel) -> FittedModel | None:
-        """The model of another set of as many effects that is more probable than the fitted one; None where none is.
+        """The model with one effect exchanged that is most probable, where it is more so than the fitted one, or None.
 
         Two models may be apart by more than the noise, and neither be better beyond chance. The gains of all sets under
         one disturbance decide then, as they decide the probabilities that a user is shown.
         """
         gains, here = self.gains().gains, self._added(fitted)
         least = gains.get(here, np.inf) * (1.0 + CRITERIA.equality.tie)
-        others = [of for of in self.best if len(of) == len(here) and gains[of] > least]
+        exchanged = [of for of in self.best if len(of) == len(here) and len(of - here) == 1]
+        others = [of for of in exchanged if gains[of] > least]
         sound = [of for of in others if runs_freely(fitted, self.best[of])]
         return self.best[max(sound, key=lambda of: gains[of])] if sound else None
 

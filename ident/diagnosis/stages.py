@@ -48,12 +48,12 @@ class Stages:
         raised."""
         try:
             self.budget.budget.check()
-            return self.kept(stage, make, lambda: instead)
+            return self.guarded(stage, make, lambda: instead)
         except TimeIsUp:
             self.miss(stage)
         return instead
 
-    def kept(self, stage: str, make: Callable[[], Made], so_far: Callable[[], Made]) -> Made:
+    def guarded(self, stage: str, make: Callable[[], Made], so_far: Callable[[], Made]) -> Made:
         """The result of a stage; where it fails, its result `so_far`. TimeIsUp and an error of the caller's own are
         raised."""
         try:

@@ -43,14 +43,18 @@ def test_the_best_refit_of_each_set_is_kept_and_its_gain_is_over_the_fitted_mode
     assert found.most == pytest.approx(found.gains[frozenset("a")], rel=0.05)
 
 
-def test_the_most_probable_set_has_the_largest_gain_of_those_with_as_many_effects():
-    """Not of more effects, nor one that runs away, nor the fitted set itself."""
+def test_the_most_probable_set_has_the_largest_gain_of_those_with_one_effect_exchanged():
+    """Not a set of more effects, nor one with two others, nor the fitted set itself."""
     sets = RefittedSets(refit(left=0.1))
-    named, other, pair = refit("a", left=0.02), refit("b", left=0.01), refit("a", "c", left=0.0)
+    named, other, pair = refit("a", left=0.02), refit("b", left=0.01), refit("a", "c", left=0.005)
     sets.met([named, other, pair])
     assert sets.most_probable(named) is other
     assert sets.most_probable(other) is None
     assert sets.most_probable(pair) is None
+    sets.met([refit("b", "d", left=0.0)])
+    assert sets.most_probable(pair) is None
+    sets.met([nearer := refit("a", "d", left=0.002)])
+    assert sets.most_probable(pair) is nearer
 
 
 def test_a_set_that_runs_away_is_not_the_most_probable(monkeypatch):
