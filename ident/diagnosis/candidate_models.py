@@ -19,6 +19,7 @@ from ident.diagnosis.tie_breaking import stable_minimum, stable_ranking
 from ident.diagnosis.verdict import Residual, is_noise
 from ident.effects import CATALOGUE
 from ident.effects.effect import Effect, off_values
+from ident.effects.ringing import resonance
 from ident.errors import Unusable
 from ident.fit.criteria import FIT_CRITERIA
 from ident.fit.given import of_model
@@ -34,6 +35,7 @@ from ident.fit.wider_bounds import reaching, wider_at
 from ident.matrix import Matrix
 from ident.noise.floor import Floors, noise_floors
 from ident.parallel import Once, each
+from ident.parameter import Starts
 from ident.preprocessing import prepare
 from ident.presets import Preset
 from ident.presets import preset as preset_named
@@ -171,12 +173,13 @@ class CandidateModels:
         return self.effects[effect].shown
 
     def is_called_for(self, effect: str) -> bool:
-        """Whether the records have the mark that an effect needs, and its shapes are searched.
+        """Whether the records have the mark that an effect needs, or ring as it does, and its shapes are searched.
 
         A fit without a spring may lie so far off that none of its shapes promises anything there.
         """
         of = self.effects[effect]
-        return of.needs is not None and of.has_searched_shapes
+        rings = any(shape.start is Starts.RESONANCE for shape in of.shape) and resonance(self.runs) is not None
+        return of.has_searched_shapes and (of.needs is not None or rings)
 
     def strength(self, effect: str) -> str:
         """The name of an effect's strength in the equations."""

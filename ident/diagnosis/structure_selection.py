@@ -14,6 +14,8 @@ from __future__ import annotations
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
 
+import numpy as np
+
 from ident.diagnosis.candidate_models import CandidateModels
 from ident.diagnosis.criteria import CRITERIA
 from ident.diagnosis.evidence.comparison import common_disturbance, gain
@@ -219,7 +221,11 @@ def _all_fitted(
     models: Sequence[Preset], matrix: Matrix, report: Report, preprocessing: Mapping[str, bool]
 ) -> dict[str, _FittedStructure]:  # fmt: skip
     """The models in question, fitted. A model that a command in closed loop does not allow is left out if others
-    remain."""
+    remain, and so is a model with a level that the records do not determine, if a model that integrates remains.
+
+    Such a model integrates over these records, and its level, far away, is a constant input that the model that
+    integrates does not have: with it an effect would look better than it is.
+    """
     fitted, refused = {}, None
     for model in models:
         try:
@@ -230,7 +236,8 @@ def _all_fitted(
             refused = error
     if refused and not fitted:
         raise refused
-    return fitted
+    determined = {name: model for name, model in fitted.items() if not model.level_undetermined}
+    return determined if any(model.fit.window for model in determined.values()) else fitted
 
 
 def choose_structure(
@@ -317,6 +324,15 @@ class _FittedStructure:
         work = Identification(matrix, self.settings, report)
         self.fit, self.parameters = completed(work), len(work.objective.space.axes)
         self.settings = replace(self.settings, known_zeros=tuple(self.fit.settings.get("known_zeros", ())))
+
+    @property
+    def level_undetermined(self) -> bool:
+        """Whether the records do not determine where its output rests: to no better than the whole way of the output.
+
+        Its slowest mode is then as slow as the records are long or slower, and it integrates over these.
+        """
+        ways = {run.output: float(np.ptp(run.measured)) for run in self.matrix.of_use("fit")}
+        return any(offset.std_error > ways.get(name, np.inf) for name, offset in self.fit.transducer_offset.items())
 
     def judged(self, window: Window | None) -> _JudgedStructure:
         """The model judged by its error on held-out data, over the window where one is given."""

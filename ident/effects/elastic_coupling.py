@@ -1,7 +1,6 @@
 """A spring connects a drive to its load, and the load is recorded."""
 
 from ident.effects.effect import Effect
-from ident.effects.needs import resonant
 from ident.effects.second_mass import SHAPE, SHARE, TEXTS, UNITS
 
 ELASTIC_COUPLING = Effect(
@@ -21,5 +20,4 @@ ELASTIC_COUPLING = Effect(
     looks="a resonance, the same at every amplitude, and more phase lag beyond it",
     source="two masses with a spring, sensor and drive at its two ends",
     unless="Ka",
-    needs=resonant,
 )

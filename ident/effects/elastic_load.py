@@ -1,7 +1,6 @@
 """A spring connects a drive to its load, and the drive is recorded."""
 
 from ident.effects.effect import Effect
-from ident.effects.needs import resonant
 from ident.effects.second_mass import SHAPE, SHARE, TEXTS, UNITS
 
 ELASTIC_LOAD = Effect(
@@ -16,5 +15,4 @@ ELASTIC_LOAD = Effect(
     looks="an antiresonance with a resonance above it, the same at every amplitude",
     source="two masses with a spring, sensor and drive on the same one",
     unless="Ka",
-    needs=resonant,
 )

@@ -8,7 +8,6 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from ident.effects.ringing import resonance
 from ident.matrix import Matrix
 
 Need = Callable[[Matrix], bool]
@@ -75,11 +74,6 @@ def one_sided_position(matrix: Matrix) -> bool:
 def one_sided_command(matrix: Matrix) -> bool:
     """Whether the command stays on one side of zero: what drives then pushes and lets go, and never pulls."""
     return all("command" in run.channels and one_sided(run.command) for run in matrix.runs)
-
-
-def resonant(matrix: Matrix) -> bool:
-    """Whether the runs that are fitted answer their commands with a damped oscillation."""
-    return resonance(matrix.of_use("fit")) is not None
 
 
 def speed_measured(matrix: Matrix) -> bool:

@@ -15,7 +15,7 @@ from ident.diagnosis.candidate_models import CandidateModels
 from ident.diagnosis.evidence.comparison import Residuals
 from ident.diagnosis.evidence.energy_bands import EnergyBands, Record
 from ident.diagnosis.structure_selection import _judged, _preferred, compared_structures
-from ident.fit.result import FitResult, Structure
+from ident.fit.result import FitResult, Structure, TransducerOffset
 from ident.fit.settings import Settings
 from ident.matrix import Actuator, Matrix
 from ident.progress import silent
@@ -310,3 +310,24 @@ def test_an_effect_that_no_simulation_confirms_helps_no_model(monkeypatch):
     models = SimpleNamespace(effects={"dead_zone": None}, horizon=None)
     judged = structure_selection._JudgedStructure(models, 2, {}, fitted)
     assert judged.helped(silent).with_effect is None
+
+
+@pytest.mark.parametrize(("std_error", "undetermined"), [(1.9, False), (2.1, True)])
+def test_a_level_is_undetermined_that_is_known_to_no_better_than_the_whole_way_of_the_output(std_error, undetermined):
+    run = Run("r", "", RATE, {"command": np.zeros(3), "velocity": np.array([0.0, 1.0, 2.0])}, {}, output="velocity")
+    offsets = {"velocity": TransducerOffset(-50.0, "m/s", std_error), "force": TransducerOffset(9.0, "N", 1e3)}
+    of = SimpleNamespace(matrix=Matrix(Actuator("X"), (run,)), fit=SimpleNamespace(transducer_offset=offsets))
+    assert structure_selection._FittedStructure.level_undetermined.fget(of) is undetermined  # type: ignore[attr-defined]
+
+
+@pytest.mark.parametrize(("integrating", "left"), [("windows", {"motor", "sound"}), (None, {"motor", "far", "sound"})])
+def test_a_model_whose_level_is_undetermined_gives_way_where_another_integrates(monkeypatch, integrating, left):
+    """As a mass on a spring that is next to none, whose far end is a constant force: others do not have one."""
+    known = {
+        "motor": SimpleNamespace(fit=SimpleNamespace(window=integrating), level_undetermined=False),
+        "sound": SimpleNamespace(fit=SimpleNamespace(window=None), level_undetermined=False),
+        "far": SimpleNamespace(fit=SimpleNamespace(window=None), level_undetermined=True),
+    }
+    monkeypatch.setattr(structure_selection, "_FittedStructure", lambda model, *_: known[model.name])
+    models = [SimpleNamespace(name=name) for name in known]
+    assert set(structure_selection._all_fitted(models, None, silent, {})) == left  # type: ignore[arg-type]
