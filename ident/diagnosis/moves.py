@@ -275,13 +275,15 @@ class Moves:
     def most_probable(self, selection: Selection) -> Selection | None:
         """Exchange one effect for a more probable one, of the sets of effects that the search refitted.
 
-        No name is less probable than another in its place that a user reads of.
+        No name is less probable than another in its place that a user reads of. An effect of the same group stays: a
+        user reads of both under one probability.
         """
-        best = self.refitted_sets.most_probable(selection.fitted)
+        alike = {name: [one.effect for one in group] for name, group in selection.alternatives.items()}
+        best = self.refitted_sets.most_probable(selection.fitted, alike)
         if best is None:
             return None
         others = {*selection.added} & {*best.effects}
-        (name,) = {*best.effects} - {*selection.base.effects} - others
+        (name,) = {*best.effects} - {*selection.fitted.effects}
         groups = {other: group for other, group in selection.alternatives.items() if other in others}
         if ranking := self._in_place.get(frozenset(others)):
             groups[name] = indistinguishable_group(name, best, ranking)

@@ -7,14 +7,14 @@ up over no way is Coulomb's. So it explains as much, and no more.
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass, field
 
 import numpy as np
 
 from ident.diagnosis.criteria import CRITERIA
 from ident.diagnosis.evidence.comparison import common_disturbance, gain, most
-from ident.diagnosis.evidence.probability import NOTHING, SetGains
+from ident.diagnosis.evidence.probability import NOTHING, Effects, SetGains, probabilities
 from ident.diagnosis.fitted_model import FittedModel
 from ident.diagnosis.free_shapes import freed_widths
 from ident.diagnosis.model_comparison import both_probable, runs_freely
@@ -43,18 +43,24 @@ class RefittedSets:
         probable = [model for model in others if both_probable(fitted, model)]
         return sorted(probable, key=lambda model: model.held_out.score)
 
-    def most_probable(self, fitted: FittedModel) -> FittedModel | None:
+    def most_probable(self, fitted: FittedModel, groups: Mapping[str, Collection[str]]) -> FittedModel | None:
         """The model with one effect exchanged that is most probable, where it is more so than the fitted one, or None.
 
         Two models may be apart by more than the noise, and neither be better beyond chance. The gains of all sets under
-        one disturbance decide then, as they decide the probabilities that a user is shown.
+        one disturbance decide then, as they decide the probabilities that a user is shown. An effect that is hardly
+        probable is no alternative, nor is one of the `groups` of indistinguishable effects, by the added effect.
         """
-        gains, here = self.gains().gains, self._added(fitted)
-        least = gains.get(here, np.inf) * (1.0 + CRITERIA.equality.tie)
-        exchanged = [of for of in self.best if len(of) == len(here) and len(of - here) == 1]
-        others = [of for of in exchanged if gains[of] > least]
-        sound = [of for of in others if runs_freely(fitted, self.best[of])]
-        return self.best[max(sound, key=lambda of: gains[of])] if sound else None
+        sets, here = self.gains(), self._added(fitted)
+        least = sets.gains.get(here, np.inf) * (1.0 + CRITERIA.equality.tie)
+        probable = {name for name, p in probabilities(sets).effects.items() if p >= CRITERIA.evidence.chance}
+        found: dict[Effects, float] = {}
+        for of, nats in sets.gains.items():
+            new, gone = of - here, here - of
+            alike = {name for old in gone for name in groups.get(old, ())}
+            if len(new) == len(gone) == 1 and nats > least and new <= probable - alike:
+                found[of] = nats
+        sound = [of for of in found if runs_freely(fitted, self.best[of])]
+        return self.best[max(sound, key=found.__getitem__)] if sound else None
 
     def _added(self, model: FittedModel) -> frozenset[str]:
         return frozenset(model.effects) - frozenset(self.base.effects)

@@ -44,24 +44,35 @@ def test_the_best_refit_of_each_set_is_kept_and_its_gain_is_over_the_fitted_mode
 
 
 def test_the_most_probable_set_has_the_largest_gain_of_those_with_one_effect_exchanged():
-    """Not a set of more effects, nor one with two others, nor the fitted set itself."""
+    """Not a set of more effects, nor one with two others, nor the fitted set itself, nor one of the same group."""
     sets = RefittedSets(refit(left=0.1))
-    named, other, pair = refit("a", left=0.02), refit("b", left=0.01), refit("a", "c", left=0.005)
+    named, other, pair = refit("a", left=0.02), refit("b", left=0.01), refit("a", "c", left=0.02)
     sets.met([named, other, pair])
-    assert sets.most_probable(named) is other
-    assert sets.most_probable(other) is None
-    assert sets.most_probable(pair) is None
+    assert sets.most_probable(named, {}) is other
+    assert sets.most_probable(named, {"a": ["b", "a"]}) is None
+    assert sets.most_probable(other, {}) is None
+    assert sets.most_probable(pair, {}) is None
     sets.met([refit("b", "d", left=0.0)])
-    assert sets.most_probable(pair) is None
-    sets.met([nearer := refit("a", "d", left=0.002)])
-    assert sets.most_probable(pair) is nearer
+    assert sets.most_probable(pair, {}) is None
+    sets.met([nearer := refit("a", "d", left=0.0)])
+    assert sets.most_probable(pair, {}) is nearer
+
+
+def test_an_effect_that_is_hardly_probable_takes_the_place_of_none():
+    """A further effect leaves far less than both: neither of the two is probable beside it."""
+    sets, named = RefittedSets(refit(left=0.1)), refit("a", left=0.09)
+    sets.met([named, refit("b", left=0.08)])
+    assert sets.most_probable(named, {}) is not None
+    sets.met([refit("c", left=0.0), refit("d", left=0.0)])
+    assert sets.most_probable(named, {}).effects in (("c",), ("d",))
+    assert sets.most_probable(named, {"a": ["c", "d"]}) is None
 
 
 def test_a_set_that_runs_away_is_not_the_most_probable(monkeypatch):
     sets, named = RefittedSets(refit(left=0.1)), refit("a", left=0.02)
     sets.met([named, refit("b", left=0.01)])
     monkeypatch.setattr(refitted_sets, "runs_freely", lambda before, after: before is after or after.effects != ("b",))
-    assert sets.most_probable(named) is None
+    assert sets.most_probable(named, {}) is None
 
 
 def test_a_width_that_was_freed_is_charged_as_a_parameter():

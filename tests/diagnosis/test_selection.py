@@ -172,7 +172,7 @@ class Judged:
         """Those that take the place of a spring."""
         return [name for name in names if name == self.spring]
 
-    def most_probable(self, fitted):
+    def most_probable(self, fitted, _groups):
         """The effect that is more probable than the first alone."""
         return self.refit((self.probable,), {}) if self.probable and fitted.effects == ("a",) else None
 
