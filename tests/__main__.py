@@ -43,7 +43,8 @@ if __name__ == "__main__":
     # of tests/conftest.py.
     everything = ["-n", str((os.cpu_count() or 1) + 1), "--dist", "loadfile", "--no-loadscope-reorder"]
     chosen = sys.argv[1:]
-    whole = [*everything, *chosen] if chosen in ([], ["--full"]) else chosen
+    of_whole = all(argument == "--full" or argument.startswith("--costs=") for argument in chosen)
+    whole = [*everything, *chosen] if of_whole else chosen
     if whole is not chosen:  # every core has its worker: threads of linear algebra would only wait for one another
         os.environ.setdefault("OMP_NUM_THREADS", "1")
     enter("requirements-tests.lock", ["-m", "pytest", *whole])

@@ -21,7 +21,9 @@ from tests.dearest import (  # noqa: F401  hooks
     pytest_runtest_logstart,
     pytest_runtest_makereport,
     pytest_runtest_teardown,
+    pytest_sessionfinish,
     pytest_terminal_summary,
+    pytest_testnodedown,
 )
 from tests.first_collects import after_the_first
 from tests.rounding import rounded_otherwise
@@ -65,6 +67,7 @@ def pytest_collection_finish() -> None:
 
 def pytest_addoption(parser: pytest.Parser) -> None:
     parser.addoption("--full", action="store_true", help="run the acceptance tests at full length (many minutes)")
+    parser.addoption("--costs", metavar="FILE", help="write what each test cost, in seconds of the processor")
 
 
 LONGEST = (

@@ -1,8 +1,9 @@
-"""What the tests of each file cost, in seconds of the processor: of their worker and of the processes that ended in it.
+"""What tests cost, in seconds of the processor: of their worker and of the processes that ended in them.
 
-Named at the end of a run of many files, where the dearest are what to look at when the run takes too long. Processes
-that outlive a test (a service that a file shares) count where they end; those that end after the last test of a worker
-are what its files share: the service and the browser of all stories, and what processes are forked from.
+At the end of a run of many files the dearest are named, where to look when the run takes too long; `--costs FILE`
+writes what each test cost. Processes that outlive a test (a service that a file shares) count where they end; those
+that end after the last test of a worker are what its files share: the service and the browser of all stories, and what
+processes are forked from.
 """
 
 from __future__ import annotations
@@ -10,6 +11,7 @@ from __future__ import annotations
 import os
 from collections import Counter
 from collections.abc import Generator
+from pathlib import Path
 from typing import Any
 
 import pytest
@@ -19,14 +21,20 @@ from tests.nursery import Nursery
 SHARED = "what files share"
 NAMED = 10
 """Files that are named; a run of no more has nothing to name."""
+BEFORE = "processor_before"
+"""What a worker tells its controller: seconds until its first test."""
 
 _counted = 0.0
+_before: list[float] = []
+_of_workers: list[float] = []
 _LAST = pytest.StashKey[bool]()
 
 
 def pytest_runtest_logstart() -> None:
     """A test begins."""
-    _spent()
+    spent = _spent()
+    if not _before:
+        _before.append(spent)
 
 
 def pytest_runtest_teardown(item: pytest.Item, nextitem: pytest.Item | None) -> None:
@@ -44,17 +52,35 @@ def pytest_runtest_makereport(item: pytest.Item) -> Generator[None, Any, Any]:
     return report
 
 
-def pytest_terminal_summary(terminalreporter: Any) -> None:
-    """The dearest files."""
+def pytest_sessionfinish(session: pytest.Session) -> None:
+    """A worker says what it took to collect."""
+    if hasattr(session.config, "workeroutput"):
+        session.config.workeroutput[BEFORE] = sum(_before)
+
+
+@pytest.hookimpl(optionalhook=True)
+def pytest_testnodedown(node: Any) -> None:
+    """A worker has ended."""
+    _of_workers.append(getattr(node, "workeroutput", {}).get(BEFORE, 0.0))
+
+
+def pytest_terminal_summary(terminalreporter: Any, config: pytest.Config) -> None:
+    """The dearest files; what each test cost, where a file for that was named."""
     costs: Counter[str] = Counter()
+    of_tests: Counter[tuple[str, str]] = Counter()
     for reports in terminalreporter.stats.values():
         for report in reports:
             if hasattr(report, "processor"):
                 costs[report.payer] += report.processor
+                of_tests[report.nodeid if report.payer != SHARED else SHARED, report.when] += report.processor
     if len(costs) > NAMED:
-        terminalreporter.section(f"{sum(costs.values()):.0f} s of the processor in tests, the most in")
+        told = f", {sum(_of_workers):.0f} s before the first of each worker" if _of_workers else ""
+        terminalreporter.section(f"{sum(costs.values()):.0f} s of the processor in tests{told}; the most in")
         for file, seconds in costs.most_common(NAMED):
             terminalreporter.line(f"{seconds:6.1f} s  {file}")
+    if file := config.getoption("--costs"):
+        lines = (f"{seconds:.3f}\t{when}\t{test}\n" for (test, when), seconds in of_tests.most_common())
+        Path(file).write_text("".join(lines), encoding="utf-8")
 
 
 def _spent() -> float:
