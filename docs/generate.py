@@ -5,6 +5,7 @@ from __future__ import annotations
 import ast
 import inspect
 import json
+import math
 import re
 import sys
 from collections.abc import Iterable, Iterator, Mapping
@@ -38,7 +39,7 @@ def pages() -> dict[str, str]:
     """Every generated page by file name."""
     return {
         "cli.md": command_line(), "models.md": models(), "errors.md": errors(), "http.md": over_http(),
-        "openapi.json": document(), "criteria.md": criteria(),
+        "openapi.json": document(), "criteria.md": criteria(), "diagnosis.md": diagnosis(),
     }  # fmt: skip
 
 
@@ -232,6 +233,75 @@ def documented(file: Path, section: str) -> dict[str, tuple[str, str, str]]:
                     assert parts, f"{file}: {text}"
                     found[str(ast.unparse(one.target))] = (parts[1], parts[2], parts[3])
     return found
+
+
+def diagnosis() -> str:
+    """The page on the diagnosis, whose section on the verdict has its numbers from the criteria."""
+    text = (DOCS / "diagnosis.md").read_text(encoding="utf-8")
+    before, mark, after = text.partition(f"## Why this verdict\n\n{NOTE}\n")
+    _, heading, others = after.partition("\n## ")
+    return "".join([before, mark, "\n", "\n".join(why_this_verdict()), "\n", heading, others])
+
+
+def why_this_verdict() -> list[str]:
+    """Which numbers decide a standing and a group, and which field of the answer has them."""
+    noise, limits, deviations = CRITERIA.noise, CRITERIA.evidence, CRITERIA.verification.deviations
+    gain, chance = math.log(1.0 / limits.chance - 1.0) / limits.learning_rate, f"{100 * limits.chance:g} %"
+    reasons = (
+        ("`unexplained`", f"""a floor is known: `error` is not below `limit` = ({limits.floor_margin:g} +
+          {noise.floor_deviations:g} × relative deviation of the floor) × `floor`; of a bench
+          {1 + noise.bench_excess:g} is in the place of {limits.floor_margin:g}""",
+         "`noise_test`", "look at `proposals` and at the figure `residual-curve`"),
+        ("`unexplained`", f"""no floor is known: the `correlation` of neighbouring residuals is above
+          `limit` = {noise.noise_correlation:g}""", "`noise_test`", "record one run twice: that gives a floor"),
+        ("`untested`", "there was no time to test the residual", "`complete`, `not_looked_at`", "give more time"),
+        ("`at_bound`", "no floor is known, and the strength of a named effect ended at the bound of its search",
+         "`at_bound`", "search within wider bounds, or record one run twice"),
+        ("`dispensable_contradicted`", f"""the error on validation data rises by more than {deviations:g} standard
+          errors with an effect that proposed terms made dispensable""",
+         "`stood_in`, `ladder[].error.verify`", "look at `proposals`"),
+    )  # fmt: skip
+    numbers = (
+        ("`gain`", f"`gain_limit`, {gain:.3g} nats either way",
+         f"beyond it one of the two is less probable than {chance}"),
+        ("`apart`", f"""`apart_limit`: {100 * limits.separation:g} % of the power that the better one leaves above the
+          noise, or `hidden` where that is more""",
+         "power of the difference of the outputs; the noise hides it up to `hidden`"),
+        ("`means_apart`", f"`means_limit`, {limits.level:g}",
+         "difference of the means of the runs, over the output's deviation"),
+        ("`difference`", f"`difference_limit`, which chance passes in {chance} of cases on each side",
+         "of the powers of the two errors; it does not count where `apart` is below `hidden`"),
+    )  # fmt: skip
+    return [
+        "The fields are those of `verdict` in the JSON, over HTTP and in Python, where none other is said.",
+        "",
+        "**Why stand-in?** `because` has the reasons. Without any the standing is *found*.",
+        "",
+        *table(("reason", "what it means", "fields", "remedy"), reasons),
+        "",
+        "`probability` and `probabilities` are computed apart from this: a stand-in may be probable.",
+        "",
+        "**Why contradicted?** With each effect of `contradicted_by` the error on validation data rises by more than",
+        f"{deviations:g} of its standard errors (`ladder[].error.verify`), or the model is unstable there",
+        "(`ladder[].unstable`).",
+        "",
+        "**Why one group?** `alternatives` has a row for each other effect of a group in the place of the named one.",
+        "All four numbers of its `separation` are within their limits:",
+        "",
+        *table(("number", "limit", "meaning"), numbers),
+        "",
+        "An effect that is indistinguishable from the best of the group belongs to it, too, also where a number",
+        "against the named one is beyond its limit. An effect that another dominates is left out: it leaves more",
+        f"beyond its error, by {100 * limits.share:g} % of its residual above the noise. Groups follow from these",
+        "data, never from a list. Coulomb and Stribeck friction, for example, are one constant force at speeds far",
+        "below the speed at which the second falls. The more is unexplained, the wider is a group, by the limit of",
+        "`apart`.",
+        "`group_probabilities` has the probability of a group. `next_experiment` of the diagnosis is the run that",
+        "separates it best.",
+        "",
+        "**Why was an effect not added?** `candidates[].why` says it in words, `candidates[].evidence` in numbers;",
+        "[the evidence](#evidence) has the rule.",
+    ]
 
 
 def errors() -> str:

@@ -121,17 +121,45 @@ class NoiseTestView(BaseModel):
     predicted_limit: float | None = None
 
 
+class SeparationView(BaseModel):
+    """The numbers by which the data distinguish two models, each with the limit up to which they do not.
+
+    `gain` in nats; `apart` is the power of the difference of the outputs over the power of the output, which the noise
+    hides up to `hidden`; `means_apart` is of the runs' means over the outputs' deviations; `difference` is of the
+    errors' powers, and does not count where the noise hides the difference of the outputs.
+    """
+
+    gain: float
+    gain_limit: float
+    apart: float
+    apart_limit: float
+    hidden: float
+    means_apart: float
+    means_limit: float
+    difference: float
+    difference_limit: float | None
+
+
+class AlternativeView(BaseModel):
+    """An effect of a group in the place of the added one, and the numbers that do not distinguish the two."""
+
+    effect: str
+    instead_of: str
+    separation: SeparationView
+
+
 class VerdictView(BaseModel):
     """What to add, what the data cannot tell apart, whose label is doubted, whether the residual is unexplained.
 
     `standing` is found where the error is at the noise floor, stand_in where it is above it or may be, contradicted
-    where the error rises with an effect (`contradicted_by`) on runs to verify, nothing where no effect helps.
-    `noise_test` has the numbers by which the residual is unexplained, null where it was not asked. `at_bound` are
-    effects whose strength ended at a bound that the search set, `elsewhere` what other models explain as well, and
-    `stood_in` effects of the ladder that are not named, for beside proposed terms they are not needed, and
-    `unconfirmed` those that are not named, for validation data show nothing of them. `probability` is
-    that of the verdict, null where it was not asked; `probabilities` those of each effect that was refitted, of
-    "nothing" and of something "unlisted", `group_probabilities` those of the groups.
+    where the error rises with an effect (`contradicted_by`) on runs to verify, nothing where no effect helps. `because`
+    has the reasons of a stand-in, `alternatives` the numbers that decide a group. `noise_test` has the numbers by which
+    the residual is unexplained, null where it was not asked. `at_bound` are effects whose strength ended at a bound
+    that the search set, `elsewhere` what other models explain as well, and `stood_in` effects of the ladder that are
+    not named, for beside proposed terms they are not needed, and `unconfirmed` those that are not named, for validation
+    data show nothing of them. `probability` is that of the verdict, null where it was not asked; `probabilities` those
+    of each effect that was refitted, of "nothing" and of something "unlisted", `group_probabilities` those of the
+    groups.
     """
 
     effects: list[str]
@@ -149,6 +177,10 @@ class VerdictView(BaseModel):
     probabilities: dict[str, float] = Field(default_factory=dict)
     group_probabilities: list[float] = Field(default_factory=list)
     noise_test: NoiseTestView | None = None
+    because: list[Literal["untested", "unexplained", "at_bound", "dispensable_contradicted"]] = Field(
+        default_factory=list
+    )
+    alternatives: list[AlternativeView] = Field(default_factory=list)
 
 
 class EffectSetView(BaseModel):

@@ -21,7 +21,7 @@ def generator():
     return module
 
 
-WRITTEN = ("cli.md", "criteria.md", "errors.md", "http.md", "models.md", "openapi.json")
+WRITTEN = ("cli.md", "criteria.md", "errors.md", "http.md", "models.md", "openapi.json", "diagnosis.md")
 
 
 @cache

@@ -16,9 +16,11 @@ from ident.comparison.compare import fitted
 from ident.custom.definition import preset_with
 from ident.diagnosis.budget import SearchBudget
 from ident.diagnosis.criteria import CRITERIA
-from ident.diagnosis.evidence.comparison import compare, indistinguishable, worth_adding
+from ident.diagnosis.evidence.comparison import compare
+from ident.diagnosis.evidence.rule import worth_adding
+from ident.diagnosis.evidence.separation import indistinguishable, separation
 from ident.diagnosis.parameter_estimate import ParameterEstimate
-from ident.diagnosis.result import Baseline, Diagnosis, Ranked, Rung
+from ident.diagnosis.result import Alternative, Baseline, Diagnosis, Ranked, Rung
 from ident.diagnosis.sentences import evidence_figures, verdict_text, why_of_evidence
 from ident.diagnosis.stages import FURTHER, not_looked_at
 from ident.diagnosis.unfitted import unranked
@@ -87,7 +89,9 @@ class BenchDiagnoser:
         errors, before = self._errors(found), self._errors(base)
         residual = Residual(errors["fit"] or 0.0, self.floor["fit"] or None, excess=CRITERIA.noise.bench_excess)
         added = found.effects[len(base.effects) :]
-        verdict = conclude(Findings(added=added, alternatives=groups, residual=residual))
+        verdict = conclude(
+            Findings(added=added, alternatives=groups, compared=_compared(first, group), residual=residual)
+        )
         missing = () if self.complete else (FURTHER,)
         said = verdict_text(
             added, groups, (), verdict.unexplained, errors, float(before["fit"] or 0.0), floor=self.floor["fit"],
@@ -190,3 +194,13 @@ def _alike(ranking: list[Candidate]) -> tuple[str, ...]:
         return ()
     best = ranking[0].refit.held_out
     return tuple(c.effect for c in ranking if c is ranking[0] or indistinguishable(compare(c.refit.held_out, best)))
+
+
+def _compared(ranking: list[Candidate], group: tuple[str, ...]) -> tuple[Alternative, ...]:
+    """The other effects of a group in the place of the best, with the numbers that decide."""
+    best, others = ranking[:1], [c for c in ranking[1:] if c.effect in group]
+    pairs = [(first, other) for first in best for other in others]
+    return tuple(
+        Alternative(other.effect, first.effect, separation(compare(first.refit.held_out, other.refit.held_out)))
+        for first, other in pairs
+    )

@@ -9,7 +9,7 @@ from itertools import groupby
 
 from ident.diagnosis.candidate_models import CandidateModels
 from ident.diagnosis.criteria import CRITERIA
-from ident.diagnosis.evidence import comparison
+from ident.diagnosis.evidence import rule
 from ident.diagnosis.evidence.comparison import Evidence
 from ident.diagnosis.evidence.criteria import EVIDENCE_CRITERIA, OF_SHOWN
 from ident.diagnosis.fitted_model import FittedModel
@@ -22,7 +22,7 @@ from ident.diagnosis.tie_breaking import stable_ranking
 class Candidate:
     """An effect, its prediction, its trial and its refit on all records where they were made, and the evidence for it.
 
-    `worth_adding` is the answer of :func:`~ident.diagnosis.evidence.comparison.worth_adding` on it and the model
+    `worth_adding` is the answer of :func:`~ident.diagnosis.evidence.rule.worth_adding` on it and the model
     without it. It `worsens_part` where it improves the model on the whole, and worsens a condition of the tests, a span
     of the records, or the free run of a model that is fitted over windows.
     """
@@ -57,8 +57,8 @@ class Candidate:
             return replace(self, refit=refit, evidence=None, worth_adding=True, worsens_part=False)
         found, criteria = evidence(base, refit), OF_SHOWN if models.is_shown(self.effect) else EVIDENCE_CRITERIA
         limit = partial(bar, models, base)
-        worth_adding = comparison.worth_adding(found, limit, criteria)
-        worsens_part = not worth_adding and comparison.improves_on_the_whole(found, limit, criteria)
+        worth_adding = rule.worth_adding(found, limit, criteria)
+        worsens_part = not worth_adding and rule.improves_on_the_whole(found, limit, criteria)
         return replace(self, refit=refit, evidence=found, worth_adding=worth_adding, worsens_part=worsens_part)
 
 

@@ -7,6 +7,7 @@ from functools import partial
 from itertools import pairwise
 
 from ident.diagnosis.alternative_structures import AlternativeModel, alternative_explanations
+from ident.diagnosis.ambiguity import alternatives
 from ident.diagnosis.budget import SearchBudget
 from ident.diagnosis.ladder import Rungs
 from ident.diagnosis.model_comparison import verified_change
@@ -40,6 +41,7 @@ def challenged(
     return Findings(
         added=selection.added,
         alternatives=tuple(tuple(one.effect for one in group) for group in selection.alternatives.values()),
+        compared=in_time(lambda: alternatives(selection.alternatives)) or (),
         lag_pairs=tuple(lag_pairs),
         residual=residual,
         set_gains=in_time(selection.refitted_sets.gains),

@@ -1,6 +1,6 @@
 """Two fitted models compared by their residuals on data that neither was fitted to.
 
-The meaning of the answers, and their numbers, stand in :mod:`ident.diagnosis.evidence.comparison`.
+The answers are explained in :mod:`ident.diagnosis.evidence.rule` and :mod:`ident.diagnosis.evidence.separation`.
 """
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ from functools import partial
 import numpy as np
 
 from ident.diagnosis.candidate_models import CandidateModels
-from ident.diagnosis.evidence import comparison
+from ident.diagnosis.evidence import rule, separation
 from ident.diagnosis.evidence.comparison import Evidence, compare
 from ident.diagnosis.fitted_model import FittedModel
 from ident.diagnosis.screening import gain_by_chance
@@ -30,31 +30,31 @@ def worth_adding(models: CandidateModels, less: FittedModel, more: FittedModel) 
     """Whether a model with more effects is worth them: it gains beyond chance, by a share that matters, everywhere."""
     if not (finite_held_out(less) and finite_held_out(more)):
         return finite_held_out(more)
-    return comparison.worth_adding(evidence(less, more), partial(bar, models, less))
+    return rule.worth_adding(evidence(less, more), partial(bar, models, less))
 
 
 def better(before: FittedModel, after: FittedModel) -> bool:
     """Whether the second of two models with as many effects is more likely, beyond chance."""
-    return finite_held_out(after) and (not finite_held_out(before) or comparison.better(evidence(before, after)))
+    return finite_held_out(after) and (not finite_held_out(before) or separation.better(evidence(before, after)))
 
 
 def dominated(worse: FittedModel, best: FittedModel) -> bool:
     """Whether the first model is worse than the second beyond chance, by a share of its residual that matters."""
     if worse is best or not finite_held_out(best):
         return False
-    return not finite_held_out(worse) or comparison.dominated(evidence(best, worse))
+    return not finite_held_out(worse) or separation.dominated(evidence(best, worse))
 
 
 def indistinguishable(first: FittedModel, second: FittedModel) -> bool:
     """Whether two models are indistinguishable."""
     return first is second or (
-        finite_held_out(first) and finite_held_out(second) and comparison.indistinguishable(evidence(first, second))
+        finite_held_out(first) and finite_held_out(second) and separation.indistinguishable(evidence(first, second))
     )
 
 
 def both_probable(first: FittedModel, second: FittedModel) -> bool:
     """Whether each of two models, one of which is right, is more probable than chance."""
-    return finite_held_out(first) and finite_held_out(second) and comparison.both_probable(evidence(first, second))
+    return finite_held_out(first) and finite_held_out(second) and separation.both_probable(evidence(first, second))
 
 
 def runs_freely(before: FittedModel, after: FittedModel) -> bool:

@@ -7,8 +7,9 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from ident.diagnosis.discovery.proposal import Proposal, from_json
+from ident.diagnosis.evidence.separation import Separation
 from ident.diagnosis.parameter_estimate import ParameterEstimate
-from ident.diagnosis.verification import Standing
+from ident.diagnosis.verification import Reason, Standing
 from ident.errors import Unusable
 from ident.fit.result import TransducerOffset, large_offsets
 from ident.matrix import Matrix, StepOutcome
@@ -160,16 +161,30 @@ class NoiseTest:
 
 
 @dataclass(frozen=True)
+class Alternative:
+    """An effect of a group in the place of the effect that was added, and the numbers that do not distinguish the two.
+
+    They are of its refit and of the model with the added effect, or of the best model with an effect of the group,
+    where the refit is indistinguishable from that one alone.
+    """
+
+    effect: str
+    instead_of: str
+    separation: Separation
+
+
+@dataclass(frozen=True)
 class Verdict:
     """The named effects, the groups that the data cannot tell apart, the suspects, and whether the residual is
     explained.
 
     `standing` says how sure the effects are, see :data:`ident.diagnosis.verification.Standing`; None where it is not
-    known. `contradicted_by` are effects with which the error rises on validation data, `at_bound` effects whose
-    strength ended at a bound of the search, `elsewhere` explanations by other machines that are as good. Two kinds of
-    effects of the ladder are not named: `stood_in` are redundant with proposed terms, and validation data show nothing
-    of `unconfirmed` ones. `indistinguishable` are groups of effects one of which is named, or two lags or delays that
-    two others replace as well. `probability` is the probability of the verdict, None where it is not known;
+    known; `because` has the reasons of a stand-in. `contradicted_by` are effects with which the error rises on
+    validation data, `at_bound` effects whose strength ended at a bound of the search, `elsewhere` explanations by other
+    machines that are as good. Two kinds of effects of the ladder are not named: `stood_in` are redundant with proposed
+    terms, and validation data show nothing of `unconfirmed` ones. `indistinguishable` are groups of effects one of
+    which is named, or two lags or delays that two others replace as well; `alternatives` has the numbers that decide
+    the groups of the first kind. `probability` is the probability of the verdict, None where it is not known;
     `probabilities` has each effect that was refitted, "nothing" and something "unlisted", `group_probabilities` has one
     for each group. The residual is `unexplained` by the numbers of `noise_test`; they are None where there was no time
     for the test.
@@ -190,6 +205,8 @@ class Verdict:
     probabilities: Mapping[str, float] = field(default_factory=dict, metadata=WHERE_KNOWN)
     group_probabilities: tuple[float, ...] = field(default=(), metadata=WHERE_KNOWN)
     noise_test: NoiseTest | None = field(default=None, metadata=WHERE_KNOWN)
+    because: tuple[Reason, ...] = field(default=(), metadata=WHERE_KNOWN)
+    alternatives: tuple[Alternative, ...] = field(default=(), metadata=WHERE_KNOWN)
 
 
 @dataclass(frozen=True)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
+from ident.diagnosis.ambiguity import Member
 from ident.diagnosis.candidate import Candidate
 from ident.diagnosis.candidate_models import CandidateModels
 from ident.diagnosis.fitted_model import FittedModel
@@ -17,7 +18,7 @@ class Selection:
     """The models from the given one to the one that explains the data. No move changes a selection: it makes another.
 
     `path` are the fitted models, the given one first; `ranking` is the first ranking; `alternatives` has for each added
-    effect the candidates that are indistinguishable from it, itself included, best first. `changes` counts the moves
+    effect the effects that are indistinguishable from it, itself included, best first. `changes` counts the moves
     that call for another round. At most `most` effects are added. `complete` is false where there was no time for the
     whole search.
     """
@@ -26,7 +27,7 @@ class Selection:
     base: FittedModel
     path: tuple[FittedModel, ...]
     ranking: tuple[Candidate, ...] = ()
-    alternatives: Mapping[str, list[Candidate]] = field(default_factory=dict)
+    alternatives: Mapping[str, list[Member]] = field(default_factory=dict)
     changes: int = 0
     most: int | None = None
     complete: bool = False

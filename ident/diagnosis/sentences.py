@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Hashable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from math import sqrt
 from types import MappingProxyType
 from typing import Any
@@ -10,10 +10,11 @@ from typing import Any
 from ident.diagnosis.candidate import Candidate
 from ident.diagnosis.criteria import CRITERIA
 from ident.diagnosis.discovery.proposal import Proposal
-from ident.diagnosis.evidence.comparison import SPANS, Evidence, generalises, losing_part, matters, runs_freely
+from ident.diagnosis.evidence.comparison import Evidence
 from ident.diagnosis.evidence.criteria import EVIDENCE_CRITERIA
 from ident.diagnosis.evidence.free_run import FreeRun, drifts
 from ident.diagnosis.evidence.probability import is_improbable, is_rather_noise
+from ident.diagnosis.evidence.rule import QUESTIONS, refusing
 from ident.diagnosis.result import Explanation, Suspect
 from ident.diagnosis.run_consistency import InconsistentParameter
 from ident.diagnosis.total_delay import TotalDelay
@@ -44,38 +45,19 @@ def why_of_evidence(
 def _reasons(
     evidence: Evidence, effect: Effect, errors: tuple[float, float], worth_adding: bool, floor: float | None, best: bool
 ) -> Iterator[Message]:  # fmt: skip
-    before, after = errors
-    if matters(evidence) and generalises(evidence) and worth_adding and floor is not None:
+    (before, after), refusal = errors, refusing(evidence, worth_adding)
+    if refusal is None and floor is not None:
         yield message("why.change_floor", before=before, after=after, floor=floor)
     else:
         yield message("why.change", before=before, after=after)
-    if not matters(evidence):
-        share, error = PER_CENT * evidence.share.mean, PER_CENT * evidence.share.bound(EVIDENCE_CRITERIA)
-        yield message("why.little", share=share, error=error, least=PER_CENT * EVIDENCE_CRITERIA.share)
-        yield message("why.would_show", looks=effect.looks)
-    elif not generalises(evidence):
-        yield _loses(losing_part(evidence))
-    elif not worth_adding and not runs_freely(evidence):
-        yield _drifts(evidence)
-    elif not worth_adding:
-        yield message("why.chance")
-        yield message("why.would_show", looks=effect.looks)
+    if refusal is not None:
+        yield refusal.refusal(evidence)
+        if refusal.shows:
+            yield message("why.would_show", looks=effect.looks)
     else:
         if best:
             yield message("why.best")
         yield message("why.shows", looks=effect.looks)
-
-
-def _loses(part: Hashable) -> Message:
-    """Where the error rises: on a span of the records, or on one condition of the test."""
-    return message("why.span", span=part) if part in SPANS else message("why.condition")
-
-
-def _drifts(evidence: Evidence) -> Message:
-    """The message that the free run drifts away with an effect that improves the model over windows."""
-    assert evidence.free_runs is not None
-    before, after = evidence.free_runs
-    return message("why.free_run", before=sqrt(before.power), after=sqrt(after.power), expected=sqrt(after.expected))
 
 
 def evidence_figures(evidence: Evidence | None, effect: Effect, worth_adding: bool) -> dict[str, Any]:
@@ -85,7 +67,8 @@ def evidence_figures(evidence: Evidence | None, effect: Effect, worth_adding: bo
     return {
         "confirmed": True, "nats": evidence.gain, "nats_without_best_run": evidence.without, "most_nats": evidence.most,
         "share": evidence.share.mean, "share_error": evidence.share.error if evidence.share.blocks > 1 else None,
-        "distinct": evidence.distinct, "beyond_chance": worth_adding, "carries_over": generalises(evidence),
+        "distinct": evidence.distinct, "beyond_chance": worth_adding,
+        **{asked.figure: asked.yes(evidence, EVIDENCE_CRITERIA) for asked in QUESTIONS if asked.figure},
         "looks": effect.looks, "meaning": effect.meaning,
     }  # fmt: skip
 

@@ -15,7 +15,8 @@ from itertools import chain, combinations
 
 from ident.diagnosis.candidate_models import CandidateModels
 from ident.diagnosis.criteria import CRITERIA
-from ident.diagnosis.evidence import comparison
+from ident.diagnosis.evidence import separation
+from ident.diagnosis.evidence.comparison import compare
 from ident.diagnosis.fitted_model import FittedModel
 from ident.diagnosis.ladder import without_effect
 from ident.diagnosis.model_comparison import indistinguishable
@@ -70,7 +71,7 @@ def total_delay(models: CandidateModels, base: FittedModel, refit: FittedModel) 
 
 def _alike(first: FittedModel, second: FittedModel) -> bool:
     """Whether two models of as many parameters are indistinguishable by the data of the fit."""
-    return comparison.indistinguishable(comparison.compare(first.residuals_fitted, second.residuals_fitted))
+    return separation.indistinguishable(compare(first.residuals_fitted, second.residuals_fitted))
 
 
 def _time_constants(models: CandidateModels, refit: FittedModel) -> Iterator[Parameter]:

@@ -1,7 +1,7 @@
 """The verdict of a diagnosis: a pure function of its findings. The whole rule stands on this page.
 
 The findings come from the stages before: which effects were added from the selection (the rule is `worth_adding` in
-:mod:`ident.diagnosis.evidence.comparison`), their groups from :mod:`ident.diagnosis.ambiguity`, the others from
+:mod:`ident.diagnosis.evidence.rule`), their groups from :mod:`ident.diagnosis.ambiguity`, the others from
 :mod:`ident.diagnosis.challenges`.
 
 The *named* effects are the effects that the selection added, without two kinds. A *dispensable* effect is one without
@@ -12,7 +12,7 @@ noise. A *group* are effects that the data cannot tell apart. The verdict stands
 * *nothing*: no effect is named;
 * *contradicted*: the error on validation data rises with a named effect;
 * *stand_in*: unmodelled dynamics remain or may remain. The residual is unexplained; or a dispensable effect was
-  contradicted; or no noise floor is known and a named strength ended at the bound of its search;
+  contradicted; or no noise floor is known and a named strength ended at the bound of its search. `because` has which;
 * *found*: none of these.
 
 The residual is noise where its size is that of the noise floor, or where no floor is known, where it has no memory.
@@ -31,8 +31,8 @@ from itertools import takewhile
 from ident.diagnosis.criteria import CRITERIA, Criteria
 from ident.diagnosis.evidence.blocks import BlockMean
 from ident.diagnosis.evidence.probability import NOTHING, Probabilities, SetGains, probabilities
-from ident.diagnosis.result import Explanation, NoiseTest, Suspect, Verdict
-from ident.diagnosis.verification import Contradiction, Standing, VerifyChange
+from ident.diagnosis.result import Alternative, Explanation, NoiseTest, Suspect, Verdict
+from ident.diagnosis.verification import Contradiction, Reason, Standing, VerifyChange
 
 Names = tuple[str, ...]
 
@@ -61,16 +61,17 @@ class Findings:
     """The findings of all stages of a diagnosis, in numbers and names.
 
     `added` are the effects of the selection, in their order; `alternatives` has for each the effects that are
-    indistinguishable from it, itself included; `lag_pairs` are two added lags, and the lags of which any two do as
-    well. `residual` is None where there was no time for the test of noise; `set_gains` are the gains of all sets of
-    effects that were refitted. `verify` has the change of the validation error by each added effect; `at_bound` are
-    effects whose strength ended at the bound of its search, `dispensable` are effects without which the model does as
-    well, given confirmed terms. `suspects` are runs with a doubtful label, `elsewhere` are explanations by other
-    machines that are as good.
+    indistinguishable from it, itself included, and `compared` the numbers by which they are; `lag_pairs` are two added
+    lags, and the lags of which any two do as well. `residual` is None where there was no time for the test of noise;
+    `set_gains` are the gains of all sets of effects that were refitted. `verify` has the change of the validation error
+    by each added effect; `at_bound` are effects whose strength ended at the bound of its search, `dispensable` are
+    effects without which the model does as well, given confirmed terms. `suspects` are runs with a doubtful label,
+    `elsewhere` are explanations by other machines that are as good.
     """
 
     added: Names = ()
     alternatives: Sequence[Names] = ()
+    compared: Sequence[Alternative] = ()
     lag_pairs: Sequence[Names] = ()
     residual: Residual | None = None
     set_gains: SetGains | None = None
@@ -135,13 +136,19 @@ def conclude(findings: Findings, criteria: Criteria = CRITERIA) -> Verdict:
     named = tuple(name for name in findings.added if name not in (*findings.dispensable, *unconfirmed))
     contradicted = tuple(change.effect for change in findings.verify if contradicts(change, criteria))
     against = tuple(name for name in contradicted if name not in findings.dispensable)
+    reasons = _reasons(findings, named, bool(contradicted), criteria)
+    standing = _standing(named, against, reasons)
     groups = _groups(findings, unconfirmed)
     of_sets = _probabilities(findings, criteria)
     return Verdict(
         effects=named,
-        standing=_standing(findings, named, against, bool(contradicted), criteria),
+        standing=standing,
+        because=reasons if standing == "stand_in" else (),
         contradicted_by=against,
         indistinguishable=groups,
+        alternatives=tuple(
+            compared for compared in findings.compared if any(compared.instead_of in group for group in groups)
+        ),
         suspects=tuple(findings.suspects),
         unexplained=_unexplained(findings, criteria),
         noise_test=None if findings.residual is None else noise_test(findings.residual, criteria),
@@ -185,18 +192,26 @@ def _unexplained(findings: Findings, criteria: Criteria) -> bool:
     return findings.residual is None or not is_noise(findings.residual, criteria)
 
 
-def _standing(
-    findings: Findings, named: Names, against: Names, was_contradicted: bool, criteria: Criteria
-) -> Standing:  # fmt: skip
-    """How the named effects stand; they are a stand-in where only a dispensable effect was contradicted."""
-    floor_known = findings.residual is not None and findings.residual.floor is not None
+def _reasons(findings: Findings, named: Names, was_contradicted: bool, criteria: Criteria) -> tuple[Reason, ...]:
+    """Why the named effects may stand for others; validation data that contradict a named one are no such reason."""
+    residual = findings.residual
+    floor_known = residual is not None and residual.floor is not None
+    holds: dict[Reason, bool] = {
+        "untested": residual is None,
+        "unexplained": residual is not None and not is_noise(residual, criteria),
+        "at_bound": bool({*findings.at_bound} & {*named}) and not floor_known,
+        "dispensable_contradicted": was_contradicted,
+    }
+    return tuple(reason for reason, is_so in holds.items() if is_so)
+
+
+def _standing(named: Names, against: Names, reasons: Sequence[Reason]) -> Standing:
+    """How the named effects stand."""
     if not named:
         return "nothing"
     if against:
         return "contradicted"
-    if was_contradicted or _unexplained(findings, criteria) or ({*findings.at_bound} & {*named} and not floor_known):
-        return "stand_in"
-    return "found"
+    return "stand_in" if reasons else "found"
 
 
 def _unconfirmed(findings: Findings, criteria: Criteria) -> Names:

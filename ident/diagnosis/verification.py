@@ -28,6 +28,11 @@ Standing = Literal["found", "stand_in", "contradicted", "nothing"]
 """found: the error is at the floor; stand_in: it fell, but is above the floor, or may be, because a strength ended at
 the bound of its search, or because validation data contradict an effect that proposed terms made dispensable;
 contradicted: it rises on validation data; nothing: no effect is named."""
+Reason = Literal["untested", "unexplained", "at_bound", "dispensable_contradicted"]
+"""Why the standing is stand_in. untested: there was no time to test whether the residual is noise; unexplained: the
+residual is not noise, by the numbers of the verdict's `noise_test`; at_bound: no noise floor is known, and a strength
+ended at the bound of its search; dispensable_contradicted: validation data contradict an effect that proposed terms
+made dispensable."""
 
 
 @dataclass(frozen=True)

@@ -9,18 +9,12 @@ import pytest
 
 from ident.diagnosis.evidence import blocks, chance
 from ident.diagnosis.evidence.blocks import BlockMean, correlation_time
-from ident.diagnosis.evidence.comparison import (
-    Evidence,
-    Residuals,
-    both_probable,
-    compare,
-    improves_on_the_whole,
-    indistinguishable,
-    matters,
-)
+from ident.diagnosis.evidence.comparison import Evidence, Residuals, compare
 from ident.diagnosis.evidence.criteria import EVIDENCE_CRITERIA
 from ident.diagnosis.evidence.disturbance import Disturbance
 from ident.diagnosis.evidence.energy_bands import EnergyBands, Record, _edges, _harmonics
+from ident.diagnosis.evidence.rule import improves_on_the_whole, matters
+from ident.diagnosis.evidence.separation import both_probable, indistinguishable
 
 NOTHING = BlockMean(0.0, 0.0, 20)
 

@@ -10,7 +10,7 @@ import pytest
 
 from ident.diagnosis import candidate, moves, ranking
 from ident.diagnosis.candidate import Candidate
-from ident.diagnosis.evidence import comparison
+from ident.diagnosis.evidence import rule
 from ident.diagnosis.moves import Moves
 from ident.diagnosis.ranking import rank_each
 from ident.diagnosis.selection_loop import add_and_exchange
@@ -54,7 +54,7 @@ def test_a_model_that_is_known_is_found_anew_where_that_leads_to_a_better_optimu
     }.items():  # fmt: skip
         monkeypatch.setattr(ranking, name, made)
     monkeypatch.setattr(candidate, "evidence", lambda *_: None)
-    monkeypatch.setattr(comparison, "worth_adding", lambda *_: True)
+    monkeypatch.setattr(rule, "worth_adding", lambda *_: True)
     monkeypatch.setattr(candidate, "dominated", lambda *_: False)
     monkeypatch.setattr(candidate, "indistinguishable", lambda *_: False)
     found = refit("saturation", "stiction", error=1.0)

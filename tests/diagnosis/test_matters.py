@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from ident.diagnosis.evidence.comparison import matters
 from ident.diagnosis.evidence.criteria import EVIDENCE_CRITERIA
+from ident.diagnosis.evidence.rule import matters
 from tests.diagnosis.test_evidence import NOISE, WHITE, compared, slow, white
 
 SEEDS, N = range(700, 730), 2000

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
 import pytest
 
-from ident.diagnosis.ambiguity import indistinguishable_group
+from ident.diagnosis.ambiguity import alternatives, indistinguishable_group
 from ident.diagnosis.candidate import Candidate, in_rank_order
 from ident.diagnosis.criteria import CRITERIA
 from ident.diagnosis.evidence.chance import bar
@@ -62,6 +63,23 @@ def test_what_the_records_call_for_is_tried_whatever_is_predicted():
 def test_what_nothing_replaced_is_in_its_group():
     """By rounding it stands first, and just beyond chance behind the best."""
     assert group(candidate("delay", refit(a=0.2)), candidate("lag", refit(b=0.1))) == ["delay", "lag"]
+
+
+def test_the_numbers_of_a_group_are_those_that_decided_it():
+    """Each is within its limit, and of the pair that the data do not tell apart."""
+    first, other = (
+        candidate("asymmetry", refit(missing=0.03, own=0.004)),
+        candidate("leak", refit(missing=0.03, other=0.004)),
+    )
+    groups = {"asymmetry": indistinguishable_group("asymmetry", first.refit, [first, other])}  # type: ignore[arg-type]
+    (found,) = alternatives(groups)
+    assert (found.effect, found.instead_of, found.separation.by) == ("leak", "asymmetry", "")
+    assert 0.0 < found.separation.apart == pytest.approx(2 * 0.004**2, rel=0.2)
+    assert found.separation.apart < found.separation.apart_limit
+    assert replace(found.separation, gain=-12.4).by == "gain"
+    assert replace(found.separation, apart=2.0 * found.separation.apart_limit).by == "apart"
+    assert replace(found.separation, means_apart=4e-4).by == "means_apart"
+    assert replace(found.separation, difference=-2.0 * found.separation.difference_limit, hidden=0.0).by == "difference"
 
 
 @pytest.mark.parametrize(

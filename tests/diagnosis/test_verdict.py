@@ -11,7 +11,9 @@ from ident.diagnosis.criteria import Criteria
 from ident.diagnosis.evidence.blocks import BlockMean
 from ident.diagnosis.evidence.criteria import EVIDENCE_CRITERIA
 from ident.diagnosis.evidence.probability import NOTHING, SetGains
+from ident.diagnosis.evidence.separation import Separation
 from ident.diagnosis.report import group_of
+from ident.diagnosis.result import Alternative
 from ident.diagnosis.verdict import Findings, Residual, conclude, is_noise
 from ident.diagnosis.verification import VerifyChange
 
@@ -161,6 +163,34 @@ def test_a_group_is_told_once_and_never_with_what_is_dispensable():
     )  # fmt: skip
     assert conclude(found).indistinguishable == (("play", "dead_zone"), ("lag", "delay", "lead"))
     assert conclude(replace(found, dispensable=("play",))).indistinguishable == (("lag", "delay", "lead"),)
+
+
+def test_a_stand_in_says_why():
+    """Each reason by itself; where none holds, or a named effect is contradicted, there is none."""
+    rises = replace(FALLS, effect="play", before=0.01, after=0.02)
+    found = replace(LEAD, residual=Residual(0.01, None, correlation=0.4))
+    for finding, reasons in (
+        (replace(LEAD, residual=None), ("untested",)),
+        (replace(LEAD, residual=FAR), ("unexplained",)),
+        (replace(found, at_bound=("lead",)), ("at_bound",)),
+        (replace(found, added=("lead", "play"), dispensable=("play",), verify=(rises,)), ("dispensable_contradicted",)),
+        (found, ()),
+        (replace(LEAD, residual=FAR, verify=(replace(rises, effect="lead"),)), ()),
+    ):
+        verdict = conclude(finding)
+        assert verdict.because == reasons
+        assert (verdict.standing == "stand_in") is bool(reasons)
+
+
+def test_the_numbers_of_a_group_stand_beside_it_and_those_of_no_group_are_left_out():
+    """Of an effect that is dispensable there is no group, and so there are no numbers."""
+    near = Separation(1.0, 12.3, 1e-6, 1e-5, 1e-6, 0.0, 3e-4, 1e-7, 1e-6)
+    both = tuple(Alternative(other, name, near) for name, other in (("lag", "lead"), ("play", "dead_zone")))
+    found = Findings(
+        added=("lag", "play"), alternatives=(("lag", "lead"), ("play", "dead_zone")), compared=both, residual=FAR,
+    )  # fmt: skip
+    assert conclude(found).alternatives == both
+    assert conclude(replace(found, dispensable=("play",))).alternatives == both[:1]
 
 
 def test_two_lags_that_are_named_are_as_probable_as_both_together():

@@ -39,7 +39,7 @@ ESTIMATION = (
              "_projected(run, of == fold)", "judged on what was fitted", _HELD_OUT),
     Mutation("step-of-a-fold", "ident/diagnosis/cross_validation.py", "point + steps[fold] for fold in of",
              "point - steps[fold] for fold in of", "the sign of the step to the fit without a fold", _HELD_OUT),
-    Mutation("one-run-alone", "ident/diagnosis/evidence/comparison.py", "gain = min(evidence.gain, evidence.without)",
+    Mutation("one-run-alone", "ident/diagnosis/evidence/rule.py", "gain = min(evidence.gain, evidence.without)",
              "gain = evidence.gain", "what one run asks for alone", ("tests/diagnosis/test_evidence.py",)),
     Mutation("two-lags", "ident/bench/effect_ranking.py", "if second > model.T else model",
              "if second < model.T else model", "of two lags the shorter is called T",

@@ -35,7 +35,7 @@ from ident.diagnosis.discovery.term_to_effect import (
     lines_of,
     searched_bounds,
 )
-from ident.diagnosis.evidence.comparison import generalises, matters
+from ident.diagnosis.evidence.rule import generalises, matters
 from ident.diagnosis.fitted_model import FittedModel
 from ident.diagnosis.model_comparison import evidence, verified_change, worth_adding
 from ident.diagnosis.tie_breaking import stable_minimum, stable_ranking

@@ -26,11 +26,15 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class BlockMean:
-    """A mean, its standard error, and the number of blocks. The error of one block is infinite."""
+    """A mean, its standard error, and the number of blocks. The error of one block is infinite.
+
+    `values` are the means of the blocks (of a ratio none), for a rule that asks each block.
+    """
 
     mean: float
     error: float
     blocks: int
+    values: tuple[float, ...] = ()
 
     def bound(self, criteria: EvidenceCriteria) -> float:
         """How far chance may carry the mean to one side."""
@@ -108,5 +112,6 @@ def _means(series: Sequence[Array], blocks: Sequence[int]) -> tuple[Array, Array
 def _of(values: Array, weights: Array) -> BlockMean:
     mean, k = float(weights @ values), len(values)
     if k < 2:
-        return BlockMean(mean, float("inf"), k)
-    return BlockMean(mean, float(np.sqrt(np.sum((weights * (values - mean)) ** 2) * k / (k - 1))), k)
+        return BlockMean(mean, float("inf"), k, tuple(values.tolist()))
+    error = float(np.sqrt(np.sum((weights * (values - mean)) ** 2) * k / (k - 1)))
+    return BlockMean(mean, error, k, tuple(values.tolist()))

@@ -1,35 +1,28 @@
-"""The one comparison of two fitted models, and the statements that follow from it.
+"""The one comparison of two fitted models: the numbers from which every statement on them follows.
 
 The comparison takes the residuals of free simulations (over the prediction horizon where a machine integrates) on data
-that the fits did not see: blocks or whole runs that were held out in turn. It asks three questions of a difference.
+that the fits did not see: blocks or whole runs that were held out in turn. The rule by which an effect is added stands
+in :mod:`ident.diagnosis.evidence.rule`, which of two models is better in :mod:`ident.diagnosis.evidence.separation`.
 
-*Is it real?* The gain, in nats, is that of a coarsened likelihood (Miller and Dunson 2019) under one disturbance
-spectrum common to all models (:mod:`ident.diagnosis.evidence.disturbance`),
+The gain, in nats, is that of a coarsened likelihood (Miller and Dunson 2019) under one disturbance spectrum common to
+all models (:mod:`ident.diagnosis.evidence.disturbance`),
 
     G = ν/2 ln(V before / V after)
 
 where ν counts distinct degrees of freedom, never samples: five and a hundred periods of one sine have the same ν. The
-means of the runs, to which a waveform is blind, add (runs − 1)/2 ln(Σ before / Σ after) of their squares. It has to
-pass the bar, the 95 % point of the largest gain that any candidate makes of residuals with the same spectrum and random
-phases (:mod:`ident.diagnosis.evidence.chance`), or half of all that can be gained. The bar is the correction for the
-number of models compared. With four runs or more the gain has to pass without the run that gains most, too: an effect
-that one run alone asks for is a warning about that run.
+means of the runs, to which a waveform is blind, add (runs − 1)/2 ln(Σ before / Σ after) of their squares.
 
-*Does it matter?* The explainable power is the residual power above the noise. The change takes the share
+The explainable power is the residual power above the noise. The change takes the share
 
     ρ = (P before − P after) / (P before − P noise)
 
 with P the power of the error over the power of the output, averaged over runs: the square of the error that a user is
 shown. The error of ρ comes from blocks of ten correlation times of the difference, or from whole runs
 (:mod:`ident.diagnosis.evidence.blocks`).
-
-*Does it hold everywhere?* No condition of the tests, and none of the :data:`SPANS` of the records, may lose beyond its
-error and by a hundredth of the explainable power.
 """
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Hashable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import partial
@@ -43,7 +36,7 @@ from ident.diagnosis.evidence.blocks import BlockMean, block_mean, block_ratio
 from ident.diagnosis.evidence.criteria import EVIDENCE_CRITERIA, EvidenceCriteria
 from ident.diagnosis.evidence.disturbance import Disturbance
 from ident.diagnosis.evidence.energy_bands import EnergyBands, Record
-from ident.diagnosis.evidence.free_run import FreeRun, drives_away
+from ident.diagnosis.evidence.free_run import FreeRun
 from ident.noise.autoregression import prediction_errors
 from ident.noise.effective_sample_size import independent_samples
 from ident.rounding import TINY
@@ -209,101 +202,6 @@ def compare(
         level_difference=block_mean(list(squares[0] - squares[1]), criteria),
         level_share=block_ratio(list(squares[0] - squares[1]), list(squares[0]), criteria),
     )
-
-
-def improves_on_the_whole(
-    evidence: Evidence, bar: Callable[[], float], criteria: EvidenceCriteria = EVIDENCE_CRITERIA
-) -> bool:  # fmt: skip
-    """Whether the second model explains more than chance and, beyond the error of the share, a share that matters.
-
-    The gain has to be worth a parameter, and to pass the `bar` of :func:`ident.diagnosis.evidence.chance.bar`, which is
-    worked out only where it decides. Where a residual has few harmonics some candidate often matches a random phase,
-    and the bar comes near to the largest possible gain: half of the largest possible gain passes, too.
-    """
-    gain = min(evidence.gain, evidence.without)
-    if not matters(evidence, criteria) or gain <= criteria.least_gain:
-        return False
-    return gain > criteria.reaches * evidence.most or gain > bar()
-
-
-def matters(evidence: Evidence, criteria: EvidenceCriteria = EVIDENCE_CRITERIA) -> bool:
-    """Whether the second model explains a share of the explainable power, or of the runs' means, that matters.
-
-    It does so beyond the error of the share, or beyond that of the difference. The first is small where every block
-    gains the same share, the second where some blocks, or some runs, gain more of it than others.
-    """
-    of_levels = evidence.level > criteria.level and evidence.level_share.above(criteria.share, criteria)
-    of_difference = evidence.difference.above(criteria.share * evidence.explainable, criteria)
-    return of_levels or of_difference or evidence.share.above(criteria.share, criteria)
-
-
-def generalises(evidence: Evidence, criteria: EvidenceCriteria = EVIDENCE_CRITERIA) -> bool:
-    """Whether no condition and no span loses beyond its error, and by a share of the explainable power that matters."""
-    return losing_part(evidence, criteria) is None
-
-
-def losing_part(evidence: Evidence, criteria: EvidenceCriteria = EVIDENCE_CRITERIA) -> Hashable | None:
-    """The first condition or span that loses beyond its error by a share that matters; None where none does."""
-    least, each = -criteria.share * evidence.explainable, criteria.of_several(len(evidence.parts))
-    return next((name for name, part in evidence.parts.items() if part.below(least, each)), None)
-
-
-def worth_adding(
-    evidence: Evidence, bar: Callable[[], float] = lambda: float("inf"), criteria: EvidenceCriteria = EVIDENCE_CRITERIA
-) -> bool:  # fmt: skip
-    """The rule by which an effect is added: the second model improves on the first, generalises, and runs freely.
-
-    The selection asks it of fitted models through :mod:`ident.diagnosis.model_comparison`. Without a `bar` the second
-    model has to gain half of all that can be gained.
-    """
-    improves = improves_on_the_whole(evidence, bar, criteria)
-    return improves and generalises(evidence, criteria) and runs_freely(evidence, criteria)
-
-
-def better(evidence: Evidence, criteria: EvidenceCriteria = EVIDENCE_CRITERIA) -> bool:
-    """Whether the second of two models with as many parameters is more likely, beyond chance."""
-    differences = (evidence.difference, evidence.level_difference)
-    gains = evidence.gain >= 0 and any(of.above(0.0, criteria) for of in differences)
-    return gains and not indistinguishable(evidence, criteria) and runs_freely(evidence, criteria)
-
-
-def runs_freely(evidence: Evidence, criteria: EvidenceCriteria = EVIDENCE_CRITERIA) -> bool:
-    """Whether the second model, better over windows, does not drive the free run away beyond its uncertainty."""
-    return evidence.free_runs is None or not drives_away(*evidence.free_runs, criteria)
-
-
-def indistinguishable(evidence: Evidence, criteria: EvidenceCriteria = EVIDENCE_CRITERIA) -> bool:
-    """Whether the models are indistinguishable: as good within chance, and outputs near to each other.
-
-    Two outputs are near where the noise hides their difference, or where its power is below a twentieth of the residual
-    power of the better model above the noise. The means of the runs have to be nearer than the level that matters.
-    """
-    if not both_probable(evidence, criteria):
-        return False
-    excess = max(min(evidence.before, evidence.after) - evidence.noise, 0.0)
-    near = evidence.apart <= max(criteria.separation * excess, evidence.resolved)
-    difference = evidence.difference
-    as_good = not (difference.above(0.0, criteria) or difference.below(0.0, criteria))
-    return near and evidence.levels_apart <= criteria.level and (as_good or evidence.apart <= evidence.resolved)
-
-
-def both_probable(evidence: Evidence, criteria: EvidenceCriteria = EVIDENCE_CRITERIA) -> bool:
-    """Whether each of two models, one of which is right, is more probable than chance.
-
-    A difference within its error does not imply this: one block alone may make both the difference and its error.
-    """
-    return abs(evidence.gain) * criteria.learning_rate <= math.log(1.0 / criteria.chance - 1.0)
-
-
-def dominated(evidence: Evidence, criteria: EvidenceCriteria = EVIDENCE_CRITERIA) -> bool:
-    """Whether the second model is worse than the first beyond chance, by a share of its residual power that matters.
-
-    Never where the noise hides the difference of the two outputs.
-    """
-    excess = max(evidence.after - evidence.noise, 0.0)
-    by_levels = evidence.levels_apart > criteria.level and evidence.level_difference.below(0.0, criteria)
-    by_waveform = evidence.apart > evidence.resolved and evidence.difference.below(-criteria.share * excess, criteria)
-    return by_levels or by_waveform
 
 
 def gain(before: Residuals, after: Residuals, disturbance: Disturbance) -> float:
