@@ -1,66 +1,28 @@
-"""What is added to the program is one file and at most one line elsewhere: shown by doing it in a copy."""
+"""What is added to the program is one file and at most one line elsewhere: shown by doing it in a copy.
+
+So are the changes that CONTRIBUTING.md works out, each with the tests that judge it.
+"""
 
 from __future__ import annotations
 
+import ast
 import json
 import os
 import shutil
 import subprocess
 import sys
-from dataclasses import dataclass
 from pathlib import Path
 
 import pytest
 
-pytestmark = pytest.mark.full
+from tests.worked_examples import Change, worked_examples
+
 ROOT = Path(__file__).resolve().parents[1]
 
 
-@dataclass(frozen=True)
-class Addition:
-    """A new file, and the line that is put behind another one in the table of what there is; a stage needs none."""
-
-    file: str
-    text: str
-    table: str = ""
-    behind: str = ""
-    line: str = ""
-
-    def put_into(self, copy: Path) -> None:
-        """Write the file, which is new, and the line, behind the only one like that."""
-        file = copy / self.file
-        file.parent.mkdir(exist_ok=True)
-        with file.open("x", encoding="utf-8") as new:
-            new.write(self.text)
-        if self.table:
-            table = copy / self.table
-            before, found, after = table.read_text(encoding="utf-8").partition(self.behind + "\n")
-            assert found
-            assert self.behind not in after
-            table.write_text(f"{before}{found}{self.line}\n{after}", encoding="utf-8")
-
-
-ADDITIONS = {
-    "effect": Addition(
-        "ident/effects/bypass.py",
-        '''"""A share of the load flow goes past the piston."""
-
-from ident.effects.effect import Effect
-from ident.parameter import Parameter
-
-BYPASS = Effect(
-    name="bypass",
-    place="flow",
-    meaning="a share of the load flow goes past the piston",
-    strength=Parameter("share", "b", "1", -0.5, 0.5, 0.0, "share of the load flow that is lost"),
-    texts=("Q = Q * (1 - b)",),
-    units={"Q": "m^3/s"},
-)
-''',
-        "ident/effects/__init__.py", '    "underlap",', '    "bypass",',
-    ),
-    "stage": Addition(
-        "ident/stages/lagging_spool.py",
+ADDITIONS = (
+    Change(
+        "ident/stages/lagging_spool.py", "a new file", "",
         '''"""Spool: behind the valve's output by a lag of its own."""
 
 from ident.parameter import Parameter
@@ -76,8 +38,8 @@ LAGGING_SPOOL = stage(
 )
 ''',
     ),
-    "preset": Addition(
-        "ident/presets/lagging.py",
+    Change(
+        "ident/presets/lagging.py", "a new file", "",
         '''"""The actuator of Qian et al. (2014) with a lag of the main stage."""
 
 from dataclasses import replace
@@ -91,34 +53,10 @@ LAGGING = replace(
     QIAN2014, name="lagging", title="Actuator with a lagging spool", chain=replace(QIAN2014.chain, stages=_STAGES)
 )
 ''',
-        "ident/presets/__init__.py", '    "qian2014",', '    "lagging",',
     ),
-    "figure": Addition(
-        "ident/figures/error_bars.py",
-        '''"""The error of each run as a bar."""
-
-import altair as alt
-
-from ident.figures.drawing import Drawing, Option, Options
-from ident.figures.look import Look
-from ident.figures.render import Chart
-from ident.figures.study import Study
-
-
-def _drawn(study: Study, look: Look, options: Options) -> Chart:
-    rows = [{"run": each.run.id, "error": each.error} for each in study.compared(study.matrix.runs).runs]
-    x = alt.X("run:N", sort="y" if options.get("order") == "error" else None)
-    chart: Chart = alt.Chart(alt.InlineData(values=rows)).mark_bar().encode(x=x, y="error:Q")
-    return chart.configure(**look.config())
-
-
-_ORDER = Option("order", "Order", str | None, lambda _: (("", "as recorded"), ("error", "by error")))
-ERROR_BARS = Drawing("error-bars", "Errors", Study, _drawn, (_ORDER,))
-''',
-        "ident/figures/__init__.py", '    "evolution",', '    "error_bars",',
-    ),
-    "reader": Addition(
-        "ident/readers/columns.py",
+    Change("ident/presets/__init__.py", "behind", '    "qian2014",', '    "lagging",\n'),
+    Change(
+        "ident/readers/columns.py", "a new file", "",
         '''"""Columns by name in JSON."""
 
 import json
@@ -135,10 +73,10 @@ def read_columns(data: bytes, where: str, limits: Limits) -> Table:
     names = tuple(columns)
     return Table(names, lambda numbers: [np.array(columns[names[number]]) for number in numbers])
 ''',
-        "ident/readers/__init__.py", '    ".tdms": "tdms",', '    ".columns": "columns",',
     ),
-    "endpoint": Addition(
-        "app/greeting/endpoints.py",
+    Change("ident/readers/__init__.py", "behind", '    ".tdms": "tdms",', '    ".columns": "columns",\n'),
+    Change(
+        "app/greeting/endpoints.py", "a new file", "",
         '''"""/greeting: who is there."""
 
 from fastapi import APIRouter
@@ -154,9 +92,10 @@ def greeting() -> dict[str, str]:
     """A word."""
     return {"greeting": "hello"}
 ''',
-        "app/main.py", '    "operation",', '    "greeting",',
     ),
-}  # fmt: skip
+    Change("app/main.py", "behind", '    "operation",', '    "greeting",\n'),
+)  # fmt: skip
+"""New files, and the line behind another one in the table of what there is; a stage needs none."""
 
 USED = """
 import json, sys
@@ -175,8 +114,8 @@ from ident.synthesis.matrix import simulate_matrix
 
 folder = Path(sys.argv[1])
 simulate_matrix(folder / "plain", "lagging", seconds=0.25, small=True)
-simulate_matrix(folder / "bypassed", "lagging", seconds=0.25, small=True, effects={"bypass": 0.2})
-plain, bypassed = (read_matrix(folder / name) for name in ("plain", "bypassed"))
+simulate_matrix(folder / "damped", "lagging", seconds=0.25, small=True, effects={"cubic_damping": 2e5})
+plain, damped = (read_matrix(folder / name) for name in ("plain", "damped"))
 
 for name in (folder / "plain" / "runs").glob("*.npz"):
     name.with_suffix(".json").write_text(json.dumps({key: list(x) for key, x in np.load(name).items()}))
@@ -190,19 +129,19 @@ def held(matrix, *effects, **given):  # a fit whose every parameter is held: wha
 
 fits = {
     "plain": held(plain), "short": held(plain, Ts=1e-4),
-    "bypassed": held(bypassed, "bypass", bypass=0.2),
+    "damped": held(damped, "cubic_damping", cubic_damping=2e5),
 }
-model = preset("lagging", ("bypass",))
+model = preset("lagging", ("cubic_damping",))
 token = "a-token"
 client = TestClient(create_app(ServiceSettings(data=folder / "data", token=token)), "http://127.0.0.1:8000",
                     headers={"Authorization": f"Bearer {token}"})
 print(json.dumps({
-    "moved": float(np.std(plain.runs[0].measured - bypassed.runs[0].measured) / np.std(plain.runs[0].measured)),
+    "moved": max(float(np.std(a.measured - b.measured) / np.std(a.measured)) for a, b in zip(plain.runs, damped.runs)),
     "same": all(np.array_equal(a.measured, b.measured) for a, b in zip(plain.runs, columns.runs)),
     "errors": {name: fit.error["fit"] for name, fit in fits.items()},
     "fields": {field.label: [said for _, said in field.choices]
-               for form in forms((), fits["plain"]) if form.name == "error-bars" for field in form.fields},
-    "figure": json.loads(render(figure(fits["plain"], "error-bars", order="error"), "json")),
+               for form in forms((), fits["plain"]) if form.name == "residual-histogram" for field in form.fields},
+    "figure": json.loads(render(figure(fits["plain"], "residual-histogram", bins=7), "json")),
     "parameters": [parameter.name for parameter in model.parameters],
     "scales": [scale.name for scale in model.scales],
     "models": client.get("/api/v1/models").json(),
@@ -213,14 +152,56 @@ print(json.dumps({
 """What a user does with the additions, through the face of the library and over HTTP."""
 
 
+_OF_EFFECTS = "tests/effects/test_contract.py tests/reference/test_nonlinear_reference.py"
+_OF_EVIDENCE = ("test_criteria_of_evidence", "test_evidence", "test_sentences")
+EXAMPLES = {
+    "An effect of the load": f"{_OF_EFFECTS} -k cubic_damping",
+    "An effect of the valve": f"{_OF_EFFECTS} -k gain_growth",
+    "The rule by which an effect is added": " ".join(f"tests/diagnosis/{name}.py" for name in _OF_EVIDENCE),
+    "A figure with an option": "tests/figures/test_figures.py -k histogram",
+    "A field that an endpoint answers": "tests/app/test_matrix_views.py",
+}
+"""The tests that judge each example of CONTRIBUTING.md."""
+
+
+def test_each_example_quotes_one_line_and_names_files_that_are_new():
+    for heading, changes in worked_examples().items():
+        assert bool(changes) == (heading in EXAMPLES), heading
+        for change in changes:
+            file = ROOT / change.file
+            if change.how == "a new file":
+                assert not file.exists(), file
+            else:
+                lines = file.read_text(encoding="utf-8").splitlines()
+                assert len(change.places(lines)) == 1, f"{heading}: {change.line} in {file}"
+            if file.suffix == ".py" and change.how == "a new file":
+                ast.parse(change.text)
+
+
 @pytest.fixture(scope="module")
-def found(tmp_path_factory: pytest.TempPathFactory) -> dict:
-    """A copy of the packages with all additions, and what was found with them in a process of its own."""
+def copy(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A copy of the program with all additions and all examples of CONTRIBUTING.md."""
     copy = tmp_path_factory.mktemp("copy")
-    for package in ("ident", "app", "schemas", "migrations"):
-        shutil.copytree(ROOT / package, copy / package)  # with what was compiled of them
-    for addition in ADDITIONS.values():
-        addition.put_into(copy)
+    for name in ("ident", "app", "schemas", "migrations", "tests", "docs"):
+        shutil.copytree(ROOT / name, copy / name)  # with what was compiled of them
+    shutil.copy(ROOT / "pyproject.toml", copy)
+    for change in (*ADDITIONS, *(change for changes in worked_examples().values() for change in changes)):
+        change.put_into(copy)
+    return copy
+
+
+@pytest.mark.full
+@pytest.mark.parametrize("example", EXAMPLES)
+def test_an_example_passes_its_tests(copy, example):
+    called = [sys.executable, "-m", "pytest", "-n", "0", *EXAMPLES[example].split()]
+    own = os.environ | {"PYTHONPATH": str(copy)}
+    done = subprocess.run(called, cwd=copy, env=own, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stdout[-3000:]
+
+
+@pytest.fixture(scope="module")
+def found(copy: Path, tmp_path_factory: pytest.TempPathFactory) -> dict:
+    """What was found with all additions in a process of its own."""
     used = copy / "used.py"
     used.write_text(USED, encoding="utf-8")
     done = subprocess.run(
@@ -231,40 +212,44 @@ def found(tmp_path_factory: pytest.TempPathFactory) -> dict:
     return json.loads(done.stdout.splitlines()[-1])
 
 
+@pytest.mark.full
 def test_an_effect(found):
     """It is in the catalogue where its line says, it is simulated, and a model that has it explains the data."""
     names = [effect["name"] for effect in found["effects"]]
-    assert names[names.index("underlap") + 1] == "bypass"
+    assert names[names.index("quadratic_damping") + 1] == "cubic_damping"
     assert found["moved"] > 0.02
-    assert found["errors"]["bypassed"] < 0.01
+    assert found["errors"]["damped"] < 0.01
 
 
+@pytest.mark.full
 def test_a_stage(found):
     """What it brings is in the model that has it, in its turn of the search, and acts."""
-    assert found["parameters"] == ["Z0", "tau", "Cl", "c0", "m0", "Ka", "Ts", "bypass.share"]
-    assert found["scales"][-2:] == ["Ts", "bypass__share"]
+    assert found["parameters"] == ["Z0", "tau", "Cl", "c0", "m0", "Ka", "Ts", "cubic_damping.coefficient"]
+    assert found["scales"][-2:] == ["Ts", "cubic_damping__coefficient"]
     assert found["errors"]["plain"] < 0.01 < found["errors"]["short"]
 
 
+@pytest.mark.full
 def test_a_preset(found):
     """It is listed by its name, with its equations, and simulated."""
     (listed,) = (model for model in found["models"] if model["name"] == "lagging")
     assert any("Ts" in equation["text"] for equation in listed["equations"])
 
 
+@pytest.mark.full
 def test_a_figure(found):
-    """It is drawn by its name, with a bar a run, by its option; the page has a field for that."""
-    assert found["figure"]["mark"]["type"] == "bar"
-    assert found["figure"]["encoding"]["x"]["sort"] == "y"
-    assert found["fields"] == {"Order": ["as recorded", "by error"]}
+    """It is drawn by its name, by its option; the page has a field for that."""
     (rows,) = found["figure"]["datasets"].values()
-    assert len(rows) == 27
+    assert len(rows) == 7
+    assert found["fields"] == {"Number of bins": []}
 
 
+@pytest.mark.full
 def test_a_reader(found):
     """A file of its ending is read as the same samples."""
     assert found["same"]
 
 
+@pytest.mark.full
 def test_an_endpoint(found):
     assert found["greeting"] == {"greeting": "hello"}
