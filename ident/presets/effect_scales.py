@@ -12,10 +12,10 @@ from ident.stages import Scale
 _OWN = ("1", None)
 _SCALES = {
     "1": _OWN, "Pa": _OWN, "m/s": _OWN, "s": ("T", 3.0), "1/s": ("W", 1.0), "m": ("Z", 1.0), "1/m": ("1/D", 3.0),
-    "s/m": ("T/D", 5.0), "N": ("F", 1.0), "N/m^3": ("F/L**3", 0.3), "N*s^2/m^2": ("F/V**2", 10.0),
+    "s/m": ("T/D", 5.0), "N": ("F", 1.0), "N/m^3": ("F/L**3", 0.3),
     "m/Pa": ("D*A/F", 1.0), "1/Pa": ("A/F", 1.0), "s/m^3": ("1/(A*V)", 1.0), "1/m^2": ("1/L**2", 1.0),
     "m^3/(s*Pa^0.5)": ("A*V/sqrt(F/A)", 1.0), "m/N": ("L/F", 1.0), "m^3/(s*Pa)": ("A*V/(F/A)", 1.0),
-    "N/m^2": ("F/L**2", 1.0), "N/m": ("F/L", 1e2),
+    "N/m": ("F/L", 1e2),
 }  # fmt: skip
 """For a machine of unknown size: what a strength of each unit is measured by, and how much of it is searched.
 
@@ -35,12 +35,23 @@ straight between the samples, has little power there, and a light damping needs 
 Test: tests/diagnosis/test_hanging_mass.py"""
 
 
+def _measured_by(unit: str) -> tuple[str, float | None]:
+    """The measure of a strength of this unit; a force for each power of the speed or the way by its power."""
+    if unit in _SCALES:
+        return _SCALES[unit]
+    if of_speed := re.fullmatch(r"N\*s\^(\d)/m\^\1", unit):
+        return f"F/V**{of_speed[1]}", 10.0
+    if of_way := re.fullmatch(r"N/m\^(\d)", unit):
+        return f"F/L**{of_way[1]}", 1.0
+    return _OWN
+
+
 def scale_of(effect: Effect, parameter: Parameter, sizes: Mapping[str, str]) -> Scale:
     """How to search an effect's parameter for a machine of another size than its bounds were stated for.
 
     A user's effect states its own bounds, which hold. So they do where the model has no force.
     """
-    text, reach = _SCALES.get(parameter.unit, _OWN)
+    text, reach = _measured_by(parameter.unit)
     if parameter.start is Starts.RESONANCE and reach is not None:
         reach *= _RINGING
     if parameter.of_motion:

@@ -10,11 +10,12 @@ import pytest
 from ident.chain.chain import Chain
 from ident.chain.conditions import conditions
 from ident.comparison.compare import modelled
-from ident.effects import CATALOGUE
+from ident.effects import CATALOGUE, effect
 from ident.errors import Unusable
 from ident.fit.settings import Settings
 from ident.parameter import Parameter
 from ident.presets import PRESETS, Preset, preset
+from ident.presets.effect_scales import scale_of
 from ident.presets.search_plan import SearchPlan
 from ident.stages import (
     COMPRESSIBLE,
@@ -151,3 +152,15 @@ def test_a_play_in_a_loop_may_be_wider_than_the_drive_signals_deviation():
     play = next(effect for effect in CATALOGUE if effect.name == "backlash")
     (scale,) = (s for s in preset(LOOP).with_effects((play,)).scales if s.name == "backlash__half_width")
     assert 1.0 < scale.upper * float(scale.equation.value({"Kp": 2.0, "U": 1.0})) / 2.0 < np.sqrt(2)
+
+
+@pytest.mark.parametrize(("unit", "measured", "searched"), [
+    ("N*s^2/m^2", "(1)/V**2", 10.0), ("N*s^3/m^3", "(1)/V**3", 10.0), ("N/m^2", "(1)/L**2", 1.0),
+    ("N/m^4", "(1)/L**4", 1.0),
+])  # fmt: skip
+def test_a_force_for_a_power_of_the_speed_or_the_way_is_searched_by_their_size(unit, measured, searched):
+    """Whatever the power: a strength of a unit that no effect had before needs no line of a table."""
+    strength = Parameter("coefficient", "c", unit, 0.0, 1.0, 0.0, "a force")
+    damping = replace(effect("quadratic_damping"), strength=strength, texts=("R = R + c * v",))
+    found = scale_of(damping, strength, {"D": "1", "F": "1", "Z": "1", "T": "1"})
+    assert (found.text, found.upper) == (measured, searched)
