@@ -59,7 +59,7 @@ def both_probable(first: FittedModel, second: FittedModel) -> bool:
 
 def runs_freely(before: FittedModel, after: FittedModel) -> bool:
     """Whether the free run of the second model is no worse than that of the first beyond its uncertainty."""
-    return comparison.runs_freely(evidence(before, after))
+    return rule.runs_freely(evidence(before, after))
 
 
 def verified_change(effect: str, less: FittedModel, more: FittedModel) -> VerifyChange | None:
