@@ -1,7 +1,7 @@
 """Kononykhin's program for a control unit: saw-tooth in three ranges, sines, levels, the stroke of changing speed.
 
-The records are those that `simulate` makes, :func:`ident.bench.synthesis.plans`, about the zero shift and beyond the
-dead space that a fit found.
+The records are those that `simulate` makes, :func:`ident.synthesis.bench_matrix.plans`, about the zero shift and
+beyond the dead space that a fit found.
 """
 
 from __future__ import annotations
@@ -15,7 +15,6 @@ from numpy.typing import NDArray
 
 from ident.bench.model import Model, dead_space
 from ident.bench.outputs import model_of
-from ident.bench.synthesis import STROKE, Plan, plans, record
 from ident.custom.definition import preset_with
 from ident.design.predicted_peaks import Peaks
 from ident.design.spread import Spread
@@ -23,6 +22,7 @@ from ident.errors import Unusable
 from ident.fit.result import FitResult
 from ident.matrix import Actuator
 from ident.rig.limits import RigLimits
+from ident.synthesis.bench_matrix import STROKE, Plan, plans, record
 
 Array = NDArray[np.float64]
 KONONYKHIN = "kononykhin"

@@ -17,13 +17,13 @@ import numpy as np
 import yaml
 from numpy.typing import NDArray
 
-from ident.bench.synthesis import RATE
 from ident.errors import Unusable
 from ident.matrix import Actuator
 from ident.planning.law import TEXTS
 from ident.planning.planned_run import PlannedRun
 from ident.progress import Progress, Report, silent
 from ident.rig.limits import UNITS, RigLimits
+from ident.synthesis.bench_matrix import RATE
 from ident.words.nearest import did_you_mean
 
 Array = NDArray[np.float64]

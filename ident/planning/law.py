@@ -8,8 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ident.bench.laws import CONTINUOUS, FREQUENCY, LEVELS, STATIC
-from ident.bench.synthesis import RATE, STEEPEST, Plan
+from ident.synthesis.bench_laws import CONTINUOUS, FREQUENCY, LEVELS, STATIC
+from ident.synthesis.bench_matrix import RATE, STEEPEST, Plan
 from ident.units.quantity import quantity
 
 Array = NDArray[np.float64]
@@ -53,7 +53,7 @@ class Law:
 
     @classmethod
     def of(cls, plan: Plan) -> Law:
-        """The law of one record of :func:`ident.bench.synthesis.plans`."""
+        """The law of one record of :func:`ident.synthesis.bench_matrix.plans`."""
         around = tuple(quantity(end, "m", "position_range") for end in plan.labels.get("position_range", ()))
         return cls(plan.law, plan.settings, plan.seconds, plan.start, around)
 

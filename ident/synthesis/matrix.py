@@ -14,7 +14,6 @@ import numpy as np
 import yaml
 from numpy.typing import NDArray
 
-from ident.bench.synthesis import write_bench
 from ident.cached import cached_property
 from ident.chain.chain import linear_model
 from ident.comparison.compare import modelled
@@ -25,6 +24,7 @@ from ident.presets import PRESETS, Preset
 from ident.presets import preset as preset_called
 from ident.progress import Progress, Report, silent
 from ident.run import Run, Specimen
+from ident.synthesis.bench_matrix import write_bench
 
 Array = NDArray[np.float64]
 SAMPLE_RATE, BAND = 4096.0, 80.0  # Hz (Qian et al. 2014, section 3)

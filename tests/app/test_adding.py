@@ -18,13 +18,13 @@ from fastapi.testclient import TestClient
 
 from app.diagnoses import repository as diagnoses
 from app.jobs import repository as jobs
-from ident.bench.synthesis import write_bench
 from ident.custom.definition import read_effect
 from ident.diagnosis.discovery.proposal import Proposal
 from ident.diagnosis.parameter_estimate import ParameterEstimate
 from ident.diagnosis.result import Baseline, Diagnosis, Ranked, Rung, Verdict
 from ident.effects.effect import Effect
 from ident.presets import PRESETS
+from ident.synthesis.bench_matrix import write_bench
 from tests.app.conftest import archived
 from tests.app.test_diagnoses import OWN
 from tests.bench.sets import simulated

@@ -19,10 +19,10 @@ from fastapi.testclient import TestClient
 from app.cli.sheet import sheet as show_sheet
 from ident.bench.outputs import model_of
 from ident.bench.position_loop import margins
-from ident.bench.synthesis import write_bench
 from ident.errors import Unusable
 from ident.presets import PRESETS
 from ident.readers.regulator_description import describe_regulator
+from ident.synthesis.bench_matrix import write_bench
 from tests.bench.sets import simulated
 from tests.short_form import short_form
 

@@ -9,12 +9,12 @@ from contextlib import contextmanager
 import numpy as np
 import pytest
 
-from ident.bench import synthesis
 from ident.bench.model import Model
 from ident.bench.records import BenchSet, bench_set
 from ident.bench.speed_table import FRACTIONS, SpeedTable
 from ident.matrix import Actuator, Matrix
 from ident.run import Run
+from ident.synthesis import bench_matrix
 from tests.reference import kononykhin_reference as reference
 
 
@@ -57,13 +57,13 @@ def simulated(full: bool) -> Iterator[None]:
     One static record, the sines that last less than ten seconds, those of speed. Without the slow sines the position
     error is 3.6 % on average of all, for the smallest moves by a step of the converter: the limit is 5 % there.
     """
-    whole, long = synthesis.plans, re.compile(r"static-(20|80)|sine-.*-0_[25]")
+    whole, long = bench_matrix.plans, re.compile(r"static-(20|80)|sine-.*-0_[25]")
 
-    def some(gain: float) -> Iterator[synthesis.Plan]:
+    def some(gain: float) -> Iterator[bench_matrix.Plan]:
         return (plan for plan in whole(gain) if full or not long.fullmatch(plan.id))
 
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(synthesis, "plans", some)
+        patch.setattr(bench_matrix, "plans", some)
         if not full:
-            patch.setitem(synthesis.LIMITS, "position_error", {"max": "5 %"})
+            patch.setitem(bench_matrix.LIMITS, "position_error", {"max": "5 %"})
         yield

@@ -7,12 +7,12 @@ from collections import Counter
 import numpy as np
 import pytest
 
-from ident.bench.synthesis import plans as bench_records
 from ident.errors import Unusable
 from ident.planning.plan import Plan, plan
 from ident.planning.programs import Settings, program_of, qian_program
 from ident.rig.limits import RigLimits
 from ident.run import Specimen
+from ident.synthesis.bench_matrix import plans as bench_records
 from ident.synthesis.matrix import plans as matrix_runs
 
 

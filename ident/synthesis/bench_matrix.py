@@ -11,11 +11,11 @@ import numpy as np
 import yaml
 from numpy.typing import NDArray
 
-from ident.bench.laws import CONTINUOUS, FREQUENCY, LEVELS, STATIC, driven
 from ident.bench.model import Model
 from ident.bench.outputs import model_of
 from ident.presets import Preset
 from ident.progress import Progress, Report, silent
+from ident.synthesis.bench_laws import CONTINUOUS, FREQUENCY, LEVELS, STATIC, driven
 
 Array = NDArray[np.float64]
 RATE = 1000.0  # Hz
