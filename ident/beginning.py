@@ -8,7 +8,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from ident.resolution import noise_of, resolution
+from ident.resolution import WHITE, noise_of, resolution
 from ident.rounding import ROUNDING, TINY
 
 Samples = NDArray[np.float64]
@@ -75,7 +75,7 @@ def standing_for(x: Samples, command: Samples | None, sample_rate: float) -> int
     parts = (x[: _first(x, sample_rate)], *np.array_split(x[:count], 4))
     size, step = float(np.std(x)), resolution(x)
     noise = min(noise_of(x), MOST_NOISE * size) if len(x) > 8 else 0.0
-    error = np.hypot(noise, step / np.sqrt(12.0)) * np.sqrt(2.0 / min(map(len, parts)))
+    error = np.hypot(noise, step / WHITE) * np.sqrt(2.0 / min(map(len, parts)))
     return count if np.ptp([part.mean() for part in parts]) <= max(AT_ZERO * size, ERRORS * error) else 0
 
 
@@ -91,7 +91,7 @@ def held_still(x: Samples, command: Samples, neutral: float) -> list[float]:
         if last - first >= LEAST_HELD:
             early, late = np.array_split(x[(first + last) // 2 : last], 2)
             expected = float(typical * abs(command[first] - neutral) * len(early))
-            error = float(np.hypot(noise, resolution(x) / np.sqrt(12.0)) * np.sqrt(2.0 / len(late)))
+            error = float(np.hypot(noise, resolution(x) / WHITE) * np.sqrt(2.0 / len(late)))
             if abs(late.mean() - early.mean()) + ERRORS * error <= STILL * expected:
                 found.append(float(command[first]))
     return found
@@ -110,7 +110,7 @@ def zero_at_rest(x: Samples, begins: Beginning, sample_rate: float) -> tuple[flo
     least = max(ROUNDING * float(np.abs(x).max()), TINY)
     if begins == "at rest":
         n = n if abs(x[n - 1] - x[0]) <= ERRORS * noise + step else 1
-        return float(x[:n].mean()), float(max(np.hypot(noise / np.sqrt(n), step / np.sqrt(12.0)), least))
+        return float(x[:n].mean()), float(max(np.hypot(noise / np.sqrt(n), step / WHITE), least))
     size, typical = float(np.std(x)), float(np.std(x[n:] - x[:-n]))
     if begins == "moving" and abs(x[0]) <= SETS_OUT * size and abs(x[n] - x[0]) <= SLOWLY * typical:
         return 0.0, float(max(np.hypot(abs(x[0]), noise), least))

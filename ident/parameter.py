@@ -36,7 +36,7 @@ class Starts(Enum):
     FRICTION = "friction"
     """A pressure, Pa: a share of the pressure difference that dry friction takes."""
     FRICTION_GRADIENT = "friction gradient"
-    """A pressure over a way, Pa/m: a share of the dry friction's over a tenth of a metre."""
+    """A pressure over a way, Pa/m: a share of the dry friction's over half of the way that was covered."""
 
 
 class AtReversals(Enum):

@@ -7,6 +7,8 @@ from numpy.typing import NDArray
 
 from ident.rounding import ROUNDING
 
+WHITE = float(np.sqrt(12.0))
+"""The step of a converter over the deviation of its white error (Widrow 1956)."""
 CHANGING = 0.9
 """[of the samples] Of a reading in steps some samples are alike: where more than this share changes, it is in none."""
 

@@ -20,6 +20,8 @@ from ident.simulation.steps import fastest_mode, steps_needed
 Array = NDArray[np.float64]
 SHOWN = {"position": "y", "pressure": "P", "after_play": "wb"}
 """The signal of Kononykhin's blocks that each answer is."""
+_KEPT = 64
+"""Chains whose answers are kept compiled. No answer depends on it."""
 
 
 def chain_response(
@@ -45,7 +47,7 @@ def chain_response(
     return responses(shown, [run], stacked, steps, states)[:, 0].T
 
 
-@lru_cache(maxsize=64)
+@lru_cache(maxsize=_KEPT)
 def _showing(chain: Chain, what: str) -> Chain:
     """The chain with one answer as its output; a chain keeps what is derived from its equations."""
     return replace(chain, outputs={what: SHOWN[what]})

@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from ident.bench.criteria import BENCH_CRITERIA
 from ident.bench.effect_ranking import finely
 from ident.bench.identification import BenchIdentification
 from ident.bench.least_squares import Solution, solve
@@ -20,8 +21,6 @@ from ident.fit.settings import Settings
 from ident.matrix import Matrix
 from ident.parallel import each
 from ident.progress import Progress, Report, silent
-
-_STEPS = 60  # of the refinement at most
 
 
 class ContinuedBench(BenchIdentification):
@@ -51,7 +50,7 @@ class ContinuedBench(BenchIdentification):
             fine = tuple(each(lambda one: one.weighed(begun), finely(self.bench.records)))
         residual = Residual(begun, fine, self.space.names)
         first = solve(residual, steps=0)
-        tried = [first, *([solve(residual, steps=_STEPS)] if self.space.names else [])]
+        tried = [first, *([solve(residual, steps=BENCH_CRITERIA.fits.polish)] if self.space.names else [])]
         if state["best"]:
             tried.append(self._polished(state)[0])
         errors = [self._error(solution) for solution in tried]

@@ -19,7 +19,8 @@ from ident.bench.model import Model
 
 Array = NDArray[np.float64]
 ANGLES = 4096
-"""Of a period at which the speed is taken. Why: a corner between two of them is worth 1e-6 of the first harmonic."""
+"""Of a period at which the speed is taken. No answer depends on it: twice as many change a gain margin by 1e-4 dB and a
+phase margin by 3e-4°."""
 
 
 @dataclass(frozen=True)
@@ -40,7 +41,7 @@ def first_harmonic(model: Model, amplitude: float) -> FirstHarmonic:
     """The describing function of blocks b to d at an amplitude (rated currents) of the current at block b."""
     reach = amplitude + model.B + model.dead_space
     ends = model.I0 - reach, model.I0 + reach
-    bias = float(scipy.optimize.brentq(lambda mean: float(np.mean(_speed(model, amplitude, mean))), *ends, xtol=1e-10))
+    bias = float(scipy.optimize.brentq(lambda mean: float(np.mean(_speed(model, amplitude, mean))), *ends))
     speed = _speed(model, amplitude, bias)
     return FirstHarmonic(amplitude, bias, 2j * complex(np.mean(speed * np.exp(-1j * _angles()))) / amplitude)
 

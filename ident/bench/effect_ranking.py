@@ -12,12 +12,15 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from ident.bench.criteria import BENCH_CRITERIA
 from ident.bench.least_squares import Solution, solve
 from ident.bench.model import CONSTANTS, FAST, Model, beyond_fast
+from ident.bench.natural_sizes import ends_of_the_way, natural_sizes
 from ident.bench.observed import Observed, observe
 from ident.bench.records import Record
 from ident.bench.residual import Residual
 from ident.cached import cached_property
+from ident.diagnosis.criteria import CRITERIA
 from ident.diagnosis.cross_validation import fold_of_segments
 from ident.diagnosis.evidence.comparison import Evidence, Residuals, compare
 from ident.diagnosis.evidence.energy_bands import EnergyBands
@@ -27,6 +30,7 @@ from ident.effects.effect import Effect, off_values
 from ident.effects.second_lag import SECOND_LAG
 from ident.effects.spring_load import SPRING_LOAD
 from ident.fit.bounded_step import bounded_step
+from ident.fit.criteria import FIT_CRITERIA
 from ident.parallel import each
 from ident.parameter import Starts
 from ident.presets import Preset
@@ -38,9 +42,8 @@ def _unsaid(_done: int, _total: int) -> None:
     """Report nothing."""
 
 
-_TRIED = (0.05, 0.2, 0.6)
-_STEPS, _FINAL = 6, 12
-_RATE = 500.0  # Hz
+_OF = BENCH_CRITERIA
+_SHARES = FIT_CRITERIA.search.strengths
 
 
 @dataclass(frozen=True, eq=False)
@@ -140,9 +143,9 @@ class Refitter:
 
     def _refit(self, effects: tuple[str, ...], start: Model) -> Refit:
         names = (*CONSTANTS, *start.table.names, *self._strengths(effects))
-        first = _longer_first(solve(Residual(start, self._coarse, names), steps=_FINAL).model)
+        first = _longer_first(solve(Residual(start, self._coarse, names)).model)
         weighed = tuple(each(lambda one: one.weighed(first), self._fine))
-        solution = solve(Residual(first, weighed, names), steps=_FINAL)
+        solution = solve(Residual(first, weighed, names))
         held_out = self._out_of_fold(Residual(solution.model, weighed, names))
         error = np.mean([np.sqrt(np.mean(r**2) / one.power) for r, one in zip(held_out, self._shown, strict=True)])
         return Refit(effects, solution, self._error(solution.model), float(error), Residuals(held_out, self._bands))
@@ -193,39 +196,39 @@ def _longer_first(model: Model) -> Model:
 
 
 def _bounded(products: Array) -> Array:
-    """The Gauss-Newton step of [J, r] products, no longer than half a natural size of each value."""
-    p = len(products) - 1
-    return bounded_step(np.full(p, 0.5), products[:p, :p], products[:p, p])
+    """The Gauss-Newton step of [J, r] products, no longer than one linearisation is believed along each axis."""
+    p, longest = len(products) - 1, CRITERIA.cross_validation.longest_step
+    return np.clip(bounded_step(np.full(p, 0.5), products[:p, :p], products[:p, p]), -longest, longest)
 
 
 def finely(records: Sequence[Record]) -> tuple[Observed, ...]:
     """The records in steps so fine that a mean over samples is not taken for a lag."""
-    return observe(records, rate=_RATE)
+    return observe(records, rate=_OF.comparison.fine_rate)
 
 
 def with_effect(model: Model, effect: Effect, observed: tuple[Observed, ...], names: tuple[str, ...]) -> Model:
     """The best of quick fits of these values, from a weak, a middling and a strong effect."""
-    tried = [solve(Residual(start, observed, names), steps=_STEPS) for start in _starts(model, effect)]
+    sizes = natural_sizes(model, [one.record for one in observed])
+    few = CRITERIA.estimation.screen.most
+    tried = [solve(Residual(start, observed, names), few) for start in _starts(model, effect, sizes)]
     return min(tried, key=lambda solution: solution.cost).model
 
 
 def centred(values: Mapping[str, float], records: Sequence[Record]) -> dict[str, float]:
     """The values, a load that grows with the position being zero in the middle of all positions."""
     centre = SPRING_LOAD.added[1].in_equations
-    ends = [(record.position.min(), record.position.max()) for record in records]
-    middle = float(0.5 * (min(a for a, _ in ends) + max(b for _, b in ends)))
+    middle = 0.5 * sum(ends_of_the_way(records))
     return {name: middle if name == centre else value for name, value in values.items()}
 
 
-def _starts(model: Model, effect: Effect) -> list[Model]:
+def _starts(model: Model, effect: Effect, sizes: Mapping[Starts, float]) -> list[Model]:
     """Models with some of an effect, the lag made shorter by what a second lag or a delay takes over."""
     strength = effect.added[0]
     if strength.start is Starts.TIME:
         return [
-            replace(model.with_values({strength.in_equations: share * model.T}), T=max(1.0 - share, 0.2) * model.T)
-            for share in _TRIED
+            replace(model.with_values({strength.in_equations: share * model.T}), T=(1.0 - share) * model.T)
+            for share in _SHARES
         ]
-    sizes = {Starts.FRICTION: model.dPfr, Starts.FRICTION_GRADIENT: 10.0 * model.dPfr}
     size = sizes.get(strength.start, strength.upper)
     signs = (1.0,) if strength.lower >= 0 else (1.0, -1.0)
-    return [model.with_values({strength.in_equations: sign * share * size}) for share in _TRIED for sign in signs]
+    return [model.with_values({strength.in_equations: sign * share * size}) for share in _SHARES for sign in signs]

@@ -14,19 +14,20 @@ from math import log, sqrt
 import numpy as np
 from numpy.typing import NDArray
 
-from ident.bench.response import earlier, filter_gains
+from ident.bench.criteria import BENCH_CRITERIA
+from ident.bench.exact_integrals import bend, gains_of, simpson_share, while_moving, while_starting
+from ident.bench.model import CONSTANTS as NAMES
+from ident.bench.response import cubic, earlier, piece_of
 from ident.simulation.jit import jit
 
 Array = NDArray[np.float64]
-CONSTANTS = 6
+_OF = BENCH_CRITERIA.simulation
+CONSTANTS = len(NAMES) + 1
 """Rows before those of the table: T, B, I0, kp, ΔPfr and the delay."""
-_TURNING, _PASSING = 8, 32
-"""Parts of a sample in which the play turns; in which the current passes far or reaches what takes all of the supply
-pressure. The way is off by the square of a part: with these by 1 nm or less."""
-_QUICK = 1e-3
-"""Of the rated current in half a sample: a play that is left or met at more is told finely as well."""
-_FAR = 0.25
-"""Of the current from the zero shift: what it may change in half a sample for the speed to be a straight line."""
+PARTS = (1, 2, _OF.turning, _OF.passing)
+"""Into how many parts a sample may be divided."""
+_WHOLE, _HALVES, _TURNING, _PASSING = range(len(PARTS))
+_QUICK, _FAR = _OF.quick, _OF.far
 
 
 @jit(nogil=True, error_model="numpy")
@@ -44,21 +45,10 @@ def delayed(current: Array, late: float) -> tuple[Array, Array]:
 @jit(nogil=True, error_model="numpy")
 def _speed(a: float, side: int, nodes: Array, pieces: Array) -> tuple[float, float, int, float]:
     """f and its slope at a current `a` from the zero shift; the piece of the table, and the place in it."""
-    i = len(nodes) - 2
-    while i > 0 and a < nodes[i]:
-        i -= 1
-    t, c = a - nodes[i], pieces[side, i]
-    within = min(t, nodes[i + 1] - nodes[i])
-    slope = c[1] + within * (2.0 * c[2] + 3.0 * within * c[3])
-    return c[0] + within * (c[1] + within * (c[2] + within * c[3])) + (t - within) * slope, slope, i, t
-
-
-@jit(nogil=True, error_model="numpy")
-def _node(t: float, width: float, c: Array) -> float:
-    """A piece of the table, (4,), at a place in it; beyond the last node the end slope goes on."""
-    within = min(t, width)
-    slope = c[1] + within * (2.0 * c[2] + 3.0 * within * c[3])
-    return float(c[0] + within * (c[1] + within * (c[2] + within * c[3])) + (t - within) * slope)
+    i = piece_of(a, nodes)
+    t = a - nodes[i]
+    f, slope = cubic(t, nodes[i + 1] - nodes[i], pieces[side, i])
+    return f, slope, i, t
 
 
 @jit(nogil=True, error_model="numpy")
@@ -69,6 +59,33 @@ def _kind(u: float, still: float, full: float) -> int:
         return 0
     kind = 2 if a > full else 1
     return kind if u > 0.0 else -kind
+
+
+@jit(nogil=True, error_model="numpy")
+def division(
+    w: float, wm: float, we: float, I0: float, contact: int, reversal: bool, still: float, full: float
+) -> tuple[int, bool, int]:
+    """Into which of :data:`PARTS` a sample is divided, whether Simpson's rule holds over both halves, and which side
+    of the play is in contact at its end.
+
+    `w`, `wm` and `we` are the currents behind the play at its start, middle and end, `I0` the zero shift; `contact` is
+    the side in contact at its start; `reversal` is true where the current turns within it. From the zero shift the link
+    rests up to `still`, and has all of the supply pressure from `full` on.
+    """
+    cm = 1 if wm > w else (-1 if wm < w else 0)
+    ce = 1 if we > wm else (-1 if we < wm else 0)
+    k0, km, ke = _kind(w - I0, still, full), _kind(wm - I0, still, full), _kind(we - I0, still, full)
+    quiet = k0 == 0 and km == 0 and ke == 0
+    kinked = not (k0 == ke and km == k0) and (abs(k0) == 2 or abs(km) == 2 or abs(ke) == 2 or k0 * ke < 0)
+    changed = max(abs(wm - w), abs(we - wm))
+    far = changed > _FAR * max(min(abs(w - I0), abs(wm - I0), abs(we - I0)), still)
+    if not quiet and (kinked or (far and not (abs(k0) == 2 and k0 == ke and km == k0))):
+        return _PASSING, False, ce
+    if reversal or ((cm != contact or ce != contact) and not (quiet and cm == 0 and ce == 0)):
+        return (_TURNING if quiet or changed < _QUICK else _PASSING), False, ce
+    if quiet:
+        return _WHOLE, False, ce
+    return _HALVES, k0 == ke and abs(k0) == 2, ce
 
 
 @jit(nogil=True, error_model="numpy")
@@ -96,16 +113,7 @@ def respond_exact(  # noqa: PLR0912, PLR0915 - one loop over the samples, whose 
     else:
         wB = 1.0 if w > samples[0] else -1.0
     contact = 0
-    gains = np.empty((4, 3))
-    gains_T = np.empty((4, 3))
-    parts_of = (1, 2, _TURNING, _PASSING)
-    stride = 1e-6 * T
-    for i in range(4):
-        h = step / parts_of[i]
-        gains[i, 0], gains[i, 1], gains[i, 2] = filter_gains(T, h)
-        above, below = filter_gains(T + stride, h), filter_gains(T - stride, h)
-        for j in range(3):
-            gains_T[i, j] = (above[j] - below[j]) / (2.0 * stride)
+    gains, gains_T = gains_of(T, step, PARTS)
     # The speed at which the link starts, over the root, and how it moves with dead space and table, of each side.
     start, start_slope = np.zeros(2), np.zeros(2)
     start_nodes = np.zeros((2, nodes_moved))
@@ -115,7 +123,7 @@ def respond_exact(  # noqa: PLR0912, PLR0915 - one loop over the samples, whose 
             start[side] = f / sqrt(still)
             start_slope[side] = f_slope / sqrt(still) - 0.5 * start[side] / still
             for j in range(nodes_moved):
-                start_nodes[side, j] = _node(t, nodes[i + 1] - nodes[i], moves[j, side, i]) / sqrt(still)
+                start_nodes[side, j] = cubic(t, nodes[i + 1] - nodes[i], moves[j, side, i])[0] / sqrt(still)
     ahead, here = 0, 0
     for k in range(len(samples)):
         if k:
@@ -131,28 +139,13 @@ def respond_exact(  # noqa: PLR0912, PLR0915 - one loop over the samples, whose 
             qe = gains[1, 0] * qm + gains[1, 1] * im + gains[1, 2] * i1
             wm = min(max(w, qm - B), qm + B)
             we = min(max(wm, qe - B), qe + B)
-            cm = 1 if wm > w else (-1 if wm < w else 0)
-            ce = 1 if we > wm else (-1 if we < wm else 0)
-            k0, km, ke = _kind(w - I0, still, full), _kind(wm - I0, still, full), _kind(we - I0, still, full)
             reversal = (i0 - q) * (i1 - qe) < 0.0
-            quiet = k0 == 0 and km == 0 and ke == 0
-            way, simpson = 1, False
-            kinked = not (k0 == ke and km == k0) and (abs(k0) == 2 or abs(km) == 2 or abs(ke) == 2 or k0 * ke < 0)
-            least = max(min(abs(w - I0), abs(wm - I0), abs(we - I0)), still)
-            far = max(abs(wm - w), abs(we - wm)) > _FAR * least
-            if not quiet and (kinked or (far and not (abs(k0) == 2 and k0 == ke and km == k0))):
-                way = 3
-            elif reversal or ((cm != contact or ce != contact) and not (quiet and cm == 0 and ce == 0)):
-                way = 2 if quiet or max(abs(wm - w), abs(we - wm)) < _QUICK else 3
-            elif quiet:
-                way = 0
-            else:
-                simpson = k0 == ke and abs(k0) == 2
-            contact = ce
-            parts = parts_of[way]
+            way, simpson, contact = division(w, wm, we, I0, contact, reversal, still, full)
+            parts = PARTS[way]
             phi, g0, g1 = gains[way]
             rise, d_rise = (i1 - i0) / parts, (d1 - d0) / parts
             h = step / parts
+            half = 0.5 * h
             for part in range(parts):
                 first, d_first = i0 + part * rise, d0 + part * d_rise
                 u0, uT0, uB0, uI0, uD0 = w - I0, wT, wB, wI - 1.0, wD
@@ -194,49 +187,34 @@ def respond_exact(  # noqa: PLR0912, PLR0915 - one loop over the samples, whose 
                 if kind1:
                     f1, f1_slope, p1, t1 = _speed(a1, side, nodes, pieces)
                 if abs(kind0) == 2 and abs(kind1) == 2:
-                    share = 0.5 if not simpson else (1.0 / 3.0 if part == 0 else 2.0 / 3.0)
+                    share = simpson_share(part) if simpson else 0.5
                     W0, W1 = h * share * most, h * (1.0 - share) * most
                     by0, by1 = W0 * f0_slope, W1 * f1_slope
                     by_friction = -0.5 / (supply * most * most) * (W0 * f0 + W1 * f1)
-                elif abs(kind0) + abs(kind1) == 3:  # the supply is reached: no root begins here
+                elif kind0 and kind1 and abs(kind0) != abs(kind1):  # the supply is reached: no root begins here
                     for end in range(2):
                         a, f, f_slope = (a0, f0, f0_slope) if end == 0 else (a1, f1, f1_slope)
                         top = abs(kind0 if end == 0 else kind1) == 2
                         root = most if top else sqrt(1.0 - still / a)
-                        slope = 0.5 * h * f_slope * root
+                        slope = half * f_slope * root
                         if top:
-                            by_friction -= 0.25 * h * f / (supply * most)
+                            by_friction -= 0.5 * half * f / (supply * most)
                         else:
-                            slope += 0.25 * h * f * still / (a * a * root)
-                            by_still -= 0.25 * h * f / (a * root)
+                            slope += 0.5 * half * f * still / (a * a * root)
+                            by_still -= 0.5 * half * f / (a * root)
                         if end == 0:
-                            W0, by0 = 0.5 * h * root, slope
+                            W0, by0 = half * root, slope
                         else:
-                            W1, by1 = 0.5 * h * root, slope
+                            W1, by1 = half * root, slope
                 elif kind0 and kind1:
-                    r0, r1, root0, root1 = sqrt(a0 - still), sqrt(a1 - still), sqrt(a0), sqrt(a1)
-                    s = r0 + r1
-                    A = 2.0 * (3.0 * r0**3 + 6.0 * r0 * r0 * r1 + 4.0 * r0 * r1 * r1 + 2.0 * r1**3) / (15.0 * s * s)
-                    Z = 2.0 * (3.0 * r1**3 + 6.0 * r1 * r1 * r0 + 4.0 * r1 * r0 * r0 + 2.0 * r0**3) / (15.0 * s * s)
-                    W0, W1 = h * A / root0, h * Z / root1
-                    over, both = h / (15.0 * s**3), 2.0 * r0 * r0 + 6.0 * r0 * r1 + 2.0 * r1 * r1
-                    A0 = 3.0 * r0 * r0 + 9.0 * r0 * r1 + 8.0 * r1 * r1
-                    Z1 = 3.0 * r1 * r1 + 9.0 * r0 * r1 + 8.0 * r0 * r0
-                    e0, e1 = f0 / root0, f1 / root1
-                    by0 = W0 * (f0_slope - 0.5 * f0 / a0) + over * (e0 * A0 + e1 * both)
-                    by1 = W1 * (f1_slope - 0.5 * f1 / a1) + over * (e0 * both + e1 * Z1)
-                    by_still = -over * (e0 * (A0 + both) + e1 * (both + Z1))
+                    W0, W1, by0, by1, by_still = while_moving(h, still, a0, f0, f0_slope, a1, f1, f1_slope)
                 else:  # it starts or stops within the part
                     inner, outer = (a0, a1) if kind1 else (a1, a0)
                     f, f_slope = (f1, f1_slope) if kind1 else (f0, f0_slope)
-                    d, gap = outer - still, outer - inner
-                    r, root = sqrt(d), sqrt(outer)
-                    Ws = h * 4.0 / 15.0 * d * r / gap
-                    W = h * 0.4 * d * r / gap / root
-                    e = h * (4.0 * start[side] + 6.0 * f / root) / 15.0
-                    by_outer = W * (f_slope - 0.5 * f / outer) + e * (1.5 * r / gap - d * r / gap**2)
-                    by_inner = e * d * r / gap**2
-                    by_still = Ws * start_slope[side] - e * 1.5 * r / gap
+                    W, Ws, by_inner, by_outer, by_still = while_starting(
+                        h, still, start[side], inner, outer, f, f_slope
+                    )
+                    by_still += Ws * start_slope[side]
                     if kind1:
                         W1, by0, by1 = W, by_inner, by_outer
                     else:
@@ -244,7 +222,7 @@ def respond_exact(  # noqa: PLR0912, PLR0915 - one loop over the samples, whose 
                 x += sign * (W0 * f0 + W1 * f1 + Ws * start[side])
                 if not simpson and pushed and w == q - pushed * B:
                     # Between its ends the lagged current is no straight line: by so much off in the mean.
-                    x -= (by0 + by1) * h / 12.0 * (rise - q + last) / T
+                    x -= bend(h, T, by0 + by1, rise - q + last)
                 if sloped:
                     dx[1] += by0 * uT0 + by1 * wT
                     dx[2] += by0 * uB0 + by1 * wB
@@ -256,9 +234,9 @@ def respond_exact(  # noqa: PLR0912, PLR0915 - one loop over the samples, whose 
                     for j in range(nodes_moved):
                         more = Ws * start_nodes[side, j]
                         if kind0:
-                            more += W0 * _node(t0, nodes[p0 + 1] - nodes[p0], moves[j, side, p0])
+                            more += W0 * cubic(t0, nodes[p0 + 1] - nodes[p0], moves[j, side, p0])[0]
                         if kind1:
-                            more += W1 * _node(t1, nodes[p1 + 1] - nodes[p1], moves[j, side, p1])
+                            more += W1 * cubic(t1, nodes[p1 + 1] - nodes[p1], moves[j, side, p1])[0]
                         dx[at + j] += sign * more
         dx[0] = x
         if here < len(picked) and picked[here] == k:

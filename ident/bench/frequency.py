@@ -9,13 +9,17 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
+from ident.bench.criteria import BENCH_CRITERIA
 from ident.bench.records import Record
 from ident.bench.sine_fit import as_printed, dominant, fit_sine
 from ident.errors import Unusable
+from ident.rounding import TINY
 from ident.words.run_name import run_name
 
 Array = NDArray[np.float64]
-_PER_PERIOD = 200  # samples that are enough of a period
+_OF = BENCH_CRITERIA.frequency
+_LEVELS = 20
+"""Of amplitudes an e-fold, by which points are listed. No answer depends on it: it is an order of lines."""
 
 
 @dataclass(frozen=True)
@@ -44,16 +48,16 @@ class Response:
 def frequency_response(records: Sequence[Record]) -> tuple[Response, ...]:
     """One point for each record, by amplitude and frequency."""
     points = [point(record) for record in records]
-    return tuple(sorted(points, key=lambda p: (round(np.log(p.amplitude) * 20), p.frequency)))
+    return tuple(sorted(points, key=lambda p: (round(np.log(p.amplitude) * _LEVELS), p.frequency)))
 
 
 def point(measured: Record) -> Response:
     """The sine of the position against that of the current. Raises Unusable where there is no whole period."""
     frequency = measured.frequency or dominant(measured.current, measured.rate)
-    record = measured.reduced(_PER_PERIOD * frequency)
+    record = measured.reduced(_OF.samples_of_a_period * frequency)
     alpha = 2 * np.pi * frequency * record.time
     drive = fit_sine(alpha, record.current, drift=True)
-    count = int(np.floor(alpha[-1] / (2 * np.pi) + 0.01))
+    count = int(np.floor(alpha[-1] / (2 * np.pi) + _OF.lacking))
     if count < 1 or drive.a2 <= 0:
         raise Unusable("no-period", f"the record holds no whole period of {frequency:g} Hz", run_name(record.id),
                        "record at least two periods, or correct frequency")  # fmt: skip
@@ -68,7 +72,7 @@ def point(measured: Record) -> Response:
     return Response(
         record.id, frequency, drive.a2, float(amplitude.mean() / drive.a2), float(np.mean(lag)),
         float(np.mean([fit.a1 for fit in fits])), float(np.mean([fit.drift for fit in fits])) * 2 * np.pi * frequency,
-        float(np.mean([fit.rms for fit in fits]) / max(amplitude.mean() / np.sqrt(2), 1e-300)),
+        float(np.mean([fit.rms for fit in fits]) / max(amplitude.mean() / np.sqrt(2), TINY)),
         float(amplitude.std() / drive.a2 / many), float(np.std(lag) / many), len(fits),
         printed.a2 / plain.a2 - 1.0,
     )  # fmt: skip

@@ -15,13 +15,14 @@ from numpy.typing import NDArray
 
 from ident.bench.acceptance import read_limits, sheet_quantities
 from ident.bench.analysis import Analysis, analyse
+from ident.bench.criteria import BENCH_CRITERIA
 from ident.bench.effect_ranking import centred, finely, with_effect
 from ident.bench.least_squares import Solution, solve
 from ident.bench.model import CONSTANTS, Model, Models
 from ident.bench.observed import Observed, observe
 from ident.bench.outputs import errors_of, model_of, noise_floor
 from ident.bench.polish import polished, weak
-from ident.bench.records import bench_set
+from ident.bench.records import Record, bench_set
 from ident.bench.residual import Residual
 from ident.bench.speed_table import MONOTONE
 from ident.custom.definition import preset_with
@@ -41,13 +42,18 @@ from ident.parallel import each
 from ident.parameter import Parameter, Starts
 from ident.progress import Progress, Report, silent
 from ident.run import BENCH
+from ident.unstable import UNSTABLE
 from ident.words.message import message
 
 Array = NDArray[np.float64]
-_SEARCHED = 60.0  # Hz of the records during the search; the polish takes what each record needs
-_FASTEST = 10.0  # Hz, where no sine was recorded
-_STEPS = 12  # of the procedures' own model where effects are added to it
-_STARTS = 3  # vectors of the last generation from which the polish starts, beside what the procedures found
+_OF = BENCH_CRITERIA.search
+_SHOWN = (("T", 1e3, "ms"), ("B", 1e2, "%"), ("I0", 1e2, "%"), ("kp", 1e-8, "MPa/%"), ("dPfr", 1e-6, "MPa"))
+"""Values that a note compares, in units of a data sheet. No answer depends on it: how they are printed."""
+
+
+def searched_rate(record: Record) -> float:
+    """Hz of a record during a search; the refinement takes what each record needs."""
+    return max(_OF.rate, _OF.samples_of_a_period * (record.frequency or 0.0))
 
 
 class BenchIdentification:
@@ -64,8 +70,7 @@ class BenchIdentification:
         report(Progress("prepare", 0, 1))
         self.analysis = analyse(self.bench).complete()
         self._fine = observe(self.bench.records)
-        coarse = [record.reduced(max(_SEARCHED, 40.0 * (record.frequency or 0.0))) for record in self.bench.records]
-        self._coarse = observe(coarse, rate=1e9)
+        self._coarse = observe([record.reduced(searched_rate(record)) for record in self.bench.records], rate=np.inf)
         report(Progress("prepare", 1, 1))
 
     def _space(self) -> Space:
@@ -90,7 +95,7 @@ class BenchIdentification:
     def _sizes(self) -> dict[str, float]:
         """What the ranges of effects are measured by; the current is the command of a bench."""
         runs = [run.driven_by("current") for run in self.matrix.of_use("fit") if run.kind in BENCH]
-        fastest = max((record.frequency or 0.0 for record in self.bench.records), default=0.0) or _FASTEST
+        fastest = max((record.frequency or 0.0 for record in self.bench.records), default=0.0)
         return typical(self.matrix, runs, 2.0 * np.pi * fastest)
 
     @property
@@ -122,7 +127,7 @@ class BenchIdentification:
         shares = [models.some(np.array([i])) for i in range(len(models))] if fast else [models]
         found = np.concatenate(each(lambda share: np.array([one.error(share) for one in self._coarse]), shares), axis=1)
         mean = np.mean(np.sqrt(found), axis=0)
-        return np.where(np.isfinite(mean), mean, 1e9)
+        return np.where(np.isfinite(mean), mean, UNSTABLE)
 
     def finish(self, state: State) -> FitResult:
         """Least squares from the best of the search, or for "gradient" the procedures' own model; what it says."""
@@ -137,7 +142,8 @@ class BenchIdentification:
         if steps is None or lag is None:
             raise AssertionError("complete() has seen to it")
         own, observed = self._own(replace(steps, T=lag.gradient_T))
-        return solve(Residual(own, observed, self.space.names), steps=_STEPS if self.preset.effects else 0)
+        steps = BENCH_CRITERIA.fits.steps if self.preset.effects else 0
+        return solve(Residual(own, observed, self.space.names), steps=steps)
 
     def _own(self, found: Model) -> tuple[Model, tuple[Observed, ...]]:
         """What the procedures found, which know of no effects, and the records that it is polished on.
@@ -162,7 +168,7 @@ class BenchIdentification:
     def _polished(self, state: State) -> tuple[Solution, list[str]]:
         """The best of where the starts end, and what is to be said of the others."""
         points = [np.array(state["best"]), *map(np.array, state["population"])] if state["best"] else []
-        starts = [self._model(point) for point in distinct(points, _STARTS) or [np.empty(0)]]
+        starts = [self._model(point) for point in distinct(points, _OF.starts) or [np.empty(0)]]
         own = self.analysis.model
         if own is None:
             raise AssertionError("complete() has seen to it")
@@ -244,9 +250,8 @@ def _compared(analysis: Analysis, solution: Solution) -> list[str]:
     if analysis.steps is None:
         return []
     by_steps, whole = analysis.steps.values(), solution.model.values()
-    shown = [("T", 1e3, "ms"), ("B", 1e2, "%"), ("I0", 1e2, "%"), ("kp", 1e-8, "MPa/%"), ("dPfr", 1e-6, "MPa")]
-    assert all(name in CONSTANTS for name, _, _ in shown)
+    assert all(name in CONSTANTS for name, _, _ in _SHOWN)
     pairs = ", ".join(
-        f"{name} {factor * by_steps[name]:.4g} and {factor * whole[name]:.4g} {unit}" for name, factor, unit in shown
+        f"{name} {factor * by_steps[name]:.4g} and {factor * whole[name]:.4g} {unit}" for name, factor, unit in _SHOWN
     )
     return [f"Step by step (static, frequency, speed) and in this fit: {pairs}."]

@@ -11,13 +11,12 @@ from numpy.typing import NDArray
 
 from ident.bench.least_squares import Solution
 from ident.bench.model import DELAY, Model
-from ident.bench.position_loop import MULTIPLES, AmplitudeMargin, margins
+from ident.bench.position_loop import AmplitudeMargin, margins, usual_amplitudes
 from ident.bench.quantity import Found
 from ident.bench.time_constant import DelayCheck
 from ident.rig.regulator import PositionControl
 
 Array = NDArray[np.float64]
-_SLOPE = 0.01  # of the delay, for the slope of a margin
 
 
 def least_margins(solution: Solution, loop: PositionControl, delay: DelayCheck | None) -> dict[str, Found]:
@@ -27,7 +26,7 @@ def least_margins(solution: Solution, loop: PositionControl, delay: DelayCheck |
     ends is left out, and both where the actuator stands.
     """
     model, known = solution.model, delay if delay is not None and delay.doubt else None
-    amplitudes = loop.amplitudes or tuple(multiple * model.dead_space for multiple in MULTIPLES)
+    amplitudes = loop.amplitudes or usual_amplitudes(model)
 
     @cache
     def at_point(point: tuple[tuple[str, float], ...], late: float) -> list[AmplitudeMargin]:
@@ -53,9 +52,8 @@ def least_margins(solution: Solution, loop: PositionControl, delay: DelayCheck |
 
         deviation = solution.deviation(of)
         if known is not None:
-            step = _SLOPE * max(late, 1e-6)
-            slope = (_number(_least(with_values(solution.values, late + step), name)) - value) / step
-            deviation = math.hypot(deviation, slope * known.delay.deviation)
+            later = _number(_least(with_values(solution.values, late + known.delay.deviation), name))
+            deviation = math.hypot(deviation, later - value)
         found[name] = Found(value, deviation, unit)
     return found
 
@@ -72,7 +70,7 @@ def _length(values: Mapping[str, Array]) -> int:
 def _least(found: Iterable[AmplitudeMargin], name: str) -> float | None:
     """The smallest margin of this name, SI; None where there is none."""
     known = [value for one in found if (value := getattr(one, name)) is not None]
-    return None if not known else min(known) * (math.pi / 180.0 if name == "phase_margin" else 1.0)
+    return None if not known else math.radians(min(known)) if name == "phase_margin" else min(known)
 
 
 def _number(value: float | None) -> float:

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ident.bench.chain_response import SHOWN, chain_response
+from ident.bench.criteria import BENCH_CRITERIA
 from ident.bench.response import respond
 from ident.bench.speed_table import SpeedTable
 from ident.cached import cached_property
@@ -18,9 +19,11 @@ from ident.effects.command_delay import COMMAND_DELAY
 from ident.effects.second_lag import SECOND_LAG
 from ident.effects.spring_load import SPRING_LOAD
 from ident.effects.stiction import STICTION
+from ident.rounding import ROUNDING
 from ident.time_budget import check_time
 
 Array = NDArray[np.float64]
+_OF = BENCH_CRITERIA.simulation
 CONSTANTS = ("T", "B", "I0", "kp", "dPfr")
 FAST = (COMMAND_DELAY, SECOND_LAG, SPRING_LOAD, STICTION)
 """The effects that the compiled simulation of a bench knows; with any other the chain is simulated."""
@@ -119,13 +122,13 @@ class Model:
         """What a record of the current (fractions of the rated one) makes of an actuator that stands at `start` (m).
 
         The play begins where it holds the current nearest to the zero shift. A sample is divided until a step is no
-        longer than a tenth of T, and 2.5 ms.
+        longer than a share of T and a few ms.
         """
         check_time()
         if self.chain is not None:
             return Answer(*(by_chain([self], current, rate, hold, start, what)[0] for what in SHOWN))
-        longest = min(2.5e-3, max(0.1 * self.T, 5e-4))
-        divided = max(1, int(np.ceil(1.0 / (rate * longest) - 1e-9))) if steps is None else steps
+        longest = min(_OF.longest_step, _OF.step_of_lag * self.T)
+        divided = max(1, int(np.ceil(1.0 / (rate * longest) - ROUNDING))) if steps is None else steps
         driven = np.ascontiguousarray(current, dtype=float)
         play = float(np.clip(self.I0, driven[0] - self.B, driven[0] + self.B))
         out = np.empty((3, len(driven)))

@@ -23,20 +23,16 @@ from ident.bench.records import Record
 from ident.bench.response import compared, residuals, rest
 from ident.cached import cached_property
 from ident.noise.effective_sample_size import independent_samples
+from ident.resolution import WHITE
 from ident.rounding import ROUNDING
 from ident.time_budget import check_time
 
 Array = NDArray[np.float64]
 _OF = BENCH_CRITERIA.comparison
-_WHITE = np.sqrt(12.0)
-"""The step of a converter over the deviation of its white error (Widrow 1956)."""
 _UNKNOWN = 1e-6
 """Deviation of a position, m, of which nothing is known yet. No answer depends on it: the weight is worked out
 again."""
 _NOTHING = np.empty(0)
-_NO_MOVES = np.zeros((0, 2, 1, 2 * 2))
-STEPS = 2 * 2
-"""Parts of a sample in which a whole record is simulated with an effect that :func:`respond_exact` does not know."""
 
 
 def rate_wanted(record: Record) -> float:
@@ -73,7 +69,7 @@ class Observed:
         skip = _unsettled(small)
         parts = tuple((max(a, skip), b) for a, b in small.parts if b - max(a, skip) >= BENCH_CRITERIA.records.shortest)
         used = np.concatenate([small.position[a:b] for a, b in parts]) if parts else small.position
-        scale = float(np.hypot(max(record.resolution / _WHITE, _OF.finest), _OF.imperfect * np.std(used)))
+        scale = float(np.hypot(max(record.resolution / WHITE, _OF.finest), _OF.imperfect * np.std(used)))
         noise = None
         if pressure and small.pressure is not None and small.kind == "static":
             noise = float(np.std(np.diff(small.pressure)) / np.sqrt(2.0)) + 1.0
@@ -175,10 +171,11 @@ class Observed:
     ) -> None:
         """Fill one row of each with the answer of a model."""
         if model.is_plain:
-            self._exactly(model, _NO_MOVES, picked, between, positions, pressures if pressures.size else pressures[:0])
+            moves, none = np.empty((0, *model.table.pieces.shape)), pressures[:0]
+            self._exactly(model, moves, picked, between, positions, pressures if pressures.size else none)
             return
         record = self.record
-        answer = model.answer(record.current, record.rate, record.hold, self.start, STEPS)
+        answer = model.answer(record.current, record.rate, record.hold, self.start, BENCH_CRITERIA.simulation.parts)
         here, before = answer.position[picked], answer.position[np.maximum(picked - 1, 0)]
         positions[0] = here + between * (before - here)
         if pressures.size:
@@ -213,7 +210,7 @@ class Observed:
         """
         whole = Observed.of(record, self.positions > 0, self.pressure_scale is not None, np.inf, self.drifting)
         moved = np.diff(model.answer(record.current, record.rate, record.hold).position, prepend=0.0)
-        told = readings(record.position, step, moved, step / _WHITE or _UNKNOWN)
+        told = readings(record.position, step, moved, step / WHITE or _UNKNOWN)
         return replace(whole, readings=told, moving=model)
 
     def reweighed(self, model: Model) -> Observed:
@@ -222,7 +219,7 @@ class Observed:
         if self.readings is not None and self.positions > BENCH_CRITERIA.records.shortest:
             told, r = self.readings, found[: self.positions]
             off = (r * told.deviations[self.within]) ** 2
-            least = _OF.least_reading * told.step / _WHITE
+            least = _OF.least_reading * told.step / WHITE
             beyond = max(float(np.mean(off) - np.mean(told.known[self.within] ** 2)), 0.0)
             memory = len(r) / independent_samples(r)
             out = replace(self, readings=replace(told, extra=max(np.sqrt(beyond * memory), least, ROUNDING)))

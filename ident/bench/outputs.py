@@ -14,6 +14,7 @@ from ident.fit.result import RunError
 from ident.fit.run_errors import run_error
 from ident.matrix import Matrix
 from ident.presets import Preset
+from ident.resolution import WHITE
 
 Array = NDArray[np.float64]
 
@@ -56,5 +57,5 @@ def errors_of(records: Sequence[Record], model: Model) -> tuple[RunError, ...]:
 def noise_floor(matrix: Matrix, use: str) -> float | None:
     """The error of eq. (17) that the steps of the converter alone make, mean over the runs of a use."""
     records = [record for record in bench_set(matrix).records if record.use == use]
-    shares = [record.resolution / np.sqrt(12.0) / float(np.std(record.position)) for record in records]
+    shares = [record.resolution / WHITE / float(np.std(record.position)) for record in records]
     return float(np.mean(shares)) if shares else None

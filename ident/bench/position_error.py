@@ -12,6 +12,7 @@ from ident.bench.observed import Observed
 from ident.bench.quantity import Found
 from ident.bench.scatter import PLACES
 from ident.noise.effective_sample_size import independent_samples
+from ident.rounding import TINY
 
 Array = NDArray[np.float64]
 
@@ -47,4 +48,4 @@ def _error(observed: Observed, seen: Array, off: Array) -> tuple[float, Array]:
     """RMS of `off` over the deviation of `seen`, the mean of each part taken off, and `off` without these means."""
     size = float(np.std(np.concatenate([seen[a:b] for a, b in observed.parts])))
     rest = np.concatenate([off[a:b] - off[a:b].mean() for a, b in observed.parts])
-    return float(np.sqrt(np.mean(rest**2))) / max(size, 1e-300), rest
+    return float(np.sqrt(np.mean(rest**2))) / max(size, TINY), rest

@@ -20,6 +20,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ident.bench.criteria import BENCH_CRITERIA
 from ident.bench.describing_function import FirstHarmonic, first_harmonic
 from ident.bench.model import Model
 from ident.bench.outputs import model_of
@@ -32,15 +33,18 @@ from ident.plain import written
 from ident.rig.regulator import Regulator
 from ident.words.engineering import quantity
 from ident.words.message import Message, message
+from ident.words.percent import PER_CENT
 from ident.words.shown import Listing, Shown
 
 Array = NDArray[np.float64]
-MULTIPLES = (1.5, 3.0, 10.0)
-"""[of the dead space] Amplitudes at the play where none are stated: within twice the dead space most is lost in it."""
-LOWEST, POINTS = 1e-2, 2000
-"""[Hz], [frequencies] Where the loop is looked at, equally spaced by the logarithm; a crossing is then refined."""
-HIGHEST = 100.0
-"""[of 1/(2πT)] Up to where a loop is looked at that nothing samples: the lag has turned by 89° there."""
+_OF = BENCH_CRITERIA.position_loop
+DECIBELS = 20.0 / math.log(10.0)
+"""Of a natural logarithm of an amplitude. No answer depends on it: a unit."""
+_HALF_TURN = math.degrees(math.pi)
+_POINTS = 2000
+"""Frequencies at which the loop is looked at, equally spaced by the logarithm, and places of the curve of a limit; a
+crossing between two is taken on a straight line. No answer depends on it: ten times as many change a gain margin by
+2e-5 dB."""
 
 
 @dataclass(frozen=True)
@@ -126,9 +130,9 @@ def _row(one: AmplitudeMargin) -> tuple[str, ...]:
         return "none" if value is None else f"{value:.4g} {unit}"
 
     return (
-        f"{100 * one.amplitude:.4g} %", quantity(one.gain, "m/s"), f"{one.phase:.3g}°", cell(one.gain_margin, "dB"),
-        cell(one.phase_margin, "°"), cell(one.crossover, "Hz"), cell(one.oscillation_frequency, "Hz"),
-        cell(one.oscillation_gain, "1/m"),
+        f"{PER_CENT * one.amplitude:.4g} %", quantity(one.gain, "m/s"), f"{one.phase:.3g}°",
+        cell(one.gain_margin, "dB"), cell(one.phase_margin, "°"), cell(one.crossover, "Hz"),
+        cell(one.oscillation_frequency, "Hz"), cell(one.oscillation_gain, "1/m"),
     )  # fmt: skip
 
 
@@ -138,7 +142,7 @@ def position_loop(fit: FitResult, regulator: Regulator, amplitudes: Sequence[flo
     Raises Unusable where the fit is of another kind of model, or has an effect that hangs on the position or sticks.
     """
     model = _actuator(fit)
-    stated = tuple(amplitudes) or tuple(multiple * model.dead_space for multiple in MULTIPLES)
+    stated = tuple(amplitudes) or usual_amplitudes(model)
     for amplitude in stated:
         if not 0 < amplitude < math.inf:
             raise Unusable(
@@ -154,6 +158,11 @@ def position_loop(fit: FitResult, regulator: Regulator, amplitudes: Sequence[flo
         phase_margin=_smallest([one.phase_margin for one in found]),
         state="unstable" if any((one.phase_margin or 0.0) < 0 for one in found) else "stable",
     )
+
+
+def usual_amplitudes(model: Model) -> tuple[float, ...]:
+    """The amplitudes at the play where none are stated, rated currents."""
+    return tuple(multiple * model.dead_space for multiple in _OF.multiples)
 
 
 def _smallest(values: Sequence[float | None]) -> float | None:
@@ -187,23 +196,23 @@ def _margins(model: Model, regulator: Regulator, amplitude: float) -> AmplitudeM
     of_blocks = AmplitudeMargin(amplitude, size, math.degrees(turn), of_speed.stands)
     if of_speed.stands:
         return of_blocks
-    w = 2 * np.pi * np.geomspace(LOWEST, _highest(model, regulator), POINTS)
+    w = 2 * np.pi * np.geomspace(_OF.lowest, _highest(model, regulator), _POINTS)
     level, angle = open_loop(model, regulator, of_speed, w)
     reached = np.isfinite(level)
     w, level, angle = w[reached], level[reached], angle[reached]
     swings = _last_crossing(w, angle + np.pi, level)
     crosses = _last_crossing(w, level, angle)
     frequency = None if swings is None else swings[0] / (2 * np.pi)
-    margin = None if swings is None else -20.0 / math.log(10.0) * swings[1]
+    margin = None if swings is None else -DECIBELS * swings[1]
     return replace(
         of_blocks,
         gain_margin=margin,
-        phase_margin=None if crosses is None else 180.0 + math.degrees(crosses[1]),
+        phase_margin=None if crosses is None else _HALF_TURN + math.degrees(crosses[1]),
         crossover=None if crosses is None else crosses[0] / (2 * np.pi),
         oscillation_gain=None if swings is None else regulator.kp * math.exp(-swings[1]),
         oscillation_frequency=frequency,
         frequency=tuple((w / (2 * np.pi)).tolist()),
-        magnitude=tuple((20.0 / math.log(10.0) * level).tolist()),
+        magnitude=tuple((DECIBELS * level).tolist()),
         angle=tuple(np.degrees(angle).tolist()),
     )
 
@@ -225,7 +234,7 @@ def open_loop(model: Model, regulator: Regulator, of_speed: FirstHarmonic, w: Ar
 
 def _highest(model: Model, regulator: Regulator) -> float:
     """Hz up to which a loop is looked at: half the sample rate of its regulator."""
-    return 0.5 / regulator.sample_time if regulator.sample_time else HIGHEST / (2 * np.pi * model.T)
+    return 0.5 / regulator.sample_time if regulator.sample_time else _OF.highest / (2 * np.pi * model.T)
 
 
 def _passes(behind: Array, limit: float | None) -> Array:
@@ -235,9 +244,9 @@ def _passes(behind: Array, limit: float | None) -> Array:
     """
     if limit is None:
         return np.ones_like(behind)
-    share = np.geomspace(1e-4, 1.0, 2000)  # L/X
-    passed = 2 / np.pi * (np.arcsin(share) + share * np.sqrt(1.0 - share**2))
-    behind_it = (limit / share * passed)[::-1]
+    angle = 0.5 * np.pi * np.arange(1, _POINTS + 1) / _POINTS  # asin(L/X)
+    passed = 2 / np.pi * (angle + np.sin(angle) * np.cos(angle))
+    behind_it = (limit / np.sin(angle) * passed)[::-1]
     found = np.interp(behind, behind_it, passed[::-1], left=1.0)
     return np.where(behind < behind_it[-1], found, np.nan)
 

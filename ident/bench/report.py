@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import asdict
 from importlib.metadata import version
 from typing import Any
@@ -60,5 +61,5 @@ def _speed(found: Speed) -> dict[str, Any]:
 
 
 def _model(model: Model) -> dict[str, Any]:
-    supply = None if model.Ps > 1e11 else model.Ps
+    supply = model.Ps if math.isfinite(model.Ps) else None
     return {"values": model.values(), "dead_space": model.dead_space, "supply_pressure": supply}

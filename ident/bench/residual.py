@@ -7,25 +7,25 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from ident.bench.criteria import BENCH_CRITERIA
 from ident.bench.exact_response import CONSTANTS as EXACT
 from ident.bench.model import CONSTANTS, DELAY, FAST, Model, Models
+from ident.bench.natural_sizes import natural_sizes
 from ident.bench.observed import Observed
 from ident.bench.response import products
 from ident.bench.speed_table import SpeedTable
 from ident.cached import cached_property
+from ident.diagnosis.criteria import CRITERIA
 from ident.effects.effect import Effect
+from ident.fit.criteria import FIT_CRITERIA
 from ident.parallel import cores, each
+from ident.stages.bench import ZERO_SHIFT
 
 Array = NDArray[np.float64]
-_STEP = 1e-4  # relative, of a difference
-_STRIDE = {"stiction__pressure": 0.1}  # the same where a value acts in jumps, from one sample to the next
-BLOCKS = 8  # of a record; each is one sample of the score, long enough to hold the residual's own correlation
-_REACH = {
-    "I0": 1e-2, "command_delay__delay": 1e-2, "second_lag__time_constant": 1e-2, "stiction__pressure": 1e5,
-    "spring_load__rate": 1e7, "spring_load__centre": 1e-2,
-}  # fmt: skip
-"""The natural size of what may be zero or negative, a tenth of the range for other effects; everything else is
-positive and moved by a share of itself."""
+_OF = BENCH_CRITERIA.fits
+STEP = FIT_CRITERIA.refinement.stride
+BLOCKS = CRITERIA.cross_validation.stretches
+"""Of a record: each is one sample of the score, and they take turns in being held out."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -54,22 +54,23 @@ class Residual:
 
     @cached_property
     def _first(self) -> dict[str, float]:
-        return dict.fromkeys(_REACH, 0.0) | self.model.values()
+        return dict.fromkeys(self.reach, 0.0) | self.model.values()
 
     @cached_property
     def reach(self) -> dict[str, float]:
-        """The natural sizes of what may be zero."""
-        other = {p.in_equations: 0.1 * (p.upper - p.lower) for effect in self._beyond_fast for p in effect.added}
-        return {**other, **_REACH}
+        """The natural sizes of what may be zero or negative; all else is positive and moved by a share of itself."""
+        sizes = natural_sizes(self.model, [one.record for one in self.observed])
+        may_be_zero = [ZERO_SHIFT, *(parameter for effect in self._effects for parameter in effect.added)]
+        return {p.in_equations: sizes.get(p.start, _OF.natural * (p.upper - p.lower)) for p in may_be_zero}
 
     @property
-    def _beyond_fast(self) -> tuple[Effect, ...]:
-        return self.model.chain.effects if self.model.chain is not None else ()
+    def _effects(self) -> tuple[Effect, ...]:
+        return (*FAST, *(self.model.chain.effects if self.model.chain is not None else ()))
 
     @cached_property
     def within(self) -> tuple[Array, Array]:
         """Bounds of each axis: a strength of one sign keeps it."""
-        added = (parameter for effect in (*FAST, *self._beyond_fast) for parameter in effect.added)
+        added = (parameter for effect in self._effects for parameter in effect.added)
         lower = {
             p.in_equations: p.lower / self.reach[p.in_equations]
             for p in added
@@ -81,8 +82,9 @@ class Residual:
         """The values at points: (v, p) → name: (v,)."""
         reach = self.reach
         return {
-            name: place * reach[name] if name in reach else self._first[name] * np.exp(np.clip(place, -5, 5))
+            name: place * reach[name] if name in reach else self._first[name] * np.exp(logarithm)
             for name, place in zip(self.names, points.T, strict=True)
+            for logarithm in (np.clip(place, -_OF.farthest, _OF.farthest),)
         }
 
     def at(self, point: Array) -> Model:
@@ -172,8 +174,8 @@ class Residual:
             moves = np.zeros((half, 2, *table.pieces.shape[1:]))
             for place, name in enumerate(table.names):
                 side, node = divmod(place, half)
-                moved = table.with_values({name: values[name] * np.exp(_STEP)})
-                moves[node, side] = (moved.pieces[side] - table.pieces[side]) / _STEP
+                moved = table.with_values({name: values[name] * np.exp(STEP)})
+                moves[node, side] = (moved.pieces[side] - table.pieces[side]) / STEP
             self._known.clear()
             self._known[key] = model, moves
         return self._known[key]
@@ -203,7 +205,13 @@ class Residual:
 
     @cached_property
     def _strides(self) -> Array:
-        return np.array([_STRIDE.get(name, _STEP) for name in self.names])
+        """By how much each axis is moved for a derivative: far along what acts in jumps, as its effect says."""
+        far = {
+            (p := effect.added[0]).in_equations: effect.stride * (p.upper - p.lower) / self.reach[p.in_equations]
+            for effect in self._effects
+            if effect.stride > STEP
+        }
+        return np.array([far.get(name, STEP) for name in self.names])
 
     def _moved(self, point: Array) -> Models:
         """The model at a point, then with each value moved by its stride."""

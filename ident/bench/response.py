@@ -17,27 +17,46 @@ Array = NDArray[np.float64]
 
 
 @jit(nogil=True, error_model="numpy")
-def characteristic(u: float, nodes: Array, pieces: Array) -> float:
-    """f(u): odd and even sides have tables of their own; beyond the last node the end slope goes on."""
-    side = 0 if u >= 0.0 else 1
-    a = u if u >= 0.0 else -u
-    last = len(nodes) - 2
-    i = last
+def cubic(t: float, width: float, c: Array) -> tuple[float, float]:
+    """Value and slope of a piece of the table, c0 + c1 t + c2 t² + c3 t³ (Fritsch and Carlson 1980), (4,).
+
+    `t` counts from its left node; beyond its width the slope at its end goes on.
+    """
+    within = min(t, width)
+    slope = c[1] + within * (2.0 * c[2] + 3.0 * within * c[3])
+    return c[0] + within * (c[1] + within * (c[2] + within * c[3])) + (t - within) * slope, slope
+
+
+@jit(nogil=True, error_model="numpy")
+def piece_of(a: float, nodes: Array) -> int:
+    """The piece of the table that a current from the zero shift is in, the last one for what is beyond its end."""
+    i = len(nodes) - 2
     while i > 0 and a < nodes[i]:
         i -= 1
-    width = nodes[i + 1] - nodes[i]
-    t = a - nodes[i]
-    c0, c1, c2, c3 = pieces[side, i]
-    if t > width:
-        end = c0 + width * (c1 + width * (c2 + width * c3))
-        return float(end + (t - width) * (c1 + width * (2.0 * c2 + 3.0 * width * c3)))
-    return float(c0 + t * (c1 + t * (c2 + t * c3)))
+    return i
+
+
+@jit(nogil=True, error_model="numpy")
+def characteristic(u: float, nodes: Array, pieces: Array) -> float:
+    """|f(u)|: odd and even sides have tables of their own; beyond the last node the end slope goes on."""
+    side, a = 0 if u >= 0.0 else 1, abs(u)
+    i = piece_of(a, nodes)
+    return float(cubic(a - nodes[i], nodes[i + 1] - nodes[i], pieces[side, i])[0])
+
+
+@jit(nogil=True, error_model="numpy")
+def characteristics(currents: Array, nodes: Array, pieces: Array) -> Array:
+    """|f| at each current from the zero shift, (n,)."""
+    out = np.empty(len(currents))
+    for k in range(len(currents)):
+        out[k] = characteristic(currents[k], nodes, pieces)
+    return out
 
 
 @jit(nogil=True, error_model="numpy")
 def filter_gains(T: float, step: float) -> tuple[float, float, float]:
     """(φ, γ0, γ1) of T y' + y = u over a step, exact for an input that is a straight line."""
-    if 1e-3 * step > T:
+    if T <= 0.0:
         return 0.0, 0.0, 1.0
     phi = exp(-step / T)
     g1 = 1.0 - (1.0 - phi) * T / step

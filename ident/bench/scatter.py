@@ -13,6 +13,7 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
+from ident.bench.criteria import BENCH_CRITERIA
 from ident.bench.least_squares import Solution
 from ident.bench.observed import Observed
 from ident.bench.readings import fastest, in_steps
@@ -21,8 +22,7 @@ from ident.parallel import each
 from ident.simulation.jit import jit
 
 Array = NDArray[np.float64]
-PLACES = 16
-"""Places within a step from which each way begins: the scatter of a value that hangs on one record is known to 18 %."""
+PLACES = BENCH_CRITERIA.fits.places
 
 
 def scatter(solution: Solution) -> Array:
@@ -110,6 +110,7 @@ def at_places(
 
 
 def _pressures(observed: Observed, J: Array, r: Array) -> Array:
+    """That of the pressures: 4 σ² J Jᵀ of white noise σ (Seber and Wild 1989), and of what is beyond it by blocks."""
     if observed.pressure_scale is None or observed.noise is None:
         return np.zeros((len(J), len(J)))
     known = (observed.noise / observed.pressure_scale) ** 2

@@ -1,6 +1,6 @@
 """A sine fitted to a period: x = a1 + a2 sin(α + a3) (Kononykhin, section 5.2).
 
-Linear least squares finds it in one step; Gauss-Newton on the residuals gives the same to rounding. The iteration as
+Linear least squares finds it in one step, to which an iteration on the residuals leads as well. The iteration as
 printed takes the squares of the residuals for residuals, R = σi and J = ∂σi, and so minimises their fourth power.
 """
 
@@ -9,10 +9,13 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+import scipy  # optimize, which takes a third of a second to load, is loaded where it is first used
 from numpy.typing import NDArray
 
+from ident.fit.levenberg_marquardt import STEPS
+from ident.rounding import ROUNDING, TINY
+
 Array = NDArray[np.float64]
-_STEPS = 100
 
 
 @dataclass(frozen=True)
@@ -42,31 +45,19 @@ def fit_sine(alpha: Array, x: Array, drift: bool = False) -> Sine:
     return Sine(float(found[0]), float(np.hypot(found[1], found[2])), a3, rms, float(found[3]) if drift else 0.0)
 
 
-def gauss_newton(alpha: Array, x: Array) -> Sine:
-    """Δ = (JᵀJ)⁻¹ Jᵀ r with r = a1 + a2 sin(α + a3) − x and J = ∂r/∂a, until it no longer moves."""
-    a = _first(alpha, x)
-    for _ in range(_STEPS):
-        r, J = _residual(alpha, x, a)
-        step = np.linalg.lstsq(J, r, rcond=None)[0]
-        a = _turned(a - step)
-        if np.sqrt(np.mean(step**2)) <= 1e-14 * max(a[1], 1e-300):
-            break
-    return _sine(alpha, x, a)
-
-
 def as_printed(alpha: Array, x: Array) -> Sine:
-    """Δ = (JᵀJ)⁻¹ Jᵀ R with R = σi = r² and J = ∂σi/∂a, as the paper prints it.
+    """Δ = (JᵀJ)⁻¹ Jᵀ R with R = σi = r² and J = ∂σi/∂a, as the paper prints it (Kononykhin 2019, section 5.2).
 
     Δ goes through a regulator; here a proportional one of gain 2/3, with which the iteration is Newton's for the sum
     of fourth powers: its second derivatives are 3/2 JᵀJ where those of the sine are left out.
     """
     a = _first(alpha, x)
-    for _ in range(_STEPS):
+    for _ in range(STEPS):
         r, slopes = _residual(alpha, x, a)
         J = 2.0 * r[:, None] * slopes
         step = 2.0 / 3.0 * np.linalg.lstsq(J, r**2, rcond=None)[0]
         a = _turned(a - step)
-        if np.sqrt(np.mean(step**2)) <= 1e-9 * max(a[1], 1e-300):
+        if np.sqrt(np.mean(step**2)) <= ROUNDING * max(a[1], TINY):
             break
     return _sine(alpha, x, a)
 
@@ -98,9 +89,8 @@ def dominant(signal: Array, rate: float) -> float:
     drive, width = signal - signal.mean(), rate / len(signal)
     lines = np.abs(np.fft.rfft(drive * np.hanning(len(drive))))
     at, time = max(int(np.argmax(lines)), 1) * width, np.arange(len(drive)) / rate
-    for _ in range(3):
-        tried = np.linspace(at - width, at + width, 21)
-        tried = tried[tried > 0]
-        at = float(tried[np.argmin([fit_sine(2 * np.pi * f * time, drive).rms for f in tried])])
-        width /= 10
-    return at
+    found = scipy.optimize.minimize_scalar(
+        lambda f: fit_sine(2 * np.pi * f * time, drive).rms, bounds=(at - width, at + width), method="bounded",
+        options={"xatol": ROUNDING * at},
+    )  # fmt: skip
+    return float(found.x)

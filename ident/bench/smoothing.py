@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 from scipy.special import comb
 
 from ident.errors import Unusable
+from ident.fit.criteria import FIT_CRITERIA
 
 Array = NDArray[np.float64]
 METHODS = ("iir", "fir", "bezier")
@@ -20,14 +21,14 @@ def differentiated(position: Array, rate: float) -> Array:
 
 def iir(speed: Array, rate: float, cutoff: float) -> Array:
     """Butterworth of second order, forth and back, so that it does not lag; `cutoff` in Hz."""
-    edge = min(max(cutoff / (0.5 * rate), 1e-5), 0.99)
+    edge = min(cutoff / (0.5 * rate), FIT_CRITERIA.band.most)
     sections = scipy.signal.butter(2, edge, output="sos")
     return np.asarray(scipy.signal.sosfiltfilt(sections, speed, padlen=min(len(speed) - 1, round(2 / edge))))
 
 
 def fir(speed: Array, rate: float, cutoff: float) -> Array:
     """A symmetric window (Hann) of about one period of the cutoff: no lag; at the ends it is cut and made whole."""
-    width = min(max(3, round(rate / cutoff)) | 1, (len(speed) - 1) | 1)
+    width = min(round(rate / cutoff) | 1, (len(speed) - 1) | 1)
     window = np.hanning(width + 2)[1:-1]
     weight = scipy.signal.fftconvolve(np.ones_like(speed), window, mode="same")
     return np.asarray(scipy.signal.fftconvolve(speed, window, mode="same") / weight)
@@ -46,13 +47,13 @@ def bezier(current: Array, speed: Array, degree: int, zero_shift: float) -> tupl
     derivatives; the sum of squares is quadratic in P, so that one linear system gives it.
     """
     low, high = min(float(current.min()), zero_shift), max(float(current.max()), zero_shift)
-    if not 1 <= degree <= 20 or high <= low:
-        raise Unusable("bad-degree", f"degree {degree}", "Bézier curve", "choose a degree from 1 to 20")
+    if degree < 1 or high <= low:
+        raise Unusable("bad-degree", f"degree {degree}", "Bézier curve", "choose a degree from 1 on")
     s = (current - low) / (high - low)
     held = bernstein(np.array([(zero_shift - low) / (high - low)]), degree)[0]
     # P = N z spans every curve through the zero shift
     null = np.linalg.svd(held[None])[2][1:].T
-    z = np.linalg.lstsq(bernstein(s, degree) @ null, speed, rcond=1e-10)[0]
+    z = np.linalg.lstsq(bernstein(s, degree) @ null, speed, rcond=None)[0]
     return np.asarray(null @ z), (low, high)
 
 

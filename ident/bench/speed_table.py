@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from ident.bench.response import characteristics
 from ident.cached import cached_property
 from ident.equations.interpolation import piece_coefficients
 from ident.errors import Unusable
@@ -73,14 +74,5 @@ class SpeedTable:
 
     def speed(self, current: Array) -> Array:
         """f at currents relative to the zero shift, (n,)."""
-        out = np.zeros_like(current)
-        for side, pieces in zip((1.0, -1.0), self.pieces, strict=True):
-            a = np.maximum(side * current, 0.0)
-            place = np.clip(np.searchsorted(self.nodes, a, side="right") - 1, 0, len(self.fractions) - 1)
-            width = np.diff(self.nodes)[place]
-            inside = np.minimum(a - self.nodes[place], width)
-            c0, c1, c2, c3 = pieces[place].T
-            slope = c1 + inside * (2 * c2 + 3 * inside * c3)
-            value = c0 + inside * (c1 + inside * (c2 + inside * c3)) + (a - self.nodes[place] - inside) * slope
-            out += side * np.where(a > 0, value, 0.0)
-        return out
+        where = np.ascontiguousarray(current, dtype=float)
+        return np.asarray(np.sign(where) * characteristics(where, self.nodes, self.pieces))

@@ -7,7 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from ident.bench.criteria import BENCH_CRITERIA
 from ident.bench.speed_table import SpeedTable
+from ident.rounding import TINY
 
 Array = NDArray[np.float64]
 
@@ -31,7 +33,7 @@ def straightness(current: Array, speed: Array) -> Straightness:
     """From points of the characteristic, currents counted from the zero shift in rated currents."""
     A = np.column_stack([current, np.ones_like(current)])
     line = np.linalg.lstsq(A, speed, rcond=None)[0]
-    full = max(float(np.max(np.abs(speed))), 1e-300)
+    full = max(float(np.max(np.abs(speed))), TINY)
     gains = [_through_zero(current[side], speed[side]) for side in (current > 0, current < 0)]
     mean = 0.5 * (gains[0] + gains[1])
     return Straightness(
@@ -42,7 +44,7 @@ def straightness(current: Array, speed: Array) -> Straightness:
 
 def of_table(table: SpeedTable) -> Straightness:
     """Of a characteristic over the rated currents."""
-    fine = np.linspace(-1, 1, 201) * table.nodes[-1]
+    fine = np.linspace(-1, 1, BENCH_CRITERIA.speed.currents) * table.nodes[-1]
     return straightness(fine, table.speed(fine))
 
 

@@ -132,7 +132,7 @@ def delay_check(whole: Solution, drifting: Sequence[Observed]) -> tuple[Array, D
     model, names, free = whole.model, (*whole.residual.names, _DELAY), frozenset({_DELAY})
     observed, rounds = whole.residual.observed, 1
     near = solve(Residual(model, tuple(drifting), ("T", "B", _DELAY), free), steps=_OF.near)
-    if abs(near.values[_DELAY]) > _OF.seen * model.T:
+    if abs(near.values[_DELAY]) > _OF.delay_of_lag * model.T:
         model, rounds = near.model, 2
         observed = tuple(one.reweighed(model) for one in observed)
     for more in reversed(range(rounds)):
@@ -153,7 +153,7 @@ def delay_check(whole: Solution, drifting: Sequence[Observed]) -> tuple[Array, D
     }
     T, B, model = both.values["T"], both.values["B"], whole.model
     doubt = ""
-    if abs(delay.value) > max(_OF.told * delay.deviation, _OF.seen * model.T):
+    if abs(delay.value) > max(_OF.delay_deviations * delay.deviation, _OF.delay_of_lag * model.T):
         late, lag = _MILLISECONDS * delay.value, _MILLISECONDS * T
         doubt = (
             f"The records ask for a pure delay of {late:.2g} ms, which the four blocks lack: with it T would be "

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from ident.bench import motion
+from ident.bench.effect_ranking import finely
 from ident.bench.model import Model
 from ident.bench.motion import groups
 from ident.bench.observed import Observed, _unsettled, rate_wanted
@@ -216,3 +217,8 @@ def test_a_reading_is_timed_by_the_fastest_of_seven_samples(apart, counts):
     moved = np.zeros(20)
     moved[10] = 1.0
     assert bool(fastest(moved)[10 - apart]) is counts
+
+
+def test_an_effect_is_sought_in_records_of_500_hertz():
+    (of,) = finely([record(np.linspace(0.0, 1.0, 10_000), rate=1e4)])
+    assert of.record.rate == 500.0

@@ -9,9 +9,14 @@ from typing import Any
 import numpy as np
 import pytest
 
-from ident.bench import analysis, polish
+from ident.bench import analysis, identification, polish, scatter
 from ident.bench.criteria import BENCH_CRITERIA
 from ident.bench.least_squares import solve
+from ident.bench.model import Model
+from ident.bench.observed import Observed
+from ident.bench.records import Record
+from ident.bench.residual import Residual
+from ident.bench.speed_table import SpeedTable
 
 
 def objective(gain: float, falls: bool = True) -> Any:
@@ -80,3 +85,70 @@ def test_ends_in_folds_of_one_optimum_are_one(monkeypatch, apart, one):
 def test_a_search_that_ends_a_hundredth_farther_went_astray(monkeypatch, farther, astray):
     _, said, _ = polished(monkeypatch, 1.0, farther**2)
     assert (bool(said) and said[0].startswith("No member")) is astray
+
+
+def residual(*names: str) -> Residual:
+    """Of a model on a record that goes 0.1 m."""
+    record = Record("r", "static", 1e3, "linear", np.zeros(500), np.linspace(0.0, 0.1, 500), None, 0.0)
+    return Residual(
+        Model(0.01, 0.01, 0.0, 1e8, 1e5, SpeedTable.straight(0.1)), (Observed.of(record),), names
+    )  # fmt: skip
+
+
+def test_a_value_that_may_be_zero_is_measured_by_a_twentieth_of_its_range():
+    """The zero shift lies within a tenth of the rated current to either side; an effect is measured by the machine."""
+    reach = residual("I0").reach
+    assert reach["I0"] == pytest.approx(0.01)
+    assert reach["second_lag__time_constant"] == pytest.approx(0.01)
+    assert reach["stiction__pressure"] == pytest.approx(1e5)
+    assert reach["spring_load__rate"] == pytest.approx(1e5 / 0.05, rel=0.01)
+
+
+def test_a_value_goes_no_farther_than_150_times():
+    of = residual("T")
+    assert of.values(np.array([[9.0], [-9.0]]))["T"] / 0.01 == pytest.approx([np.exp(5.0), np.exp(-5.0)])
+
+
+def test_what_acts_in_jumps_is_moved_by_the_stride_of_its_effect():
+    """Stiction by 2e-3 of its range, 10 kPa; a lag as any axis."""
+    of = residual("stiction__pressure", "second_lag__time_constant")
+    assert of._strides * [of.reach[name] for name in of.names] == pytest.approx([1e4, 1e-5 * 0.01])
+
+
+def test_a_way_begins_at_sixteen_places_within_a_step(monkeypatch):
+    asked: list[int] = []
+
+    def scores(*given: Any) -> np.ndarray:
+        asked.append(given[-1])
+        return np.zeros((given[-1], 1))
+
+    monkeypatch.setattr(scatter, "at_places", scores)
+    told = SimpleNamespace(known=np.ones(9), deviations=np.ones(9), step=1e-5, extra=0.0)
+    observed = SimpleNamespace(readings=told, within=np.arange(9), parts=[(0, 9)])
+    of = SimpleNamespace(ways=lambda *_: (np.zeros(9), np.ones((1, 9))))
+    scatter._positions(of, np.zeros(1), observed, np.ones((1, 9)), np.ones(9))  # type: ignore[arg-type]
+    assert asked == [16]
+
+
+@pytest.mark.parametrize(("frequency", "rate"), [(None, 60.0), (5.0, 200.0)])
+def test_a_search_takes_sixty_hertz_and_forty_samples_of_a_period(frequency, rate):
+    assert identification.searched_rate(SimpleNamespace(frequency=frequency)) == rate  # type: ignore[arg-type]
+
+
+def test_three_vectors_of_a_search_are_refined(monkeypatch):
+    """In addition to what the procedures found."""
+    asked: list[int] = []
+
+    def known(starts: Any, *_: Any) -> Any:
+        asked.append(len(starts))
+        return None, []
+
+    monkeypatch.setattr(identification, "polished", known)
+    own = SimpleNamespace(values=dict)
+    work = SimpleNamespace(
+        _model=lambda point: point, analysis=SimpleNamespace(model=own), _own=lambda of: (of, ()),
+        space=SimpleNamespace(bounds=lambda _: {}, names=()),
+    )  # fmt: skip
+    population = [[0.1 * place] for place in range(0, 10, 2)]
+    identification.BenchIdentification._polished(work, {"best": [0.9], "population": population})  # type: ignore[arg-type]
+    assert asked == [3]

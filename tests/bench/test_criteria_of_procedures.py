@@ -9,9 +9,13 @@ from typing import Any
 import numpy as np
 import pytest
 
-from ident.bench import analysis, speed, static, time_constant
+from ident.bench import analysis, frequency, position_loop, speed, static, straightness, time_constant
+from ident.bench.model import Model
+from ident.bench.position_loop import AmplitudeMargin
 from ident.bench.records import Record
 from ident.bench.speed import Curve
+from ident.bench.speed_table import SpeedTable
+from ident.rig.regulator import Regulator
 
 RATE = 1000.0
 
@@ -230,3 +234,56 @@ def test_a_delay_is_said_from_four_deviations_and_a_fiftieth_of_the_lag_on(monke
     monkeypatch.setattr(time_constant, "scatter", lambda _: None)
     monkeypatch.setattr(time_constant, "replace", lambda of, **_: of)
     assert bool(time_constant.delay_check(ended, ())[1].doubt) is said
+
+
+def test_a_period_of_a_sine_is_reduced_to_two_hundred_samples():
+    asked: list[float] = []
+
+    def reduced(rate: float) -> Any:
+        asked.append(rate)
+        raise Known
+
+    with pytest.raises(Known):
+        frequency.point(SimpleNamespace(frequency=3.0, reduced=reduced))
+    assert asked == [600.0]
+
+
+@pytest.mark.parametrize(("lacking", "periods"), [(0.0075, 2), (0.0125, 1)])
+def test_a_period_counts_that_lacks_a_hundredth(lacking, periods):
+    """The last of three, of which the first is not compared."""
+    rate = 399.0  # below four hundred, so that nothing is reduced
+    t = np.arange(1 + round((3.0 - lacking) * rate)) / rate
+    of = Record("r", "frequency", rate, "linear", np.sin(2 * np.pi * t), np.sin(2 * np.pi * t), None, 0.0, 1.0)
+    assert frequency.point(of).periods == periods
+
+
+def test_a_table_is_read_at_two_hundred_and_one_currents():
+    asked: list[int] = []
+
+    def known(current: np.ndarray) -> np.ndarray:
+        asked.append(len(current))
+        return current
+
+    straightness.of_table(SimpleNamespace(nodes=[1.0], speed=known))  # type: ignore[arg-type]
+    assert asked == [201]
+
+
+def test_a_loop_is_judged_from_a_half_beyond_the_dead_space_to_ten_times(monkeypatch):
+    monkeypatch.setattr(position_loop, "_actuator", lambda _: SimpleNamespace(dead_space=0.01))
+    monkeypatch.setattr(position_loop, "margins", lambda *given: AmplitudeMargin(given[-1], 0.0, 0.0, stands=True))
+    found = position_loop.position_loop(SimpleNamespace(model="m"), Regulator(1.0))  # type: ignore[arg-type]
+    assert [one.amplitude for one in found.amplitudes] == pytest.approx([0.015, 0.03, 0.1])
+
+
+def loop() -> AmplitudeMargin:
+    """Of an analogue regulator around an actuator with a lag of 10 ms."""
+    model = Model(0.01, 1e-4, 0.0, 1e8, 1e4, SpeedTable.straight(0.1))
+    return position_loop.margins(model, Regulator(30.0), 0.1)
+
+
+def test_a_loop_is_looked_at_from_a_hundredth_of_a_hertz_on():
+    assert loop().frequency[0] == pytest.approx(0.01)
+
+
+def test_an_analogue_loop_is_looked_at_up_to_a_hundred_times_its_lag():
+    assert loop().frequency[-1] == pytest.approx(100.0 / (2 * np.pi * 0.01))

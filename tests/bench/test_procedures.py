@@ -14,7 +14,7 @@ from ident.bench.frequency import frequency_response
 from ident.bench.motion import groups
 from ident.bench.observed import observe
 from ident.bench.records import BenchSet
-from ident.bench.sine_fit import as_printed, dominant, fit_sine, gauss_newton
+from ident.bench.sine_fit import as_printed, dominant, fit_sine
 from ident.bench.smoothing import METHODS, bezier, on_bezier
 from ident.bench.speed import curve
 from ident.bench.straightness import straightness
@@ -48,13 +48,19 @@ def distorted(play: float) -> np.ndarray:
 
 @pytest.mark.parametrize("seed", range(5))
 def test_gauss_newton_finds_what_linear_least_squares_finds(seed):
-    """To 1e-9 of the amplitude, and of a turn."""
+    """On the residuals, from the middle and half of the range: to 1e-9 of the amplitude, and of a turn."""
     rng = np.random.default_rng(seed)
     x = rng.normal() + rng.uniform(0.1, 5) * np.sin(ALPHA + rng.uniform(0, 6)) + 0.1 * rng.standard_normal(500)
-    linear, iterated = fit_sine(ALPHA, x), gauss_newton(ALPHA, x)
-    assert iterated.a1 == pytest.approx(linear.a1, abs=1e-9 * linear.a2)
-    assert iterated.a2 == pytest.approx(linear.a2, rel=1e-9)
-    assert iterated.a3 == pytest.approx(linear.a3, abs=1e-9)
+    linear, a = (
+        fit_sine(ALPHA, x),
+        np.array([0.5 * (x.max() + x.min()), 0.5 * np.ptp(x), np.pi / 2 - ALPHA[x.argmax()]]),
+    )
+    for _ in range(20):
+        sine, cosine = np.sin(ALPHA + a[2]), np.cos(ALPHA + a[2])
+        slopes = np.column_stack([np.ones_like(x), sine, a[1] * cosine])
+        a = a - np.linalg.lstsq(slopes, a[0] + a[1] * sine - x, rcond=None)[0]
+    assert a[:2] == pytest.approx([linear.a1, linear.a2], rel=1e-9)
+    assert a[2] % (2 * np.pi) == pytest.approx(linear.a3, abs=1e-9)
 
 
 def test_the_printed_iteration_minimises_the_fourth_power():
