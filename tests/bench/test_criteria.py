@@ -59,7 +59,8 @@ def test_a_record_is_reduced_to_sixteen_means_at_least(samples, length):
 
 
 @pytest.mark.parametrize(
-    ("size", "held", "jumps"), [(4.2e-5, 1, False), (5.8e-5, 1, True), (1e-3, 3, True), (1e-3, 4, False)]
+    ("size", "held", "jumps"),
+    [(4.2e-5, 1, False), (5.8e-5, 1, True), (1e-3, 2, True), (1e-3, 3, True), (1e-3, 4, False)],
 )
 def test_a_current_jumps_about_where_it_scatters_within_four_milliseconds(size, held, jumps):
     """It jumps by this to either side, after so many samples."""

@@ -44,8 +44,12 @@ def test_a_fit_of_a_bench_ends_after_its_steps():
 )
 @pytest.mark.parametrize("share", [0.85, 1.15])
 def test_a_fit_of_a_bench_ends_where_its_effort_ends(effort, converged, rough, share):
-    """Where a step promises next to nothing, and where one failed that promised less than the error is smooth."""
+    """Where a step promises next to nothing, and where one failed that promised less than the error is smooth.
+
+    No step is longer than 0.7.
+    """
     way = getattr(BENCH_CRITERIA.fits, effort)
+    assert solve(objective(0.01), steps=1, way=way).point[0] == pytest.approx(0.7)
     promised = 1.0 - (1.0 - 0.7) ** 2  # of a gain, by a step of 0.7
     assert (solve(objective(share * converged / promised), steps=1, way=way).point[0] > 0) == (share > 1)
     if rough == converged:  # no step that is tried promises less
