@@ -101,13 +101,13 @@ class TimeConstants:
     """[of the sum of squares] Below which SciPy's search ends. Why: as for T.
     Test: test_criteria_of_procedures.py::test_the_search_of_the_library_ends_within_a_ten_thousandth"""
     evaluations: int = 30
-    """[evaluations] Of SciPy's search at most. Why: one value takes ten.
+    """[evaluations] Of SciPy's search at most. Why: one value takes seven.
     Test: test_criteria_of_procedures.py::test_the_search_of_the_library_ends_within_a_ten_thousandth"""
     smallest: float = 1e-4
     """[s] Least T that is searched. Why: a tenth of a sample at 1 kHz.
     Test: test_criteria_of_procedures.py::test_a_time_constant_lies_between_a_ten_thousandth_and_one_second"""
     steps: int = 25
-    """[steps] Of the gradient descent at most. Why: from three times T it takes less than twenty.
+    """[steps] Of the gradient descent at most. Why: from three times T and from a third it takes 13.
     Test: test_criteria_of_procedures.py::test_the_descent_begins_with_a_third_and_ends_below_a_thousandth"""
     first_step: float = 0.3
     """[logarithm] First step of the descent. Why: a third of T.

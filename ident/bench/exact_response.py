@@ -27,7 +27,7 @@ CONSTANTS = len(NAMES) + 1
 PARTS = (1, 2, _OF.turning, _OF.passing)
 """Into how many parts a sample may be divided."""
 _WHOLE, _HALVES, _TURNING, _PASSING = range(len(PARTS))
-_QUICK, _FAR = _OF.quick, _OF.far
+_FAR = _OF.far
 
 
 @jit(nogil=True, error_model="numpy")
@@ -77,12 +77,11 @@ def division(
     k0, km, ke = _kind(w - I0, still, full), _kind(wm - I0, still, full), _kind(we - I0, still, full)
     quiet = k0 == 0 and km == 0 and ke == 0
     kinked = not (k0 == ke and km == k0) and (abs(k0) == 2 or abs(km) == 2 or abs(ke) == 2 or k0 * ke < 0)
-    changed = max(abs(wm - w), abs(we - wm))
-    far = changed > _FAR * max(min(abs(w - I0), abs(wm - I0), abs(we - I0)), still)
+    far = max(abs(wm - w), abs(we - wm)) > _FAR * max(min(abs(w - I0), abs(wm - I0), abs(we - I0)), still)
     if not quiet and (kinked or (far and not (abs(k0) == 2 and k0 == ke and km == k0))):
         return _PASSING, False, ce
     if reversal or ((cm != contact or ce != contact) and not (quiet and cm == 0 and ce == 0)):
-        return (_TURNING if quiet or changed < _QUICK else _PASSING), False, ce
+        return _TURNING, False, ce
     if quiet:
         return _WHOLE, False, ce
     return _HALVES, k0 == ke and abs(k0) == 2, ce

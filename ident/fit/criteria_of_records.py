@@ -207,7 +207,8 @@ class WindowsOfRecords:
     """[1] Least gain of the filter of a level that wanders. Why: less than one in the samples of a record is none.
     Test: test_criteria_of_windows.py::test_a_level_that_wanders_is_followed_by_25_gains_from_a_ten_thousandth_on"""
     gains: int = 25
-    """[gains] From the least to 1 that are tried. Why: six a decade lie near any optimum.
+    """[gains] From the least to 1 that are tried. Why: the best of six a decade leaves at most 0.5 % more than the
+    best of all.
     Test: test_criteria_of_windows.py::test_a_level_that_wanders_is_followed_by_25_gains_from_a_ten_thousandth_on"""
     briefest: float = 0.3
     """[samples] Briefest memory of the filter of a speed. Why: briefer, it follows every sample.

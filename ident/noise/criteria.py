@@ -83,7 +83,7 @@ class PeriodicNoise:
     Test: test_criteria.py::test_a_start_in_the_first_third_of_a_periodic_record_is_no_noise"""
     efficiency: float = 0.25
     """[independent samples a sample] That the estimate is worth. Why: it is a median, of residuals that have two of
-    three samples in common.
+    three samples in common; of 600 records of white noise it was 0.21 (512 samples) and 0.27 (4096).
     Test: test_criteria.py::test_a_periodic_record_tells_its_noise_as_well_as_a_quarter_of_its_samples"""
 
 
@@ -110,8 +110,8 @@ class Repeats:
     """[of the record] Most that such a shift may take. Why: of a short record more would be left out than compared.
     Test: test_criteria.py::test_a_trigger_is_late_by_five_samples_at_most_or_a_twentieth_of_the_record"""
     less_by_a_shift: float = 0.9
-    """[of the RMS difference without a shift] That may remain with one. Why: noise alone makes less of a difference in
-    100 samples.
+    """[of the RMS difference without a shift] That may remain with one. Why: of 3000 pairs of noise
+    alone none of 1000 samples has less with the best of eleven shifts, of 300 samples one in 25.
     Test: test_criteria.py::test_a_shift_that_takes_less_than_a_tenth_of_the_difference_is_none"""
     settled: float = 0.1
     """[of the record] From its first sample on, in which the states die away that it begins with. Why: a record is ten

@@ -38,11 +38,6 @@ def test_a_sample_is_divided_by_how_the_play_moves_in_it(currents, contact, turn
     assert parts(*currents, contact=contact, turns=turns) == divided
 
 
-@pytest.mark.parametrize(("change", "divided"), [(0.85e-3, 8), (1.15e-3, 32)])
-def test_a_play_turns_quickly_from_a_thousandth_of_the_rated_current_on(change, divided):
-    assert parts(0.1, 0.1 + change, 0.1 + change, turns=True) == divided
-
-
 @pytest.mark.parametrize(("share", "divided"), [(0.22, 2), (0.28, 32)])
 def test_a_current_goes_far_from_a_quarter_of_itself_on(share, divided):
     assert parts(0.1, 0.1 * (1.0 + share), 0.1 * (1.0 + 2.0 * share)) == divided
