@@ -13,7 +13,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.ndimage import median_filter
+from scipy.ndimage import maximum_filter1d, median_filter
 
 from ident.checks.at_rest import HELD, acting, held, spans
 from ident.checks.finding import Finding
@@ -63,29 +63,44 @@ def missing_inputs(run: Run) -> tuple[MissingInput, ...]:
         return ()
     y = np.asarray(median_filter(run.measured, SPIKE), np.float64)
     extent = _extent(y)
-    longest, travel = _quick(y, extent), TRAVEL * extent
+    longest, travel, changes = _quick(y, extent), TRAVEL * extent, _changes(inputs)
     for half in range(FINER):
         samples = longest // 2**half
         if (half and samples < SHORTEST) or run.length <= (REST + 2) * samples:
             break
         at_rest = held(inputs, (REST + 2) * samples)[:-1]
-        motion = Motion.of(y, samples, max(travel / 2**half, DIGITS * resolution(run.measured)), at_rest)
+        least = max(travel / 2**half, DIGITS * resolution(run.measured), _answer(y, changes, samples, longest))
+        motion = Motion.of(y, samples, least, at_rest)
         begins = motion.starts(at_rest)
         begins = [k for k in begins if _turns(motion.way[k : k + AHEAD * samples], FAST * motion.quick) < SWINGS]
         begins = [k for k in begins if _beyond_steps(run.measured, k, samples)]
-        if _by_itself(inputs, begins, longest, samples):
+        if _by_itself(changes, begins, longest, samples):
             evidence = _evidence(run, motion, begins, at_rest)
             times = [begin / run.sample_rate for begin in begins]
             return tuple(MissingInput(run.id, time, time + samples / run.sample_rate, evidence) for time in times)
     return ()
 
 
-def _by_itself(inputs: Sequence[Samples], begins: Sequence[int], longest: int, samples: int) -> bool:
+def _changes(inputs: Sequence[Samples]) -> NDArray[np.intp]:
+    """The samples at which an input changes."""
+    return np.flatnonzero(np.any([np.abs(np.diff(u, prepend=u[0])) > HELD * np.ptp(u) for u in inputs], axis=0))
+
+
+def _answer(y: Samples, changes: NDArray[np.intp], samples: int, longest: int) -> float:
+    """How far the output goes in so many samples, at the fastest within a `longest` quick motion after a change.
+
+    The median over the changes. Where a command mostly rests, most motions are a drift about where it holds the output.
+    """
+    way = np.abs(y[samples:] - y[:-samples])
+    fastest = maximum_filter1d(way, longest, origin=-(longest // 2))[changes[changes < len(way)]]
+    return float(np.median(fastest)) if len(fastest) else 0.0
+
+
+def _by_itself(changes: NDArray[np.intp], begins: Sequence[int], longest: int, samples: int) -> bool:
     """Whether the output sets out often enough, at any time after a change of the inputs, and not at even times.
 
     A start within the `longest` quick motion after a change may be a delayed answer, and is not counted.
     """
-    changes = np.flatnonzero(np.any([np.abs(np.diff(u, prepend=u[0])) > HELD * np.ptp(u) for u in inputs], axis=0))
     last = [max(changes[changes <= begin], default=-REST * samples) for begin in begins]
     since = np.subtract(begins, last)
     if np.sum(since > longest) < LEAST or np.ptp(np.quantile(since, MOST)) <= longest:

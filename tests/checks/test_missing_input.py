@@ -130,3 +130,20 @@ def test_a_thermometer_that_reads_in_wider_steps_when_hot_misses_no_input():
     steps = np.diff(np.unique(read))
     assert steps[-1] > 3.0 * steps[0]
     assert missing_inputs(Run("heater", "", 0.5, {"command": power, "displacement": read}, hold="zoh")) == ()
+
+
+def drifting(seed: int) -> Run:
+    """A loop that follows twelve steps within a second and holds each for 20 s, where its place drifts by itself."""
+    rng = np.random.default_rng([82, seed])
+    command = np.repeat(rng.uniform(-1.0, 1.0, 12), int(20 * RATE))
+    answer = scipy.signal.cont2discrete(([9.0], [1.0, 3.0, 9.0]), 1 / RATE)
+    drift = scipy.signal.lfilter([1.0], [1.0, -1.96, 0.9605], rng.standard_normal(len(command)))
+    place = scipy.signal.lfilter(answer[0][0], answer[1], command) + 0.04 * drift / drift.std()
+    units = {"command": "rad", "displacement": "rad"}
+    return Run("loop", "loop.csv", RATE, {"command": command, "displacement": place}, units, hold="zoh")
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_a_drift_about_where_a_command_holds_an_output_misses_no_input(seed):
+    """Nine tenths of its motions are the drift, which is far slower than the answers to the command."""
+    assert missing_inputs(drifting(seed)) == ()
