@@ -37,15 +37,18 @@ class Recorded(Protocol):
 def electric(runs: Iterable[Recorded], oil: bool) -> bool:
     """Whether units show an electric drive: what it turns is recorded in rad or rad/s, and nothing shows oil.
 
-    `oil` is whether parts of a machine with oil are stated (:attr:`ident.matrix.Actuator.states_oil`); a recorded
-    pressure shows it, too. Unknown units (``1``) exclude nothing.
+    `oil` is whether parts of a machine with oil are stated (:attr:`ident.matrix.Actuator.states_oil`). Unknown units
+    (``1``) exclude nothing.
     """
-    return not oil and all(
-        run.units.get(run.output) in ("rad", "rad/s")
-        and run.units.get("command") in _ELECTRIC
-        and "Pa" not in run.units.values()
-        for run in runs
+    runs = tuple(runs)
+    return not shows_oil(runs, oil) and all(
+        run.units.get(run.output) in ("rad", "rad/s") and run.units.get("command") in _ELECTRIC for run in runs
     )
+
+
+def shows_oil(runs: Iterable[Recorded], stated: bool) -> bool:
+    """Whether parts of a machine with oil are `stated`, or a run records a pressure."""
+    return stated or any("Pa" in run.units.values() for run in runs)
 
 
 def angle_measured(matrix: Matrix) -> bool:

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ident.cached import cached_property
+from ident.effects.needs import shows_oil
 from ident.equations.equation import Equation
 from ident.errors import Unusable
 from ident.fit.criteria import FIT_CRITERIA
@@ -152,7 +153,7 @@ def search_space(preset: Preset, matrix: Matrix, settings: Settings, band: float
     fixed = {name: value for name, value in known.items() if name not in given} | fixed
     convention = None
     forced = force or preset.data.driven_by != "command"
-    scales = preset.scales_by_position if measured_by(runs) == "displacement" else preset.scales
+    scales = preset.scales_by(_scaled_by(matrix, runs))
     free = {scale.name for scale in scales} - fixed.keys() - given.keys()
     if free & set(preset.data.share_force[:1]) and not (same or forced or _loaded(runs)):
         convention = preset.data.share_force[0]
@@ -175,6 +176,15 @@ def search_space(preset: Preset, matrix: Matrix, settings: Settings, band: float
     order = tuple(scale.name for scale in scales)
     bounded = {*settings.bounds, *settings.fixed} - {p.name for p in of_effects}
     return Space(tuple(axes), order, fixed, typical, convention, held, not same, not (same or bounded))
+
+
+def _scaled_by(matrix: Matrix, runs: tuple[Run, ...]) -> str:
+    """The channel whose scales hold; "", a pressure's, for a speed where nothing shows oil.
+
+    There a drive behind a spring would pass for a cylinder: both are of third order.
+    """
+    channel = measured_by(runs)
+    return channel if channel != "velocity" or shows_oil(runs, matrix.actuator.states_oil) else ""
 
 
 def _held(preset: Preset, typical: Mapping[str, float]) -> dict[str, float]:

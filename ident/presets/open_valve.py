@@ -52,8 +52,12 @@ OPEN_VALVE = Preset(
             Scale("Ka", "A**2 / (m0 * W**2)", 1e-3, 1e3),
             Scale("Z0", "A**3 * X / (m0 * W * U)", -3e1, 3e1, logarithmic=False),
         ),
-        # V, where no speed is recorded, is the largest that the band allows.
-        rescaled_by_position=(Scale("Z0", "A**2 * V / U", -1.0, 1.0, logarithmic=False),),
+        rescaled_by_output={
+            # V, where no speed is recorded, is the largest that the band allows.
+            "displacement": (Scale("Z0", "A**2 * V / U", -1.0, 1.0, logarithmic=False),),
+            # A recorded speed is less than that of a slow command by what the lags of valve and oil take.
+            "velocity": (Scale("Z0", "A**2 * V / U", -1e1, 1e1, logarithmic=False),),
+        },
         force_scale="(c0 + m0*W)*W*L",
         drive_scale="U",
     ),

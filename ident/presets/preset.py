@@ -43,7 +43,7 @@ class Preset(Model):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        for scale in (*self.scales, *self.search.rescaled_by_position):
+        for scale in (*self.scales, *self.search.by_outputs):
             if strange := scale.equation.names - self.known - OF_THE_RUNS:
                 where = f"preset {self.name}, scale of {scale.name}"
                 raise Unusable("bad-preset", f"no stage brings {', '.join(sorted(strange))}, read by a scale", where,
@@ -58,10 +58,9 @@ class Preset(Model):
         """How its parameters are searched for a machine of unknown size, in the order of the search."""
         return self.search.scales(self)
 
-    @property
-    def scales_by_position(self) -> tuple[Scale, ...]:
-        """The same where a position is recorded."""
-        return self.search.scales(self, by_position=True)
+    def scales_by(self, output: str) -> tuple[Scale, ...]:
+        """The same where the machine is measured by this channel."""
+        return self.search.scales(self, output)
 
     @property
     def imposed(self) -> Mapping[str, str]:

@@ -21,8 +21,8 @@ class SearchPlan:
     """Parameters that are searched first; then the others as results list them, each after those that it reads."""
     rescaled: tuple[Scale, ...] = ()
     """Take the place of the stages' scales, where a machine is measured otherwise."""
-    rescaled_by_position: tuple[Scale, ...] = ()
-    """Take theirs where a position is recorded."""
+    rescaled_by_output: Mapping[str, tuple[Scale, ...]] = field(default_factory=dict)
+    """Take theirs where the machine is measured by this channel."""
     bounds_hold_for: float | None = None
     """Piston area (m²) of the machine that the parameters' bounds were stated for; others are searched over scales."""
     force_scale: str = ""
@@ -39,14 +39,18 @@ class SearchPlan:
     @property
     def named(self) -> frozenset[str]:
         """The parameters of which something is stated."""
-        return frozenset((*self.order, *(scale.name for scale in (*self.rescaled, *self.rescaled_by_position))))
+        return frozenset((*self.order, *(scale.name for scale in (*self.rescaled, *self.by_outputs))))
 
-    def scales(self, model: Model, by_position: bool = False) -> tuple[Scale, ...]:
+    @property
+    def by_outputs(self) -> tuple[Scale, ...]:
+        """The scales of every channel by which a machine may be measured."""
+        return tuple(scale for scales in self.rescaled_by_output.values() for scale in scales)
+
+    def scales(self, model: Model, output: str = "") -> tuple[Scale, ...]:
         """How the parameters of a model of unknown size are searched, in the order of the search."""
         found = {scale.name: scale for stage in model.chain.stages for scale in stage.scales}
         found |= {scale.name: scale for scale in self.rescaled}
-        if by_position:
-            found |= {scale.name: scale for scale in self.rescaled_by_position}
+        found |= {scale.name: scale for scale in self.rescaled_by_output.get(output, ())}
         sizes = self._sizes(model)
         found |= {p.in_equations: scale_of(effect, p, sizes) for effect in model.effects for p in effect.added}
         return in_reading_order(in_order(found, (*self.order, *(p.in_equations for p in model.parameters))))
