@@ -111,8 +111,8 @@ class SimulatedFitness(SimulatedRuns):
     def exact(self, point: Array, sensitivities: bool = True, worth: Worth = lambda _promised: True) -> Local:
         """The objective at one point, with sensitivities by differences.
 
-        Infinite where a run is unstable or a mode is aliased. Where better first states promise much they are followed, if what they promise is `worth` it: a search that
-        does not ask spends most of its time on steps that fail.
+        Infinite where a run is unstable or a mode is aliased. Where better first states promise much they are followed,
+        if what they promise is `worth` it: a search that does not ask spends most of its time on steps that fail.
         """
         p = len(point) if sensitivities else 0
         strides = np.where(point + self._strides > 1.0, -self._strides, self._strides)[:p]  # inwards at a bound
