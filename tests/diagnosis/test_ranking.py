@@ -31,13 +31,14 @@ def refit(**left: float) -> Any:
         of = np.random.default_rng(list(name.encode()))
         series = [r + size * of.standard_normal(N) for r in series]
     error = float(np.mean([np.std(r) for r in series]))
-    held_out = SimpleNamespace(score=error, error=error)
+    held_out, residuals = SimpleNamespace(score=error, error=error), Residuals(tuple(series), BANDS)
     return SimpleNamespace(
         fitness=SimpleNamespace(horizon=None),
         held_out=held_out,
         error=error,
         effects=(),
-        residuals_held_out=Residuals(tuple(series), BANDS),
+        residuals_held_out=residuals,
+        residuals_fitted=residuals,
     )
 
 
