@@ -94,7 +94,7 @@ class LinearFitness:
         return errors
 
     def _followed(self, points: Array) -> NDArray[np.bool_]:
-        """Which vectors have modes that a simulation can follow, and that the samples show as what they are, (v,).
+        """Which vectors have modes that a simulation can follow, none of them aliased, (v,).
 
         What a mode far faster than the samples does shows in no record, and could not be compared with one.
         """

@@ -20,9 +20,9 @@ FOLLOWED = FIT_CRITERIA.ranges.followed * MOST
 
 
 def aliased(modes: Modes) -> NDArray[np.bool_]:
-    """Which modes samples show as what they are not; eigenvalues in radians a sample, (v,) → (v,).
+    """Which modes samples show as slower ones; eigenvalues in radians a sample, (v,) → (v,).
 
-    What swings more than half a turn a sample and rings on shows as a slow swing, its alias (Shannon's theorem).
+    A mode that swings more than half a turn a sample and rings on shows as a slow swing, its alias (Shannon's theorem).
     """
     return (np.abs(modes.imag) > np.pi) & (-modes.real < FIT_CRITERIA.ranges.aliased)
 

@@ -64,7 +64,7 @@ class SimulatedFitness(SimulatedRuns):
         return errors
 
     def _aliased(self, values: Mapping[str, Array]) -> NDArray[np.bool_]:
-        """Which vectors have a mode that the samples show as what it is not, (v,); none where the user says where."""
+        """Which vectors have an aliased mode, (v,); none where the user says where to look."""
         if not self.space.followed:
             return np.zeros(len(next(iter(values.values()))), dtype=bool)
         return aliased(self.fastest(values))
