@@ -157,3 +157,8 @@ def test_the_correlations_of_a_series_are_summed_over_five_correlation_times(lag
     noise = np.random.default_rng(3).standard_normal(100_000)
     found = correlation_time(noise[lag:] + noise[:-lag])
     assert found == pytest.approx(2.0 if counts else 1.0, abs=0.1)
+
+
+@pytest.mark.parametrize(("gain", "better"), [(0.85, False), (1.15, True)])
+def test_a_gain_of_a_nat_on_fitted_data_is_worth_a_parameter(gain, better):
+    assert fits_better(evidence(by_fit=lambda: evidence(gain=gain))) is better
