@@ -13,7 +13,7 @@ from ident.diagnosis.evidence.comparison import Evidence, Residuals, compare
 from ident.diagnosis.evidence.criteria import EVIDENCE_CRITERIA
 from ident.diagnosis.evidence.disturbance import Disturbance
 from ident.diagnosis.evidence.energy_bands import EnergyBands, Record, _edges, _harmonics
-from ident.diagnosis.evidence.rule import improves_on_the_whole, matters
+from ident.diagnosis.evidence.rule import fits_better, improves_on_the_whole, matters
 from ident.diagnosis.evidence.separation import both_probable, indistinguishable
 
 NOTHING = BlockMean(0.0, 0.0, 20)
