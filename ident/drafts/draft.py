@@ -310,7 +310,7 @@ def _clock(file: RawFile, said: FileAnswers) -> tuple[Answer, str, tuple[str, ..
     if answer.column not in ("", NONE):
         (column,) = _columns(file, file.table.number(answer.column, f"{file.name}: time"), "time")
         return Answer(answer.column, answer.unit or column.unit), "", tuple(_other_unit(column, answer.unit))
-    named = [] if answer.column == NONE else [column for column in file.columns if is_time(column.name)]
+    named = [] if answer.column == NONE else [column for column in file.columns if is_time(column.meaning)]
     if len(named) == 1:
         by_name = str(message("draft.named", column=shown(named[0].name), use="time"))
         found = Answer(named[0].name, answer.unit or named[0].unit)

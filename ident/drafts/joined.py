@@ -46,7 +46,7 @@ def joined(files: Mapping[str, RawFile], signals: Mapping[str, str] | None = Non
 
 def clock_of(file: RawFile) -> Column | None:
     """The column of times of a file: named so, or the first of two columns without names, where it only increases."""
-    named = [one for one in file.columns if is_time(one.name) or one.number in file.table.stamps]
+    named = [one for one in file.columns if is_time(one.meaning) or one.number in file.table.stamps]
     if named or len(file.columns) != 2 or any(not one.name.isdigit() for one in file.columns):
         return named[0] if named else None
     first = file.columns[0]

@@ -15,9 +15,9 @@ _EVEN = 0.5  # of a step, by which the steps of a printed time differ at most
 def suggested(columns: Sequence[Column]) -> dict[str, Column]:
     """The column of each channel that one column is called after; of several, the one whose unit alone fits."""
     found: dict[str, list[Column]] = {}
-    inputs = [given for given, out in PAIRS if {given, out} <= {stem_of(column.name) for column in columns}]
+    inputs = [given for given, out in PAIRS if {given, out} <= {stem_of(column.meaning) for column in columns}]
     for column in columns:
-        channel = "command" if stem_of(column.name) in inputs else channel_of(column.name, column.unit)
+        channel = "command" if stem_of(column.meaning) in inputs else channel_of(column.meaning, column.unit)
         if channel:
             found.setdefault(channel, []).append(column)
     chosen = {channel: _fitting(channel, candidates) for channel, candidates in found.items()}
@@ -33,7 +33,7 @@ def _fitting(channel: str, columns: Sequence[Column]) -> Sequence[Column]:
 
 def unit_of(column: Column) -> str:
     """The unit that the file states, or that the name is."""
-    return column.unit or next((unit for unit in UNITS_BY_NAME if said(column.name) == unit), "")
+    return column.unit or next((unit for unit in UNITS_BY_NAME if said(column.meaning) == unit), "")
 
 
 def unnamed_clock(file: RawFile) -> Column | None:

@@ -14,7 +14,7 @@ from ident.cached import cached_property
 from ident.drafts.head import NOTHING, Head, head_of, text_of
 from ident.errors import Unusable
 from ident.readers import ending_of, read_table
-from ident.readers.column_names import bracketed, is_time, is_unit, measures_time, suffix
+from ident.readers.column_names import bracketed, is_time, is_unit, measures_time, suffix, told_apart
 from ident.readers.controldesk import is_controldesk
 from ident.readers.dialect import FOUND, Dialect
 from ident.readers.layout import Form, line_start, recognise
@@ -42,11 +42,15 @@ _LONGEST_ENTRY = 200  # characters of a line that states a rate
 
 @dataclass(frozen=True)
 class Column:
-    """A column of numbers: its number and name in the file, and the unit that the file states, or none."""
+    """A column of numbers: its number and name in the file, and the unit that the file states, or none.
+
+    `meaning` is the name without what all names of the file have in common.
+    """
 
     number: int
     name: str
     unit: str
+    meaning: str
 
 
 @dataclass(frozen=True)
@@ -81,7 +85,12 @@ class RawFile:
     @cached_property
     def columns(self) -> tuple[Column, ...]:
         """Every column that holds numbers from its first sample to its last."""
-        return tuple(Column(n, name, self._unit(n)) for n, name in enumerate(self.table.names) if self._fine[n])
+        named = enumerate(zip(self.table.names, self._meanings, strict=True))
+        return tuple(Column(n, name, self._unit(n), meaning) for n, (name, meaning) in named if self._fine[n])
+
+    @cached_property
+    def _meanings(self) -> tuple[str, ...]:
+        return told_apart(self.table.names)
 
     @cached_property
     def _fine(self) -> list[bool]:
@@ -127,12 +136,12 @@ class RawFile:
     def _unit(self, number: int) -> str:
         """The unit in the row of units, else in brackets behind the name, else at its end; nothing that is no unit."""
         found = unit_in(self.table, number) if self._has_stated(number) else self._suffix(number)
-        return found or (self._unit_of_period(number) if is_time(self.table.names[number]) else "")
+        return found or (self._unit_of_period(number) if is_time(self._meanings[number]) else "")
 
     def _suffix(self, number: int) -> str:
         """The unit that ends a name, as in Force_kN; x_m is in metres where another name ends with a unit, too."""
-        unit = suffix(self.table.names[number])[1]
-        others = (suffix(name)[1] for n, name in enumerate(self.table.names) if n != number)
+        unit = suffix(self._meanings[number])[1]
+        others = (suffix(name)[1] for n, name in enumerate(self._meanings) if n != number)
         return unit if unit != _LETTER_M or any(other not in ("", _LETTER_M) for other in others) else ""
 
     def _unit_of_period(self, number: int) -> str:
@@ -218,7 +227,7 @@ def _seconds(value: float, unit: str) -> float:
 def read_raw(data: bytes, name: str, limits: Limits = LIMITS, stated: Dialect = FOUND) -> RawFile:
     """A raw file that may be a run. Raises Unusable: ``one-signal``, and what :func:`read_whole` raises."""
     read = read_whole(data, name, limits, stated)
-    signals = [one for one in read.columns if not is_time(one.name) and one.number not in read.table.stamps]
+    signals = [one for one in read.columns if not is_time(one.meaning) and one.number not in read.table.stamps]
     if len(signals) == 1 and not read.left_out:
         what = "it holds one signal, and a run is one file with all of its signals"
         remedy = f"join the files of a run: servoident join {name} … --out run.csv"

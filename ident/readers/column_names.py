@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import re
 import unicodedata
+from collections.abc import Sequence
 from functools import lru_cache
 
 from ident.errors import Unusable
@@ -92,6 +93,7 @@ _BY_UNIT = ("displacement", "velocity", "force")
 _IN_NAME = re.compile(r"^(.*\S)\s*[\[(<{]\s*([^\[\](){}<>]+?)\s*[\])>}]$")
 _LETTERS = "mstAKlLhgNVWJ"
 """Units of one letter that may as well be an index: x_m is measured, p_s a supply, p_A a side, F_N normal."""
+_BETWEEN_WORDS = r"[_\s.:-]+"
 _KEPT = 4096  # names whose meaning is kept: the files of a matrix have the same columns
 _SPEEDS = ("m/s", "rad/s", "m^3/s")
 
@@ -227,6 +229,27 @@ def is_time(name: str) -> bool:
 def stem_of(name: str) -> str:
     """A name as it would be said, without the unit that ends it."""
     return said(suffix(name)[0])
+
+
+def told_apart(names: Sequence[str]) -> tuple[str, ...]:
+    """Names without the words that all of them share at an end: of EXP_Time and EXP_Pos, Time and Pos.
+
+    They stay as they are where one of them is known, one would be left without a word, or the words are a unit.
+    """
+    if len(names) < 2 or any(is_known(name) for name in names):
+        return tuple(names)
+    parts = [re.split(_BETWEEN_WORDS, bare(name)) for name in names]
+    first = _shared(parts)
+    last = 0 if any(suffix(name)[1] for name in names) else _shared([part[::-1] for part in parts])
+    if min(map(len, parts)) <= first + last:
+        return tuple(names)
+    return tuple(" ".join(part[first : len(part) - last]) for part in parts)
+
+
+def _shared(parts: Sequence[Sequence[str]]) -> int:
+    """How many words all names begin with."""
+    alike = (len({word.lower() for word in words}) == 1 for words in zip(*parts, strict=False))
+    return next((count for count, same in enumerate(alike) if not same), min(map(len, parts), default=0))
 
 
 def is_known(name: str) -> bool:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from ident.readers.column_names import bracketed, channel_of, is_time, is_unit, suffix
+from ident.readers.column_names import bracketed, channel_of, is_time, is_unit, suffix, told_apart
 from ident.readers.table import Table
 
 UNIT = "UNIT"
@@ -19,7 +19,8 @@ def unit_in(table: Table, number: int) -> str:
 def suggestion(table: Table) -> str:
     """The arguments of read_matrix by the names and units of a table; nothing where no name is one of a channel."""
     channels: dict[str, list[int]] = {}
-    for number, name in enumerate(table.names):
+    meanings = told_apart(table.names)
+    for number, name in enumerate(meanings):
         if channel := channel_of(name, unit_in(table, number)):
             channels.setdefault(channel, []).append(number)
     found = {channel: numbers[0] for channel, numbers in channels.items() if len(numbers) == 1}
@@ -27,7 +28,7 @@ def suggestion(table: Table) -> str:
         return ""
     units = {channel: unit_in(table, number) or UNIT for channel, number in found.items()}
     columns = {channel: table.names[number] for channel, number in found.items()}
-    times = [number for number, name in enumerate(table.names) if is_time(name) or number in table.stamps]
+    times = [number for number, name in enumerate(meanings) if is_time(name) or number in table.stamps]
     text = f"units={units}, columns={columns}"
     if len(times) != 1:
         return text

@@ -7,7 +7,7 @@ import pytest
 from ident.drafts.answers import Answers
 from ident.drafts.draft import Draft
 from ident.drafts.raw import read_raw
-from ident.readers.column_names import MEASURED, PAIRS, TIMES, WORDS, channel_of, is_time, said, suffix
+from ident.readers.column_names import MEASURED, PAIRS, TIMES, WORDS, channel_of, is_time, said, suffix, told_apart
 
 CHANNELS = {
     "x_soll": "command", "Sollwert": "command", "xSoll": "command", "Lagesollwert [mm]": "command",
@@ -86,6 +86,22 @@ def test_the_input_of_a_model_is_the_command_where_its_output_is_there():
     }  # fmt: skip
     file, draft = known("t", "u", "x")
     assert not draft.known(file).channels
+
+
+def test_what_all_names_have_in_common_says_nothing_of_a_column():
+    """EXP_Time and EXP_PosRef are a time and a command; a name that is known as it stands is kept."""
+    for names in (("EXP_Time", "EXP_PosRef", "EXP_PosFb"), ("Time_01", "PosRef_01", "PosFb_01")):
+        file, draft = known(*names)
+        assert draft.known(file).time.column == names[0]
+        found = {name: answer.column for name, answer in draft.known(file).channels.items()}
+        assert found == {"command": names[1], "displacement": names[2]}
+    file, draft = known("Axis 1 Time [s]", "Axis 1 Force [kN]", "Axis 1 Position [mm]")
+    assert {name: answer.unit for name, answer in draft.known(file).channels.items()} == {
+        "force": "kN", "displacement": "mm"
+    }  # fmt: skip
+    assert told_apart(("cmd_pos", "cmd_vel")) == ("cmd_pos", "cmd_vel")
+    assert told_apart(("pos_mm", "ref_mm")) == ("pos_mm", "ref_mm")
+    assert told_apart(("run_a", "run_b_a")) == ("run_a", "run_b_a")
 
 
 def test_metres_end_a_name_where_another_name_ends_with_a_unit_and_it_is_said():
