@@ -15,7 +15,8 @@ STEP_OF_A_LATE_SAMPLE = 3.0  # steps: below, one of an uneven clock is late, not
 STRAY = 0.1  # samples: 0.7 degrees of phase at 80 Hz and 4096 Hz
 _MOST, _FEWEST = 10, 8  # times the samples that were taken, and samples, that an even clock may make of a record
 _DIGITS = 7  # of a second, after the point: as many as a time is looked through for its last one
-_LOST = 0.1  # of the samples: where more are missing, hardly anything is known between them
+_SHORT = 0.01  # of a record: a hole that is no longer is bridged, as long as at most half of the record is missing
+_LOST = 0.1  # of the samples: where more are missing in longer holes, hardly anything is known between them
 _ROUNDED = 0.55  # of the last digit: so far off is the time of an even clock that was printed
 
 
@@ -24,12 +25,14 @@ class Clock:
     """`rate` in Hz; `jitter`, the largest deviation from an even clock, in samples; `gaps`, samples missing.
 
     `even`: the samples are taken as even; what deviates is the printing of the time, or too much is missing.
+    `time` (n,) in s is the time without what its printing rounds off.
     """
 
     rate: float
     jitter: float
     gaps: int
     even: bool
+    time: Samples
 
 
 def read_clock(time: Samples, where: str) -> Clock:
@@ -58,7 +61,9 @@ def read_clock(time: Samples, where: str) -> Clock:
     stray = float(np.max(np.abs(time - even)))
     rate = float(f"{1 / step:.9g}")  # nine digits: a clock that was printed is no more exact
     printed = stray <= STRAY * step or stray < _ROUNDED * _last_digit(time)
-    return Clock(rate, stray / step, gaps, printed or gaps > _LOST * len(time))
+    long = counted[counted - 1.0 > _SHORT * len(time)] - 1.0
+    lost = gaps > len(time) or float(long.sum()) > _LOST * len(time)
+    return Clock(rate, stray / step, gaps, lost or (printed and not gaps), even if printed else time)
 
 
 def _last_digit(time: Samples) -> float:

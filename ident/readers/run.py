@@ -69,7 +69,7 @@ def _whole(described: RunDescription, table: Table) -> tuple[Run, int]:
     if not even:
         held = "command" if labels.hold == "zoh" else ""
         where = places["time"] + ".resample" if described.time.resample else places["time"]
-        channels = {name: evened(time, values, rate, name == held, where) for name, values in channels.items()}
+        channels = {name: evened(clock.time, values, rate, name == held, where) for name, values in channels.items()}
     run = replace(
         labels, channels=channels, sample_rate=rate, clock_jitter=clock.jitter, gaps=clock.gaps, evened=not even
     )

@@ -7,7 +7,7 @@ import pytest
 
 from ident.errors import Unusable
 from ident.readers import read_matrix
-from ident.readers.clock import read_clock
+from ident.readers.clock import evened, read_clock
 from ident.readers.run import difference
 
 
@@ -156,6 +156,22 @@ def test_a_sample_that_an_even_clock_lacks_is_missing_and_so_is_a_long_gap_of_an
     uneven = 0.05 + 0.008 * np.random.default_rng(4).uniform(-1, 1, 2000)
     uneven[300] = 0.50
     assert read_clock(np.append(0.0, np.cumsum(uneven)), "t").gaps == 9
+
+
+def test_short_holes_of_a_clock_are_bridged_and_a_long_pause_is_not():
+    """Blocks of 0.1 s with holes of 20 ms, of an even clock and of one that was printed; two tests, a pause apart."""
+    even = np.arange(6000) / 500
+    blocks = even[np.arange(6000) % 60 < 50]
+    for time in (blocks, np.round(blocks, 3)):
+        clock = read_clock(time, "t")
+        assert not clock.even
+        assert clock.rate == pytest.approx(500.0, rel=1e-6)
+        assert clock.gaps == 990
+        np.testing.assert_allclose(clock.time, blocks, atol=1e-6)
+        sine = evened(clock.time, np.sin(2 * np.pi * blocks), clock.rate, held=False, where="t")
+        np.testing.assert_allclose(sine, np.sin(2 * np.pi * np.arange(len(sine)) / 500), atol=1e-3)
+    pause = even[(even < 4) | (even > 6)]
+    assert read_clock(pause, "t").even
 
 
 def test_a_column_may_be_the_difference_of_two(matrix, kind):
