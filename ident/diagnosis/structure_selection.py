@@ -16,6 +16,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from ident.chain.chain import integrates
 from ident.diagnosis.candidate_models import CandidateModels
 from ident.diagnosis.criteria import CRITERIA
 from ident.diagnosis.evidence.comparison import common_disturbance, gain
@@ -36,7 +37,7 @@ from ident.matrix import Matrix
 from ident.preprocessing import off_steps, screen
 from ident.preprocessing.pipeline import ALL_ON
 from ident.presets import Preset, preset
-from ident.presets.suited import in_question, moved_by_command, told_by_following, unusual
+from ident.presets.suited import in_question, moved_by_command, on_a_spring, told_by_following, unusual
 from ident.progress import Progress, Report, silent
 from ident.words.message import Message, message
 from ident.words.titles import title
@@ -96,6 +97,10 @@ def _compared(
         return (Structure(only.name, {"held_out": None}, len(only.parameters), str(why)),), None
     fitted = _all_fitted(models, matrix, report, preprocessing)
     over, tried = _judged(list(fitted.values()))
+    if not fitted[min(tried, key=lambda one: one.error).machine].integrates:
+        springs = on_a_spring(models, matrix.runs, matrix.actuator.states_oil)
+        fitted |= _all_fitted(springs, matrix, report, preprocessing)
+        over, tried = _judged(list(fitted.values()))
     least = min(one.error for one in tried)
     good = [one for one in tried if one.error <= CRITERIA.equality.practically_equal * least]
     strange = {model.name for model in models if unusual(model, matrix.runs)}
@@ -323,6 +328,7 @@ class _FittedStructure:
         self.matrix, self.settings = matrix, Settings(model=model.name, preprocessing=off_steps(preprocessing))
         work = Identification(matrix, self.settings, report)
         self.fit, self.parameters = completed(work), len(work.objective.space.axes)
+        self.integrates = integrates(model.chain, matrix.of_use("fit"), matrix.actuator)
         self.settings = replace(self.settings, known_zeros=tuple(self.fit.settings.get("known_zeros", ())))
 
     @property

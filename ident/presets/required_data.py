@@ -29,7 +29,8 @@ class RequiredData:
     one_sided: bool = False
     """Whether command and output of such a machine stay on one side of zero, as a pump and a level do."""
     rings: bool = False
-    """Whether the records of such a machine answer their commands with a damped oscillation."""
+    """Whether such a machine is in question from the start where its records answer their commands with a damped
+    oscillation; elsewhere where a lag explains more of them than what integrates."""
     needs: tuple[str, ...] = ()
     """What must be stated of the actuator, or measured."""
     conventions: tuple[Convention, ...] = ()

@@ -60,9 +60,7 @@ def suited(runs: Sequence[Described], oil: bool = False) -> tuple[Preset, ...]:
     is, or a loop gain is stated; else the command opens a valve, drives a motor or is a pressure that drives a mass.
     Raises Unusable where no model has such inputs and outputs.
     """
-    without_oil = electric(runs, oil)
-    found = [known for known in PRESETS.values() if all(_allows(known, run) for run in runs)]
-    found = [known for known in found if not (known.chain.has_oil and without_oil)]
+    found = _allowed(runs, oil)
     found = [known for known in found if not known.data.rings or _ring(runs)]
     if not found:
         channels = ", ".join(sorted({name for run in runs for name in run.channels}))
@@ -82,6 +80,24 @@ def in_question(runs: Sequence[Described], machine: str = "", oil: bool = False)
     if _rank(found[0], runs, oil) < _OPEN:
         return found[:1]
     return tuple(known for known in found if not known.chain.reads("Kp"))
+
+
+def on_a_spring(models: Collection[Preset], runs: Sequence[Described], oil: bool = False) -> tuple[Preset, ...]:
+    """The machines against a spring that are not among the `models` in question, since no record of theirs rings.
+
+    Friction and damping keep a throttle or a valve from ringing. Such a machine is in question where the position
+    follows the command, so that what integrates explains less of it than a lag: only fits can tell.
+    """
+    if len(models) == 1:
+        return ()
+    return tuple(known for known in _allowed(runs, oil) if known.data.rings and known not in models)
+
+
+def _allowed(runs: Sequence[Described], oil: bool) -> list[Preset]:
+    """The models that every run drives and shows; none of oil for an electric drive."""
+    without_oil = electric(runs, oil)
+    found = [known for known in PRESETS.values() if all(_allows(known, run) for run in runs)]
+    return [known for known in found if not (known.chain.has_oil and without_oil)]
 
 
 def told_by_following(model: Preset, runs: Sequence[Described]) -> bool:

@@ -67,6 +67,35 @@ def test_it_is_in_question_where_a_voltage_or_a_current_makes_a_position_ring(ch
     assert ("sprung_motor" in named(matrix)) is is_named
 
 
+def throttle(seed: int) -> Matrix:
+    """θ'' + 2·20 θ' + 15² (θ − 3 u) = −15² F sgn θ′ with F = 0.5 rad of dry friction: no command makes it ring."""
+    runs, fine = [], 20
+    for number, use in enumerate(("fit", "verify")):
+        rng = np.random.default_rng([73, seed, number])
+        t = np.arange(3 * COUNT) / RATE
+        u = np.sum([np.sin(2 * np.pi * f * t + rng.uniform(0, 6)) for f in (0.15, 0.4, 0.9)], axis=0) / 3
+        x, v, y, h = 0.0, 0.0, np.zeros(len(t)), 1.0 / RATE / fine
+        for k, volts in enumerate(np.repeat(u, fine)):
+            y[k // fine] = x if k % fine == 0 else y[k // fine]
+            push, rub = 225.0 * (3 * volts - x) - 40.0 * v, 225.0 * 0.5
+            after = v + h * (push - rub * np.sign(v or push))
+            v = 0.0 if (v == 0.0 and abs(push) <= rub) or v * after < 0.0 else after
+            x += h * v
+        y += 0.005 * y.std() * rng.standard_normal(len(y))
+        runs.append(Run(f"r{number}", "", RATE, {"command": u, "displacement": y}, TURNING, hold="zoh", use=use))
+    return Matrix(Actuator("THROTTLE"), tuple(runs))
+
+
+def test_a_throttle_that_friction_keeps_from_ringing_is_a_motor_against_a_spring(full):
+    matrix = throttle(1)
+    assert "sprung_motor" not in named(matrix)
+    with of_few_effects(full, "coulomb_friction", "backlash", "dead_zone"):
+        choice = choose_structure(matrix)
+        assert choice.structures[0].machine == "sprung_motor"
+        found = diagnose(choice.matrix, settings=Settings(model="sprung_motor"), most=1, propose=False)
+    assert found.verdict.effects == ("coulomb_friction",)
+
+
 def test_a_pendulum_is_a_motor_against_a_spring_that_its_weight_takes_the_place_of(full):
     """A motor that integrates, with the same weight, has no fewer parameters: the weight is the spring."""
     matrix = machine(3, weight=60.0)
