@@ -25,7 +25,7 @@ def typical(matrix: Matrix, runs: Sequence[Run], band: float) -> dict[str, float
         "L": float(np.mean([run.motion for run in runs])),
         "M": max(float(np.max(np.abs(run.command))) for run in runs),
         "W": band,
-        "H": min(run.dwell for run in runs),
+        "H": max(run.dwell for run in runs),
     }
     mean["V"] = _speed(runs) or band * mean["L"]
     return mean | {"mL": mean["mL"] or 1.0}

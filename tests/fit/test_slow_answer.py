@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+import scipy.signal
 
 from ident.fit.identification import Identification
 from ident.fit.settings import Settings
@@ -61,3 +62,18 @@ def test_lags_and_delays_of_stages_and_effects_add_up(output):
     summed = values["m0"] / values["c0"] + values["command_delay__delay"]
     summed += values["sensor_lag__time_constant"] if output == "displacement" else 0.0  # the speed is not read late
     assert lags(objective, matrix.runs[0], point) == pytest.approx(summed, rel=1e-4)
+
+
+def test_a_step_that_is_late_is_found_where_another_run_has_no_steps():
+    """A lag of 0.2 s behind a delay of 1 s, in closed form: a sine, which moves with each sample, and held levels."""
+    rate, late, pole = 20.0, 20, np.exp(-1.0 / 20.0 / 0.2)
+    rng, runs = np.random.default_rng(12), []
+    for name, u in (("sine", np.sin(np.arange(1200) / rate)), ("steps", np.repeat(rng.choice([0.0, 1.0], 20), 60))):
+        command = np.concatenate([np.zeros(late), u])[: len(u)]
+        x = scipy.signal.lfilter([0.0, 1.0 - pole], [1.0, -pole], command) + 0.01 * rng.standard_normal(len(u))
+        units = {"command": "V", "displacement": "m"}
+        runs.append(Run(name, "", rate, {"command": u, "displacement": x}, units, hold="zoh"))
+    fit = identify(Matrix(Actuator("LATE"), tuple(runs)), Settings(model="first_order", effects=("command_delay",)))
+    assert fit.parameters["command_delay.delay"].value == pytest.approx(late / rate, rel=0.02)
+    assert fit.values["tau"] == pytest.approx(0.2, rel=0.05)
+    assert not any("a bound that no user set" in note for note in fit.notes)  # from there not every search leads on
