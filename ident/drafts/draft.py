@@ -259,13 +259,18 @@ class Draft:
         return f"--time {at}{column}{unit}" if name == "time" else f"--channel {name}{at or '='}{column}{unit}"
 
     def _left(self, file: RawFile) -> tuple[Column | None, list[Column]]:
-        """The columns that are nothing yet: the one that may be the time, as its samples only increase; the others."""
+        """The columns that are nothing yet: the one that may be the time, as its samples only increase; the others.
+
+        Of several it is the one that begins nearest to zero: a date counts from long ago.
+        """
         known = self.known(file)
         answers = [*known.channels.values(), *([known.time] if known.time.column != "" else [])]
         taken = {number for answer in answers for number in file.table.numbers(answer.column, file.name)}
         left = [column for column in file.columns if column.number not in taken]
         timed = known.time.column != "" or known.rate
-        clock = next((one for one in left if not timed and (np.diff(file.samples(one.number)) > 0).all()), None)
+        times = {one: file.samples(one.number) for one in left} if not timed else {}
+        increasing = {one: samples for one, samples in times.items() if (np.diff(samples) > 0).all()}
+        clock = min(increasing, key=lambda one: abs(increasing[one][0]) / np.ptp(increasing[one]), default=None)
         return clock, [one for one in left if one is not clock]
 
     def _run(self, file: RawFile, name: str) -> dict[str, Any]:

@@ -396,6 +396,14 @@ def test_a_first_column_without_a_name_that_increases_in_equal_steps_is_the_time
     assert [one.key for one in counted.missing] == ["serial", "rate"]
 
 
+def test_of_columns_that_only_increase_the_one_that_begins_nearest_to_zero_is_offered_as_the_time():
+    """A spreadsheet without names: its first column is a date in days, its second one the time that has passed."""
+    rows = [f"{44257.5 + n / 864000:.9f},{n / 10:g},{np.sin(n):.6f},{np.cos(n):.6f}" for n in range(40)]
+    file = raw("\n".join(rows))
+    with pytest.raises(Unusable, match=r"--time 1:UNIT"):
+        Draft([file], Answers(serial="AX-1")).description()
+
+
 def test_of_two_columns_of_one_name_the_one_whose_unit_fits_is_suggested():
     """Force (V) is the amplifier's voltage; of two forces in N none is suggested."""
     rows = [f"{n / 100:g},{np.sin(n):.6f},{np.sin(n - 1):.6f},{np.cos(n):.6f},0.{n}" for n in range(10, 50)]
