@@ -14,7 +14,7 @@ from ident.cached import cached_property
 from ident.drafts.head import NOTHING, Head, head_of, text_of
 from ident.errors import Unusable
 from ident.readers import ending_of, read_table
-from ident.readers.column_names import bracketed, is_time, is_unit, measures_time, suffix, told_apart
+from ident.readers.column_names import bracketed, is_time, is_unit, measures_time, suffix, without_common_words
 from ident.readers.controldesk import is_controldesk
 from ident.readers.dialect import FOUND, Dialect
 from ident.readers.layout import Form, line_start, recognise
@@ -90,7 +90,7 @@ class RawFile:
 
     @cached_property
     def _meanings(self) -> tuple[str, ...]:
-        return told_apart(self.table.names)
+        return without_common_words(self.table.names)
 
     @cached_property
     def _fine(self) -> list[bool]:

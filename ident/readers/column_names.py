@@ -231,7 +231,7 @@ def stem_of(name: str) -> str:
     return said(suffix(name)[0])
 
 
-def told_apart(names: Sequence[str]) -> tuple[str, ...]:
+def without_common_words(names: Sequence[str]) -> tuple[str, ...]:
     """Names without the words that all of them share at an end: of EXP_Time and EXP_Pos, Time and Pos.
 
     They stay as they are where one of them is known, one would be left without a word, or the words are a unit.

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from ident.readers.column_names import bracketed, channel_of, is_time, is_unit, suffix, told_apart
+from ident.readers.column_names import bracketed, channel_of, is_time, is_unit, suffix, without_common_words
 from ident.readers.table import Table
 
 UNIT = "UNIT"
@@ -19,7 +19,7 @@ def unit_in(table: Table, number: int) -> str:
 def suggestion(table: Table) -> str:
     """The arguments of read_matrix by the names and units of a table; nothing where no name is one of a channel."""
     channels: dict[str, list[int]] = {}
-    meanings = told_apart(table.names)
+    meanings = without_common_words(table.names)
     for number, name in enumerate(meanings):
         if channel := channel_of(name, unit_in(table, number)):
             channels.setdefault(channel, []).append(number)

@@ -7,7 +7,17 @@ import pytest
 from ident.drafts.answers import Answers
 from ident.drafts.draft import Draft
 from ident.drafts.raw import read_raw
-from ident.readers.column_names import MEASURED, PAIRS, TIMES, WORDS, channel_of, is_time, said, suffix, told_apart
+from ident.readers.column_names import (
+    MEASURED,
+    PAIRS,
+    TIMES,
+    WORDS,
+    channel_of,
+    is_time,
+    said,
+    suffix,
+    without_common_words,
+)
 
 CHANNELS = {
     "x_soll": "command", "Sollwert": "command", "xSoll": "command", "Lagesollwert [mm]": "command",
@@ -99,9 +109,9 @@ def test_what_all_names_have_in_common_says_nothing_of_a_column():
     assert {name: answer.unit for name, answer in draft.known(file).channels.items()} == {
         "force": "kN", "displacement": "mm"
     }  # fmt: skip
-    assert told_apart(("cmd_pos", "cmd_vel")) == ("cmd_pos", "cmd_vel")
-    assert told_apart(("pos_mm", "ref_mm")) == ("pos_mm", "ref_mm")
-    assert told_apart(("run_a", "run_b_a")) == ("run_a", "run_b_a")
+    assert without_common_words(("cmd_pos", "cmd_vel")) == ("cmd_pos", "cmd_vel")
+    assert without_common_words(("pos_mm", "ref_mm")) == ("pos_mm", "ref_mm")
+    assert without_common_words(("run_a", "run_b_a")) == ("run_a", "run_b_a")
 
 
 def test_metres_end_a_name_where_another_name_ends_with_a_unit_and_it_is_said():
