@@ -97,7 +97,7 @@ def _compared(
         return (Structure(only.name, {"held_out": None}, len(only.parameters), str(why)),), None
     fitted = _all_fitted(models, matrix, report, preprocessing)
     over, tried = _judged(list(fitted.values()))
-    if not fitted[min(tried, key=lambda one: one.error).machine].integrates:
+    if not fitted[min(tried, key=lambda judged: judged.error).machine].integrates:
         springs = on_a_spring(models, matrix.runs, matrix.actuator.states_oil)
         fitted |= _all_fitted(springs, matrix, report, preprocessing)
         over, tried = _judged(list(fitted.values()))
