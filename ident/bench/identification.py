@@ -142,8 +142,8 @@ class BenchIdentification:
         if steps is None or lag is None:
             raise AssertionError("complete() has seen to it")
         own, observed = self._own(replace(steps, T=lag.gradient_T))
-        steps = BENCH_CRITERIA.fits.steps if self.preset.effects else 0
-        return solve(Residual(own, observed, self.space.names), steps=steps)
+        most = BENCH_CRITERIA.fits.steps if self.preset.effects else 0
+        return solve(Residual(own, observed, self.space.names), steps=most)
 
     def _own(self, found: Model) -> tuple[Model, tuple[Observed, ...]]:
         """What the procedures found, which know of no effects, and the records that it is polished on.
