@@ -140,7 +140,7 @@ def of_others() -> Iterator[Tie]:
 
     B = "bench.md"
     yield B, "a delay beyond {} of its standard deviations and {} % of T", (
-        word(BENCH_CRITERIA.time_constants.told), per_cent(BENCH_CRITERIA.time_constants.seen),
+        word(BENCH_CRITERIA.time_constants.delay_deviations), per_cent(BENCH_CRITERIA.time_constants.delay_of_lag),
     )  # fmt: skip
     yield B, "Quantities: `{}`", (" ".join(acceptance.QUANTITIES),)
 

@@ -28,13 +28,13 @@ Array = NDArray[np.float64]
 class BlockMean:
     """A mean, its standard error, and the number of blocks. The error of one block is infinite.
 
-    `values` are the means of the blocks (of a ratio none), for a rule that asks each block.
+    `parts` are what each block adds to the mean, which is their sum, for a rule that asks each block; a ratio has none.
     """
 
     mean: float
     error: float
     blocks: int
-    values: tuple[float, ...] = ()
+    parts: tuple[float, ...] = ()
 
     def bound(self, criteria: EvidenceCriteria) -> float:
         """How far chance may carry the mean to one side."""
@@ -110,8 +110,8 @@ def _means(series: Sequence[Array], blocks: Sequence[int]) -> tuple[Array, Array
 
 
 def _of(values: Array, weights: Array) -> BlockMean:
-    mean, k = float(weights @ values), len(values)
+    mean, k, parts = float(weights @ values), len(values), tuple((weights * values).tolist())
     if k < 2:
-        return BlockMean(mean, float("inf"), k, tuple(values.tolist()))
+        return BlockMean(mean, float("inf"), k, parts)
     error = float(np.sqrt(np.sum((weights * (values - mean)) ** 2) * k / (k - 1)))
-    return BlockMean(mean, error, k, tuple(values.tolist()))
+    return BlockMean(mean, error, k, parts)
