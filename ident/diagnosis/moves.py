@@ -275,8 +275,8 @@ class Moves:
     def most_probable(self, selection: Selection) -> Selection | None:
         """Exchange one effect for a more probable one, of the sets of effects that the search refitted.
 
-        No name is less probable than another in its place that a user reads of. An effect of the same group stays: a
-        user reads of both under one probability.
+        No name is less probable than another in its place that a user reads of, and that is worth adding. An effect of
+        the same group stays: a user reads of both under one probability.
         """
         alike = {name: [one.effect for one in group] for name, group in selection.alternatives.items()}
         best = self.refitted_sets.most_probable(selection.fitted, alike)
@@ -287,8 +287,11 @@ class Moves:
         groups = {other: group for other, group in selection.alternatives.items() if other in others}
         if ranking := self._in_place.get(frozenset(others)):
             groups[name] = indistinguishable_group(name, best, ranking)
-        selection = self.step(replace(selection, alternatives=groups, changes=selection.changes + 1), best)
-        selection, _ = self._backward(selection, name)
+        changed = replace(selection, alternatives=groups, changes=selection.changes + 1)
+        less = self._less(replace(changed, path=(*selection.path, best)), name) if others else selection.base
+        if not worth_adding(self.models, less, best):
+            return None
+        selection, _ = self._backward(self.step(changed, best), name)
         groups = {other: group for other, group in groups.items() if other in selection.added}
         return self.keep(replace(selection, alternatives=groups))
 

@@ -321,6 +321,8 @@ def test_the_most_probable_of_two_effects_that_leave_nearly_as_much_is_named(mon
     assert found.added == ("b",)
     assert found.complete
     assert "b" in {one.effect for one in found.alternatives["b"]}
+    judged.needed, judged.scores["b"] = {"a"}, 0.5
+    assert selected(judged).added == ("a",)
 
 
 def test_a_group_holds_what_cannot_be_told_from_the_best_or_from_the_named_effect(monkeypatch):
