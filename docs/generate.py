@@ -286,7 +286,7 @@ def why_this_verdict() -> list[str]:
         f"{deviations:g} of its standard errors, from the stable rung before to its own (`ladder[].error.verify`;",
         "where the mean counts, `ladder[].error_with_mean.verify`, over windows also the free run), or the model is",
         "unstable there (`ladder[].unstable`). The number of standard errors is said in `text`. It would be *found* if",
-        "no error rose so, and no reason of a stand-in held: see `unexplained`, `noise_test`, `at_bound` and `stood_in`.",
+        "no error rose so, and no reason of a stand-in held: see `unexplained`, `noise_test`, `at_bound`, `stood_in`.",
         "",
         "**Why one group?** `alternatives` has a row for each other effect of a group in the place of the named one.",
         "All four numbers of its `separation` are within their limits:",
