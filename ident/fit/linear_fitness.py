@@ -19,7 +19,7 @@ from ident.chain.conditions import conditions, zeros
 from ident.fit.criteria import FIT_CRITERIA
 from ident.fit.fitness import STEP, Local, Steps, local
 from ident.fit.levenberg_marquardt import Way, levenberg_marquardt
-from ident.fit.modes import FOLLOWED, aliased, extreme, fastest
+from ident.fit.modes import FOLLOWED, extreme, fastest
 from ident.fit.normal_matrices import NormalMatrices, errors_of, escaped, normal_matrices
 from ident.fit.reduction import Basis, ReducedRun, reduced
 from ident.fit.space import Space
@@ -94,7 +94,7 @@ class LinearFitness:
         return errors
 
     def _followed(self, points: Array) -> NDArray[np.bool_]:
-        """Which vectors have modes that a simulation can follow, none of them aliased, (v,).
+        """Which vectors a simulation can follow, (v,).
 
         What a mode far faster than the samples does shows in no record, and could not be compared with one.
         """
@@ -102,7 +102,7 @@ class LinearFitness:
             return np.ones(len(points), dtype=bool)
         values = self.space.values(points)
         modes = fastest(self.preset.chain, self._extreme, self.matrix.actuator, values)
-        found: NDArray[np.bool_] = (np.abs(modes) < FOLLOWED) & ~aliased(modes)
+        found: NDArray[np.bool_] = np.abs(modes) < FOLLOWED
         return found
 
     @cached_property

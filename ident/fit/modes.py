@@ -23,6 +23,7 @@ def aliased(modes: Modes) -> NDArray[np.bool_]:
     """Which modes samples show as slower ones; eigenvalues in radians a sample, (v,) → (v,).
 
     A mode that swings more than half a turn a sample and rings on shows as a slow swing, its alias (Shannon's theorem).
+    A linear fit within the band of the command sees none of it; a simulation, sample by sample, does.
     """
     return (np.abs(modes.imag) > np.pi) & (-modes.real < FIT_CRITERIA.ranges.aliased)
 
