@@ -42,7 +42,6 @@ def _unsaid(_done: int, _total: int) -> None:
     """Report nothing."""
 
 
-_OF = BENCH_CRITERIA
 _SHARES = FIT_CRITERIA.search.strengths
 
 
@@ -203,7 +202,7 @@ def _bounded(products: Array) -> Array:
 
 def finely(records: Sequence[Record]) -> tuple[Observed, ...]:
     """The records in steps so fine that a mean over samples is not taken for a lag."""
-    return observe(records, rate=_OF.comparison.fine_rate)
+    return observe(records, rate=BENCH_CRITERIA.comparison.fine_rate)
 
 
 def with_effect(model: Model, effect: Effect, observed: tuple[Observed, ...], names: tuple[str, ...]) -> Model:

@@ -80,12 +80,13 @@ class Residual:
 
     def values(self, points: Array) -> dict[str, Array]:
         """The values at points: (v, p) → name: (v,)."""
-        reach = self.reach
-        return {
-            name: place * reach[name] if name in reach else self._first[name] * np.exp(logarithm)
-            for name, place in zip(self.names, points.T, strict=True)
-            for logarithm in (np.clip(place, -_OF.farthest, _OF.farthest),)
-        }
+
+        def value(name: str, place: Array) -> Array:
+            if name in self.reach:
+                return place * self.reach[name]
+            return self._first[name] * np.exp(np.clip(place, -_OF.farthest, _OF.farthest))
+
+        return {name: value(name, place) for name, place in zip(self.names, points.T, strict=True)}
 
     def at(self, point: Array) -> Model:
         """The model at a point."""
