@@ -261,9 +261,17 @@ def _begun_late(command: _Input, held: Array) -> Array:
 
 def side_by_side(parts: Sequence[Simulation]) -> Simulation:
     """Simulations of the same runs, with as many steps, as one: lanes that one vector would leave empty are filled."""
-    names, begun = parts[0].values, [part.start for part in parts if part.start is not None]
-    wide = {name: np.hstack([np.broadcast_to(part.values[name], part.shape) for part in parts]) for name in names}
-    return replace(parts[0], values=wide, start=np.concatenate(begun, axis=1) if begun else None)
+    first, *others = parts
+    if not others:
+        return first
+    ends = np.cumsum([part.shape[1] for part in parts])
+    wide = np.empty((len(first.values), first.shape[0], ends[-1]))
+    for part, end in zip(parts, ends.tolist(), strict=True):
+        for row, name in zip(wide, first.values, strict=True):
+            row[:, end - part.shape[1] : end] = part.values[name]
+    begun = [part.start for part in parts if part.start is not None]
+    values = dict(zip(first.values, wide, strict=True))
+    return replace(first, values=values, start=np.concatenate(begun, axis=1) if begun else None)
 
 
 def responses(

@@ -43,7 +43,7 @@ def at(samples: np.ndarray, t: float) -> float:
 
 def solved(rates: Callable[[float, np.ndarray], list[float]], states: int) -> np.ndarray:
     """The states at the samples, (states, n), from rest."""
-    found = scipy.integrate.solve_ivp(rates, (0.0, T[-1]), np.zeros(states), t_eval=T, rtol=1e-8, atol=1e-10,
+    found = scipy.integrate.solve_ivp(rates, (0.0, T[-1]), np.zeros(states), "LSODA", T, rtol=1e-8, atol=1e-10,
                                       max_step=0.5 / RATE)  # fmt: skip
     return np.asarray(found.y)
 
