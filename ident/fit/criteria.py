@@ -247,10 +247,6 @@ class SearchedRange:
     """[of the fastest accurate mode] Up to which a mode is followed at all. Why: from 2.7 of it on a Runge-Kutta step
     goes astray.
     Test: test_criteria_of_optima.py::test_a_mode_is_followed_up_to_two_and_a_half_times_the_accurate_ones"""
-    aliased: float = 0.3
-    """[time constants a sample] From which on a mode may swing faster than half the sample rate. Why: a twentieth of it
-    is left after ten samples; one that rings on longer shows as a slow swing, and any slow swing would be taken for it.
-    Test: test_criteria_of_optima.py::test_a_mode_above_half_the_sample_rate_is_over_after_ten_samples"""
 
 
 @dataclass(frozen=True)

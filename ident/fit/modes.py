@@ -19,15 +19,6 @@ FOLLOWED = FIT_CRITERIA.ranges.followed * MOST
 """Radians a sample of the fastest mode that a simulation follows at all."""
 
 
-def aliased(modes: Modes) -> NDArray[np.bool_]:
-    """Which modes samples show as slower ones; eigenvalues in radians a sample, (v,) → (v,).
-
-    A mode that swings more than half a turn a sample and rings on shows as a slow swing, its alias (Shannon's theorem).
-    A linear fit within the band of the command sees none of it; a simulation, sample by sample, does.
-    """
-    return (np.abs(modes.imag) > np.pi) & (-modes.real < FIT_CRITERIA.ranges.aliased)
-
-
 def extreme(runs: Iterable[Run]) -> tuple[Run, ...]:
     """For each specimen the run of largest gain: the others are no faster."""
     chosen: dict[object, Run] = {}

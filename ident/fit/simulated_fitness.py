@@ -14,8 +14,7 @@ from ident.effects.effect import Effect
 from ident.fit.criteria import FIT_CRITERIA
 from ident.fit.fitness import STEP, Local, Steps, Worth, local
 from ident.fit.levenberg_marquardt import Way, levenberg_marquardt
-from ident.fit.modes import aliased
-from ident.fit.normal_matrices import NormalMatrices, escaped
+from ident.fit.normal_matrices import NormalMatrices
 from ident.fit.recent_moments import RecentMoments
 from ident.fit.side_by_side import outputs_at_each
 from ident.fit.simulated_runs import SimulatedRuns
@@ -59,15 +58,8 @@ class SimulatedFitness(SimulatedRuns):
             of_level = np.flatnonzero(steps == level)
             part = {name: value[of_level] for name, value in values.items()}
             errors[of_level] = self._errors(part, len(of_level), int(level))
-        errors[self._aliased(values)] = UNSTABLE
         self.unstable += int(np.sum(errors >= UNSTABLE))
         return errors
-
-    def _aliased(self, values: Mapping[str, Array]) -> NDArray[np.bool_]:
-        """Which vectors have an aliased mode, (v,); none where the user says where to look."""
-        if not self.space.followed:
-            return np.zeros(len(next(iter(values.values()))), dtype=bool)
-        return aliased(self.fastest(values))
 
     def _errors(self, values: Mapping[str, Array], vectors: int, steps: int) -> Array:
         def of_runs(runs: tuple[Run, ...]) -> Array:
@@ -109,10 +101,10 @@ class SimulatedFitness(SimulatedRuns):
             self._follow(run, self.start(run), found.release)
 
     def exact(self, point: Array, sensitivities: bool = True, worth: Worth = lambda _promised: True) -> Local:
-        """The objective at one point, with sensitivities by differences.
+        """The objective at one point, with sensitivities by differences; infinite where a run is unstable.
 
-        Infinite where a run is unstable or a mode is aliased. Where better first states promise much they are followed,
-        if what they promise is `worth` it: a search that does not ask spends most of its time on steps that fail.
+        Where better first states promise much they are followed, if what they promise is `worth` it: a search that
+        does not ask spends most of its time on steps that fail.
         """
         p = len(point) if sensitivities else 0
         strides = np.where(point + self._strides > 1.0, -self._strides, self._strides)[:p]  # inwards at a bound
@@ -120,8 +112,6 @@ class SimulatedFitness(SimulatedRuns):
         cloud = np.concatenate([point[None], moved])
         values = self.space.values(cloud)
         self.evaluations += len(cloud)
-        if self._aliased({name: value[:1] for name, value in values.items()})[0]:
-            return local([escaped(p)] * len(self.runs))
         self.begin({name: float(value[0]) for name, value in values.items()})
         with_means = self.horizon is None and len({run.output for run in self.runs}) == 1
         with np.errstate(over="ignore", invalid="ignore"):

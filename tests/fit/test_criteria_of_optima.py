@@ -10,7 +10,7 @@ import pytest
 
 from ident.fit.ends import End, agreeing, at_bound, rivals, valley
 from ident.fit.far_bounds import far_from
-from ident.fit.modes import FOLLOWED, aliased
+from ident.fit.modes import FOLLOWED
 from ident.fit.multistart import _all_ends, bad_runs, multistart
 from ident.fit.settings import Settings
 from ident.fit.space import Axis, Space, search_space
@@ -136,11 +136,3 @@ def test_a_mode_is_followed_up_to_two_and_a_half_times_the_accurate_ones():
     grows = np.abs(1.0 + z + z**2 / 2.0 + z**3 / 6.0 + z**4 / 24.0)
     assert grows[0] < 0.8
     assert grows[1] > 1.0
-
-
-def test_a_mode_above_half_the_sample_rate_is_over_after_ten_samples():
-    """Of one that may be there a fifteenth is left then; what rings on shows as slowly as its alias."""
-    modes = np.array([-0.25, -0.35]) + 1j * (2 * np.pi - 0.1)
-    assert list(aliased(modes)) == [True, False]
-    assert np.exp(modes * 10)[1].real < 1 / 15
-    assert not aliased(modes - 1j * np.pi).any()

@@ -6,14 +6,13 @@ import numpy as np
 import pytest
 
 from ident.fit.identification import Identification
-from ident.fit.modes import FOLLOWED, aliased, extreme, fastest
+from ident.fit.modes import FOLLOWED, extreme, fastest
 from ident.fit.settings import Settings
 from ident.matrix import Actuator
 from ident.presets import preset
 from ident.run import Run, Specimen
 from ident.workflows import diagnose, identify
 from tests.blind.any_machine import Lab
-from tests.fit.test_double_integrator import pushed
 
 
 @pytest.mark.full
@@ -40,18 +39,6 @@ def test_a_mode_that_nothing_follows_is_looked_for_only_where_the_user_says_so()
     assert not np.isfinite(free.approximate(points[lost][0]).error)
     held = Identification(matrix, Settings(model="qian2014", fixed={"tau": 1e-9})).objective
     assert not held.space.followed
-
-
-def test_a_slow_swing_is_not_taken_for_a_fast_one_that_the_samples_show_as_slowly():
-    """Oil that rings on at 126 rad/s would swing at 0.3 rad/s in samples of 20 Hz: no cylinder is searched with it."""
-    matrix = pushed(0)
-    free = Identification(matrix, Settings(model="open_valve")).objective
-    points = np.random.default_rng(1).uniform(size=(400, len(free.space.axes)))
-    hidden = aliased(fastest(free.preset.chain, extreme(free.runs), matrix.actuator, free.space.values(points)))
-    assert 0 < hidden.sum() < len(points)
-    assert np.all(free.errors(points[hidden]) >= 1e3)
-    assert not np.isfinite(free.exact(points[hidden][0]).error)
-    assert np.isfinite(free.exact(points[~hidden][0]).error)
 
 
 def test_modes_of_runs_are_those_of_the_fastest_of_them_by_its_own_sample_rate():
