@@ -252,7 +252,7 @@ static inline void servoident_advance(const servoident_model *m, servoident_stat
     far = moved > 0.25 * least;
     if (!quiet && (kinked || (far && !(abs(k0) == 2 && k0 == ke && km == k0)))) way = 3;
     else if (reversal || ((cm != s->contact || ce != s->contact) && !(quiet && !cm && !ce)))
-        way = quiet || moved < 1e-3 ? 2 : 3;
+        way = 2;
     else if (quiet) way = 0;
     else simpson = k0 == ke && abs(k0) == 2;
     s->contact = ce;

@@ -5,7 +5,7 @@ from __future__ import annotations
 from difflib import SequenceMatcher
 
 import pytest
-from hypothesis import given
+from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from app.cli.arguments import bounds, method_options, values
@@ -31,6 +31,7 @@ def described(area: str = "497 mm^2", mass: str = "1 kg", gain: str = "7"):
     return describe(MATRIX.format(area=area, mass=mass, gain=gain).encode(), LIMITS)
 
 
+@settings(suppress_health_check=[HealthCheck.too_slow])  # its first draw reads all modules for constants: a second
 @given(
     st.integers(0, 10**6), st.integers(0, 10**7), st.sampled_from(["", "e-3", "E4"]), st.sampled_from(["", "-", "+"])
 )

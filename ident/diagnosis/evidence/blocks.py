@@ -28,7 +28,8 @@ Array = NDArray[np.float64]
 class BlockMean:
     """A mean, its standard error, and the number of blocks. The error of one block is infinite.
 
-    `parts` are what each block adds to the mean, which is their sum, for a rule that asks each block; a ratio has none.
+    `parts` are the contributions of the blocks, which sum to the mean, for a rule that asks each block; a ratio has
+    none.
     """
 
     mean: float

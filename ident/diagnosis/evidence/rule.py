@@ -127,7 +127,7 @@ def is_real(evidence: Evidence, bar: Callable[[], float], criteria: EvidenceCrit
 
 
 _BY_CHANCE = Question(lambda *_: False, lambda _: message("why.chance"), shows=True)
-"""What an effect is refused by that passes all others: the sentences do not know the bar."""
+"""The reason for an effect that passes all others: the sentences do not know the bar."""
 
 
 def improves_on_the_whole(
