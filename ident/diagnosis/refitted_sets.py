@@ -48,16 +48,19 @@ class RefittedSets:
 
         Two models may be apart by more than the noise, and neither be better beyond chance. The gains of all sets under
         one disturbance decide then, as they decide the probabilities that a user is shown. An effect that is hardly
-        probable is no alternative, nor is one of the `groups` of indistinguishable effects, by the added effect.
+        probable is no alternative, nor is one of the `groups` of indistinguishable effects, by the added effect. The
+        other has to be more probable than each of the group.
         """
         sets, here = self.gains(), self._added(fitted)
-        least = sets.gains.get(here, np.inf) * (1.0 + CRITERIA.equality.tie)
         probable = {name for name, p in probabilities(sets).effects.items() if p >= CRITERIA.evidence.chance}
         found: dict[Effects, float] = {}
         for of, nats in sets.gains.items():
             new, gone = of - here, here - of
+            if here not in sets.gains or not len(new) == len(gone) == 1 or not new <= probable:
+                continue
             alike = {name for old in gone for name in groups.get(old, ())}
-            if len(new) == len(gone) == 1 and nats > least and new <= probable - alike:
+            gained = [sets.gains[here], *(sets.gains.get((here - gone) | {name}, 0.0) for name in alike)]
+            if not new <= alike and nats > max(gained) * (1.0 + CRITERIA.equality.tie):
                 found[of] = nats
         sound = [of for of in found if runs_freely(fitted, self.best[of])]
         return self.best[max(sound, key=found.__getitem__)] if sound else None

@@ -58,14 +58,21 @@ def test_the_most_probable_set_has_the_largest_gain_of_those_with_one_effect_exc
     assert sets.most_probable(pair, {}) is nearer
 
 
+def test_an_effect_has_to_be_more_probable_than_each_of_the_group_of_the_named_one():
+    sets, named = RefittedSets(refit(left=0.1)), refit("a", left=0.02)
+    sets.met([named, refit("b", left=0.01), refit("c", left=0.009)])
+    assert sets.most_probable(named, {"a": ["a", "c"]}) is None
+    sets.met([other := refit("b", left=0.005)])
+    assert sets.most_probable(named, {"a": ["a", "c"]}) is other
+
+
 def test_an_effect_that_is_hardly_probable_takes_the_place_of_none():
-    """A further effect leaves far less than both: neither of the two is probable beside it."""
+    """Two others together leave nothing: neither of the single effects is probable beside them."""
     sets, named = RefittedSets(refit(left=0.1)), refit("a", left=0.09)
     sets.met([named, refit("b", left=0.08)])
     assert sets.most_probable(named, {}) is not None
-    sets.met([refit("c", left=0.0), refit("d", left=0.0)])
-    assert sets.most_probable(named, {}).effects in (("c",), ("d",))
-    assert sets.most_probable(named, {"a": ["c", "d"]}) is None
+    sets.met([refit("c", "d", left=0.0)])
+    assert sets.most_probable(named, {}) is None
 
 
 def test_a_set_that_runs_away_is_not_the_most_probable(monkeypatch):
