@@ -18,5 +18,6 @@ PROGRESSIVE_DRIVE = Effect(
         "thrust in proportion to the square of the speed of a propeller, force to that of the current of a magnet, "
         "flow of an orifice that widens as it opens (Merritt 1967, section 5-2)"
     ),
+    unless="Kp",  # the error of a loop takes both signs, whatever the side of its command
     needs=one_sided_command,
 )
