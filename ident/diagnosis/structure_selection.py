@@ -97,8 +97,8 @@ def _compared(
         return (Structure(only.name, {"held_out": None}, len(only.parameters), str(why)),), None
     fitted = _all_fitted(models, matrix, report, preprocessing)
     over, tried = _judged(list(fitted.values()))
-    if not fitted[min(tried, key=lambda judged: judged.error).machine].integrates:
-        springs = on_a_spring(models, matrix.runs, matrix.actuator.states_oil)
+    springs = on_a_spring(models, matrix.runs, matrix.actuator.states_oil)
+    if springs and not fitted[min(tried, key=lambda judged: judged.error).machine].integrates:
         fitted |= _all_fitted(springs, matrix, report, preprocessing)
         over, tried = _judged(list(fitted.values()))
     least = min(one.error for one in tried)
