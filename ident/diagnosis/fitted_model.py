@@ -114,18 +114,23 @@ class FittedModel:
         return adds_up(own, run.length / window, anchoring.memory > 0) + of_parameters
 
     def _left_of(self, points: Sequence[Array], numbers: Sequence[int]) -> Iterator[list[Array]]:
-        """The residuals of the model at each point on some runs, means included."""
+        """The residuals of the model at each point on some runs, means included; over windows as these show them.
+
+        The free runs at two points drift apart: windows may not begin in the one and end in the other.
+        """
         runs = tuple(self.fitness.runs[number] for number in numbers)
         for outputs in self.fitness.part(runs).outputs_of_points(points):
-            yield [run.measured - outputs[run.id] for run in runs]
+            yield [self.fitness.shown(run, run.measured - outputs[run.id]) for run in runs]
 
     def _seen(self, number: int, residual: Array) -> Array:
-        """The residual of a run in the loss: less its mean or the offset of its transducer, or over windows."""
-        run = self.fitness.runs[number]
+        """The residual of a run in the loss: less its mean or the offset of its transducer, or as its windows show
+        it."""
+        if self.fitness.horizon is not None:
+            return residual
         if self.local.runs[number].counted:
-            return residual - offset_at(run, self._offsets)
+            return residual - offset_at(self.fitness.runs[number], self._offsets)
         with np.errstate(over="ignore", invalid="ignore"):
-            return self.fitness.left(run, run.measured - residual)
+            return residual - residual.mean()
 
     def _residuals(self, whole: Sequence[Array]) -> OutOfFold:
         """The residuals in eq. (17), and their means."""

@@ -177,6 +177,26 @@ def test_the_error_over_windows_is_counted_from_where_each_was_measured():
     assert np.sqrt(np.mean(parts**2)) / run.measured.std() == pytest.approx(refit.error, rel=1e-6)
 
 
+@pytest.mark.parametrize("seed", [1, 2])
+def test_no_window_begins_in_the_free_run_of_one_fold_and_ends_in_that_of_another(seed):
+    """A cart between two limits, its speed begun anew: three parameters of 2,000 samples foretell other data as well.
+
+    The free runs of two folds are metres apart in the end; windows and speeds between them saw a jump that none has.
+    """
+    random, rate, x, v, push = np.random.default_rng(seed), 100.0, np.zeros(2000), 0.0, 1.0
+    u = np.zeros(len(x))
+    for k in range(len(x) - 1):
+        push = -push if push * x[k] > 0.1 else push
+        u[k] = push
+        x[k + 1] = x[k] + v / rate + 0.25 * u[k] / rate**2
+        v += 0.5 * (u[k] - v) / rate + 3e-3 * random.standard_normal()
+    x += 2e-4 * random.standard_normal(len(x))
+    channels, units = {"command": u, "displacement": x}, {"command": "V", "displacement": "m"}
+    matrix = Matrix(Actuator("CART"), (Run("r", "", rate, channels, units, hold="zoh"),))
+    refit = CandidateModels.of(matrix, MOTOR, (), 0.3, 0.05).refit((), {"m0": 1.0, "c0": 0.5, "Kt": 0.5})
+    assert refit.held_out.error < 1.05 * refit.error
+
+
 @pytest.mark.full
 @pytest.mark.usefixtures("few_effects")
 def test_a_dead_zone_is_found_below_the_disturbances():
