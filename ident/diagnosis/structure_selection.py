@@ -169,13 +169,12 @@ def _preferred(
 
     Where the first is improbable among them, the simplest of the most probable models comes before it. Where a
     parameter of the first is at its bound, a model with a smaller error and no parameter at a bound comes before it. So
-    does a simpler model whose error is not larger beyond chance, unless that model alone is unusual. It is no simpler
-    where an effect of the first takes the place of what it lacks.
+    does a simpler model whose error is not larger beyond chance, unless that model alone is unusual; of models that are
+    as simple, one that is about as probable as any of them. It is no simpler where an effect of the first takes the
+    place of what it lacks.
     """
     if probable.get(first.machine, 1.0) < CRITERIA.structure.improbable:
-        most = max(probable.values())
-        as_probable = (model for model in others if probable.get(model.machine, 0.0) > 0.5 * most)
-        return min(as_probable, key=lambda model: model.parameters), message("structure.more_probable")
+        return min(_as_probable(others, probable), key=_parameters), message("structure.more_probable")
     within = [one for one in others if one.error < first.error and not one.at_bound]
     if first.at_bound and within:
         return _simplest(within), message("structure.within")
@@ -188,8 +187,20 @@ def _preferred(
         and not better(one.best, first.best)
     ]
     if first.with_effect is not None and simpler:
-        return min(simpler, key=lambda one: one.parameters), message("structure.simpler")
+        fewest = min(map(_parameters, simpler))
+        simplest = [one for one in simpler if one.parameters == fewest]
+        return _as_probable(simplest, probable)[0], message("structure.simpler")
     return first, message("structure.simplest")
+
+
+def _as_probable(models: Collection[_JudgedStructure], probable: Mapping[str, float]) -> list[_JudgedStructure]:
+    """Those of the models that are at least half as probable as the most probable one."""
+    most = max(probable.get(model.machine, 0.0) for model in models)
+    return [model for model in models if probable.get(model.machine, 0.0) >= 0.5 * most]
+
+
+def _parameters(model: _JudgedStructure) -> int:
+    return model.parameters
 
 
 def _simplest(models: Collection[_JudgedStructure]) -> _JudgedStructure:

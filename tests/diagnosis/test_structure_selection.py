@@ -293,6 +293,27 @@ def test_an_improbable_machine_gives_way_to_the_most_probable(probabilities, tak
     assert _preferred(first, [first, lag, motor], set(), probable)[0].machine == taken
 
 
+@pytest.mark.parametrize(("probabilities", "taken"), [((0.3, 0.3, 0.4), "first_order"), ((0.3, 0.1, 0.6), "motor")])
+def test_of_models_that_are_as_simple_a_much_more_probable_one_is_taken(probabilities, taken):
+    """A motor and a lag leave as little as a mass on a spring, each with an effect: the more probable one is no worse
+    for its place in the list."""
+    noise = 0.03 * np.random.default_rng(6).standard_normal(3000)
+    residuals = Residuals((noise,), EnergyBands((Record(1.0, floor=0.0009),), (3000,)))
+    best = SimpleNamespace(
+        held_out=SimpleNamespace(error=0.03), residuals_held_out=residuals, fitness=SimpleNamespace(horizon=None)
+    )
+
+    def model(machine: str, parameters: int) -> SimpleNamespace:
+        return SimpleNamespace(
+            machine=machine, parameters=parameters, irreplaceable=parameters, error=0.03, best=best, with_effect=best,
+            at_bound=False,
+        )  # fmt: skip
+
+    models = first, *_ = model("drive", 3), model("first_order", 2), model("motor", 2)
+    probable = dict(zip(("drive", "first_order", "motor"), probabilities, strict=True))
+    assert _preferred(first, models, set(), probable)[0].machine == taken
+
+
 @pytest.mark.parametrize(("alone", "left", "named"), [(0.61, 0.005, True), (0.61, 0.2, False), (0.7, 0.005, False)])
 def test_a_machine_with_more_parameters_has_to_explain_most_with_its_effect(alone, left, named):
     """Two tanks that run over are fitted no better than one lag; with the overflow they leave a hundredth of it."""
