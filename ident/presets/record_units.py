@@ -9,10 +9,9 @@ from dataclasses import dataclass, field
 from ident.run import MOTIONS, Run
 from ident.units.grammar import Powers, powers_of
 
-_ANGLES = {"m": "rad", "N": "N*m", "kg": "kg*m^2"}
+_ANGLES: Mapping[str, Powers] = {"m": {"rad": 1.0}, "N": {"N": 1.0, "m": 1.0}, "kg": {"kg": 1.0, "m": 2.0}}
+_UNKNOWN_TORQUE: Mapping[str, Powers] = {**_ANGLES, "N": {}, "kg": {"s": 2.0, "rad": -1.0}}
 _TURNING = ("rad", "rad/s", "N*m")
-_OF_OIL = re.compile(r"\bPa\b|\bm\^[2-9]")
-"""A pressure, an area or a volume: these stay where a machine turns, and with them what they are multiplied by."""
 _ORDER = ("kg", "N", "Pa", "V", "A")  # the names that stand first in a unit
 SAMPLE = "sample"
 
@@ -58,17 +57,18 @@ class RecordUnits:
         """A unit of the chain as it is shown; with a `drive` a metre is one of the drive signal, in that unit."""
         if self.pressed:
             unit = written(_without(powers_of(unit) or {}, {"N": {"Pa": 1.0}}))
-        names = dict(_ANGLES) if self.turning and (self.pressed or not _OF_OIL.search(unit)) else {}
+        powers = powers_of(unit) or {}
+        turning = self.turning and (self.pressed or not _is_of_oil(powers))
+        names = dict(_UNKNOWN_TORQUE if "N" in self.unknown else _ANGLES) if turning else {}
         if drive is not None:
-            names["m"] = drive
-        unit = re.sub(r"\b(kg|N|m)\b", lambda found: names.get(found[0], found[0]), unit)
+            names["m"] = powers_of(drive) or {}
+        if names.keys() & powers.keys():
+            unit = written(_replaced(powers, names))
         unknown = self.unknown if drive is None else {name: of for name, of in self.unknown.items() if name != "m"}
         if self.pressed:
             unit = written(_without(powers_of(unit) or {}, {}))  # Pa/Pa is 1
         if unknown and (powers := powers_of(unit)) is not None and {*powers} & {*unknown, "kg"}:
             unit = written(_without(powers, unknown))
-        elif drive == "1":
-            unit = written(powers_of(unit) or {})
         return unit if self.clock == "s" else re.sub(r"\bs\b", self.clock, unit)
 
     @property
@@ -80,6 +80,22 @@ class RecordUnits:
         return written({name: power for name, power in over.items() if power})
 
 
+def _is_of_oil(powers: Powers) -> bool:
+    """Whether a unit is one of a pressure, an area or a volume, or of one over a flow: these stay where a machine
+    turns, and with them what they are multiplied by."""
+    over_a_flow = powers.get("m", 0.0) <= -3.0 and "N" not in powers
+    return "Pa" in powers or powers.get("m", 0.0) >= 2.0 or over_a_flow
+
+
+def _replaced(powers: Powers, names: Mapping[str, Powers]) -> Powers:
+    """A unit with others in the places of some."""
+    found: Powers = {}
+    for name, power in powers.items():
+        for other, of in names.get(name, {name: 1.0}).items():
+            found[other] = found.get(other, 0.0) + power * of
+    return {name: power for name, power in found.items() if power}
+
+
 def _without(powers: Powers, unknown: Mapping[str, Powers]) -> Powers:
     """A unit with what takes the place of the unknown ones; a mass is a force over an acceleration, N·s²/m."""
     if "kg" in powers:
@@ -87,11 +103,7 @@ def _without(powers: Powers, unknown: Mapping[str, Powers]) -> Powers:
         powers = {name: power for name, power in powers.items() if name != "kg"}
         for name, power in (("N", 1.0), ("s", 2.0), ("m", -1.0)):
             powers[name] = powers.get(name, 0.0) + mass * power
-    found: Powers = {}
-    for name, power in powers.items():
-        for other, of in (unknown.get(name, {name: 1.0})).items():
-            found[other] = found.get(other, 0.0) + power * of
-    return {name: power for name, power in found.items() if power}
+    return _replaced(powers, unknown)
 
 
 def written(powers: Powers) -> str:

@@ -12,6 +12,7 @@ from ident.errors import Unusable
 from ident.matrix import Matrix
 from ident.presets import preset
 from ident.presets.angles import in_si
+from ident.presets.record_units import RecordUnits
 from ident.units.grammar import powers_of
 from tests.fit.test_windows import cylinder
 from tests.presets.test_machines import motor
@@ -54,6 +55,25 @@ def test_where_oil_turns_it_the_load_turns_and_the_oil_stays_a_volume():
     found = units(along(cylinder(2, wander=0.0), "rad"), "open_valve")
     assert (found["c0"], found["m0"], found["coulomb_friction.force"]) == ("N*m*s/rad", "kg*m^2", "N*m")
     assert (found["Ka"], found["Cl"], found["Z0"]) == ("m^3/Pa", "m^3/(s*Pa)", "m^4/s")
+
+
+@pytest.mark.parametrize(
+    ("along_a_way", "of_what_turns"),
+    [("N*s^2/m^2", "N*m*s^2/rad^2"), ("N/m^3", "N*m/rad^3"), ("N/m^2", "N*m/rad^2"), ("1/m^2", "1/rad^2"),
+     ("m/N", "rad/(N*m)"), ("m^2", "m^2"), ("m^3/(s*Pa)", "m^3/(s*Pa)"), ("s/m^3", "s/m^3"), ("m/Pa", "m/Pa")],
+)  # fmt: skip
+def test_a_power_of_a_motion_is_one_of_the_angle_and_an_area_stays_one(along_a_way, of_what_turns):
+    """A drag with the square of the speed is a torque over the square of its speed of rotation."""
+    assert RecordUnits(turning=True).shown(along_a_way) == of_what_turns
+    assert RecordUnits().shown(along_a_way) == along_a_way
+    assert in_si(f"3 {of_what_turns}", along_a_way, "strength") == 3.0
+
+
+def test_a_torque_of_unknown_unit_leaves_seconds_and_radians():
+    """And a width of a command in m/s is one in m/s, its inverse one in s/m."""
+    unknown = RecordUnits(turning=True, unknown={"N": {}})
+    assert [unknown.shown(unit) for unit in ("N", "N*s/m", "kg", "N/m^3")] == ["1", "s/rad", "s^2/rad", "1/rad^3"]
+    assert [RecordUnits().shown(unit, "m/s") for unit in ("m", "1/m")] == ["m/s", "s/m"]
 
 
 def test_a_setting_may_have_the_unit_that_is_shown():
