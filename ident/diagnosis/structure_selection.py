@@ -33,6 +33,7 @@ from ident.fit.result import FitResult, Structure, Window
 from ident.fit.search import State
 from ident.fit.settings import Settings
 from ident.fit.summary import noticed
+from ident.fit.windows import likelihood
 from ident.matrix import Matrix
 from ident.preprocessing import off_steps, screen
 from ident.preprocessing.pipeline import ALL_ON
@@ -213,24 +214,36 @@ def _simplest(models: Collection[_JudgedStructure]) -> _JudgedStructure:
 
 
 def _judged(fitted: Sequence[_FittedStructure]) -> tuple[float | None, list[_JudgedStructure]]:
-    """All models judged by one error, and its horizon in s: the longest windows over which one of them is fitted.
+    """All models judged by one error, and its horizon in s: over the windows by which one of them makes the records
+    most likely.
 
     The state that a machine has integrated before a window has no information on its structure. But where no model
     that integrates is among the best over windows, or the least error over whole runs is smaller than the least error
     over windows, nothing was integrated: then whole runs count.
     """
-    windows = [one.fit.window for one in fitted if one.fit.window]
-    longest = max(windows, key=lambda window: window.horizon, default=None)
-    tried = [one.judged(longest) for one in fitted]
-    if longest is None:
+    in_windows = [one for one in fitted if one.fit.window]
+    likeliest = _likeliest_windows(in_windows)
+    tried = [one.judged(likeliest) for one in fitted]
+    if likeliest is None:
         return None, tried
-    if len(windows) < len(fitted):
+    if len(in_windows) < len(fitted):
         whole = [one.judged(None) for one in fitted]
         least = min(one.error for one in tried)
         integrating = min(judged.error for model, judged in zip(fitted, tried, strict=True) if model.fit.window)
         if integrating > CRITERIA.equality.practically_equal * least or min(one.error for one in whole) < least:
             return None, whole
-    return longest.horizon, tried
+    return likeliest.horizon, tried
+
+
+def _likeliest_windows(fitted: Sequence[_FittedStructure]) -> Window | None:
+    """The windows of the model that makes the records most likely over its own, None where none is fitted over windows.
+
+    The longest ones would judge a machine that integrates twice by a speed that others begin anew, or do not have.
+    """
+    windows = [one.fit.window for one in fitted if one.fit.window]
+    if len({(window.horizon, window.memory) for window in windows}) < 2:
+        return windows[0] if windows else None
+    return max(zip(fitted, windows, strict=True), key=lambda one: one[0].judged(one[1]).log_likelihood)[1]
 
 
 def _all_fitted(
@@ -341,6 +354,7 @@ class _FittedStructure:
         self.fit, self.parameters = completed(work), len(work.objective.space.axes)
         self.integrates = integrates(model.chain, matrix.of_use("fit"), matrix.actuator)
         self.settings = replace(self.settings, known_zeros=tuple(self.fit.settings.get("known_zeros", ())))
+        self._judged: dict[tuple[float | None, float | None], _JudgedStructure] = {}
 
     @property
     def level_undetermined(self) -> bool:
@@ -354,9 +368,11 @@ class _FittedStructure:
     def judged(self, window: Window | None) -> _JudgedStructure:
         """The model judged by its error on held-out data, over the window where one is given."""
         over = (window.horizon, window.memory) if window else (None, None)
-        family = CandidateModels.of(self.matrix, self.settings, (), *over)
-        start = {family.preset.parameter(name).in_equations: value for name, value in self.fit.values.items()}
-        return _JudgedStructure(family, self.parameters, self.fit.values, family.refit((), start))
+        if over not in self._judged:
+            family = CandidateModels.of(self.matrix, self.settings, (), *over)
+            start = {family.preset.parameter(name).in_equations: value for name, value in self.fit.values.items()}
+            self._judged[over] = _JudgedStructure(family, self.parameters, self.fit.values, family.refit((), start))
+        return self._judged[over]
 
 
 @dataclass(frozen=True)
@@ -378,6 +394,12 @@ class _JudgedStructure:
     def error(self) -> float:
         """Its error on held-out data; infinite where a simulation diverges."""
         return _held_out(self.best)
+
+    @property
+    def log_likelihood(self) -> float:
+        """How likely it makes the records over its windows, without an effect, in nats up to a constant."""
+        found = likelihood(self.refit.fitness, self.refit.point, self.models.memory)
+        return found if np.isfinite(found) else -np.inf
 
     @property
     def best(self) -> FittedModel:

@@ -104,7 +104,7 @@ def test_windows_count_where_a_machine_that_integrates_is_among_the_best_over_th
     """Windows that begin anew forgive a wrong machine what it has done before: they are for what integrates."""
 
     def fitted(horizon: float | None, windows: float, whole: float) -> SimpleNamespace:
-        window = None if horizon is None else SimpleNamespace(horizon=horizon)
+        window = None if horizon is None else SimpleNamespace(horizon=horizon, memory=None)
         return SimpleNamespace(
             fit=SimpleNamespace(window=window),
             judged=lambda window: SimpleNamespace(error=whole if window is None else windows),
@@ -113,6 +113,20 @@ def test_windows_count_where_a_machine_that_integrates_is_among_the_best_over_th
     horizon, tried = _judged([fitted(None, 0.29, 0.33), fitted(900.0, cylinder, 0.87)])
     assert horizon == over
     assert tried[0].error == (0.33 if over is None else 0.29)
+
+
+@pytest.mark.parametrize(("likely", "over"), [(4472.0, 1.6), (4100.0, 5.3)])
+def test_machines_are_judged_over_the_windows_by_which_one_of_them_makes_the_records_most_likely(likely, over):
+    """Over long windows a ball on a beam, which integrates twice, was judged by a speed that none of them has."""
+
+    def fitted(horizon: float, memory: float | None, of_own: float) -> SimpleNamespace:
+        return SimpleNamespace(
+            fit=SimpleNamespace(window=SimpleNamespace(horizon=horizon, memory=memory)),
+            judged=lambda _window: SimpleNamespace(error=0.2, log_likelihood=of_own),
+        )
+
+    horizon, _ = _judged([fitted(1.6, 0.1, likely), fitted(5.3, None, 4205.0)])
+    assert horizon == over
 
 
 @pytest.mark.usefixtures("few_effects")
