@@ -20,10 +20,7 @@ from ident.diagnosis.verification import VerifyChange, verify_change, with_free_
 
 def evidence(before: FittedModel, after: FittedModel) -> Evidence:
     """The evidence for the second model against the first; for models over windows with their free runs."""
-    found = replace(
-        compare(before.residuals_held_out, after.residuals_held_out),
-        by_fit=lambda: compare(before.residuals_fitted, after.residuals_fitted),
-    )
+    found = compare(before.residuals_held_out, after.residuals_held_out)
     if before.fitness.horizon is None or after.fitness.horizon is None:
         return found
     return replace(found, by_free_run=lambda: (before.free_run, after.free_run))

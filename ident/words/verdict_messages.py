@@ -247,9 +247,6 @@ WHY: Mapping[str, str] = {
     "why.little":
         "The effect explains {share:.2g} ± {error:.2g} % of the error above the noise floor. At least {least:.2g} % "
         "is required, beyond the standard error.",
-    "why.fitted":
-        "On the data that both models were fitted to, it gains {gain:.2g} nats, and at least {least:.2g} are required: "
-        "an effect that explains held-out data alone is not added.",
     "why.span":
         "The error rises on the {span} of the records. An effect that only part of the data support is not added.",
     "why.condition":

@@ -13,7 +13,7 @@ from ident.diagnosis.evidence.comparison import Evidence, Residuals, compare
 from ident.diagnosis.evidence.criteria import EVIDENCE_CRITERIA
 from ident.diagnosis.evidence.disturbance import Disturbance
 from ident.diagnosis.evidence.energy_bands import EnergyBands, Record, _edges, _harmonics
-from ident.diagnosis.evidence.rule import fits_better, improves_on_the_whole, matters
+from ident.diagnosis.evidence.rule import improves_on_the_whole, matters
 from ident.diagnosis.evidence.separation import both_probable, indistinguishable
 
 NOTHING = BlockMean(0.0, 0.0, 20)
@@ -157,8 +157,3 @@ def test_the_correlations_of_a_series_are_summed_over_five_correlation_times(lag
     noise = np.random.default_rng(3).standard_normal(100_000)
     found = correlation_time(noise[lag:] + noise[:-lag])
     assert found == pytest.approx(2.0 if counts else 1.0, abs=0.1)
-
-
-@pytest.mark.parametrize(("gain", "better"), [(0.85, False), (1.15, True)])
-def test_a_gain_of_a_nat_on_fitted_data_is_worth_a_parameter(gain, better):
-    assert fits_better(evidence(by_fit=lambda: evidence(gain=gain))) is better

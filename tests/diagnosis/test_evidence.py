@@ -362,15 +362,6 @@ def test_an_effect_is_added_where_it_improves_and_generalises_alone() -> None:
     assert worth_adding(little, lambda: 0.1 * found.most)
 
 
-def test_what_helps_held_out_data_alone_is_not_added() -> None:
-    """Without it a refit to fewer data went astray; of all the data both models leave about as much."""
-    before, after = periodic(30, 0.3, seed=13)
-    found = compared([before], [after], [Record(1.0, period=87.3)])
-    nearly = compared([before], [0.997 * before], [Record(1.0, period=87.3)])
-    assert worth_adding(replace(found, by_fit=lambda: found))
-    assert not worth_adding(replace(found, by_fit=lambda: nearly))
-
-
 def test_a_gain_below_the_least_adds_nothing_however_low_the_bar() -> None:
     before, after = periodic(30, 0.3, seed=13)
     found = compared([before], [after], [Record(1.0, period=87.3)])

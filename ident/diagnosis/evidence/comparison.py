@@ -63,7 +63,7 @@ class Evidence:
     deviations; `level_difference` and `level_share` are of their squares, a run a block.
 
     `by_free_run` works out the free runs of both models for a machine that is fitted over windows; it is None for
-    others. `by_fit` works out the same evidence on the data that both were fitted to.
+    others.
     """
 
     gain: float
@@ -83,7 +83,6 @@ class Evidence:
     level_difference: BlockMean = NO_DIFFERENCE
     level_share: BlockMean = NO_DIFFERENCE
     by_free_run: Callable[[], tuple[FreeRun, FreeRun]] | None = None
-    by_fit: Callable[[], Evidence] | None = None
 
     @cached_property
     def parts(self) -> Mapping[Hashable, BlockMean]:
@@ -94,11 +93,6 @@ class Evidence:
     def free_runs(self) -> tuple[FreeRun, FreeRun] | None:
         """The free runs without and with the effect, worked out where they decide."""
         return self.by_free_run() if self.by_free_run else None
-
-    @cached_property
-    def fitted(self) -> Evidence | None:
-        """The evidence on the data that both were fitted to, worked out where it decides."""
-        return self.by_fit() if self.by_fit else None
 
     @property
     def explainable(self) -> float:

@@ -99,10 +99,6 @@ class EvidenceCriteria:
     large very strong evidence; the probability of the effect follows from another number (learning_rate).
     Test: test_criteria_of_evidence.py::
     test_a_gain_improves_that_is_worth_a_parameter_and_passes_the_bar_or_half_of_what_can_be_gained"""
-    fitted_gain: float = 1.0
-    """[nats] Gain that it has to make on the data to which both models were fitted. Why: it is the price of a parameter
-    there (Akaike 1974); an effect that gained 49 nats on data held out made 0.3 of them.
-    Test: test_criteria_of_evidence.py::test_a_gain_of_a_nat_on_fitted_data_is_worth_a_parameter"""
     level: float = 3e-4
     """[of the standard deviation] Root mean square of the means of the runs that matters; smaller ones count as that in
     a score. Why: a smaller mean is of no use to anyone.

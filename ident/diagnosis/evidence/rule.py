@@ -11,8 +11,6 @@ that gains most, too: an effect that one run alone asks for is a warning about t
 
 *Does it matter?* The share of the explainable power that the effect takes has to be above a hundredth beyond its error.
 
-*Does it fit better?* It has to gain a nat on the data that both models were fitted to, too.
-
 *Does it hold everywhere?* No condition of the tests, and none of the spans of the records
 (:data:`ident.diagnosis.evidence.comparison.SPANS`), may lose beyond its error and by a hundredth of the explainable
 power.
@@ -65,20 +63,6 @@ def _too_little(evidence: Evidence) -> Message:
     return message("why.little", share=share, error=error, least=PER_CENT * EVIDENCE_CRITERIA.share)
 
 
-def fits_better(evidence: Evidence, criteria: EvidenceCriteria = EVIDENCE_CRITERIA) -> bool:
-    """Whether the second model is worth its parameter on the data that both were fitted to, too.
-
-    An effect of the machine explains more of them than of data held out. One that helps on held-out data alone explains
-    nothing: it only keeps a refit to fewer data from parameters that these do not determine.
-    """
-    return evidence.fitted is None or evidence.fitted.gain > criteria.fitted_gain
-
-
-def _fits_no_better(evidence: Evidence) -> Message:
-    assert evidence.fitted is not None
-    return message("why.fitted", gain=evidence.fitted.gain, least=EVIDENCE_CRITERIA.fitted_gain)
-
-
 def generalises(evidence: Evidence, criteria: EvidenceCriteria = EVIDENCE_CRITERIA) -> bool:
     """Whether no condition and no span loses beyond its error, and by a share of the explainable power that matters."""
     return losing_part(evidence, criteria) is None
@@ -108,7 +92,6 @@ def _drifts(evidence: Evidence) -> Message:
 
 QUESTIONS = (
     Question(matters, _too_little, shows=True),
-    Question(fits_better, _fits_no_better),
     Question(generalises, _loses, of_a_part=True, figure="carries_over"),
     Question(runs_freely, _drifts, of_a_part=True),
 )
