@@ -136,7 +136,7 @@ def conclude(findings: Findings, criteria: Criteria = CRITERIA) -> Verdict:
     named = tuple(name for name in findings.added if name not in (*findings.dispensable, *unconfirmed))
     contradicted = tuple(change.effect for change in findings.verify if contradicts(change, criteria))
     against = tuple(name for name in contradicted if name not in findings.dispensable)
-    reasons = _reasons(findings, named, bool(contradicted), criteria)
+    reasons = _reasons(findings, named, bool({*contradicted} & {*findings.dispensable}), criteria)
     standing = _standing(named, against, reasons)
     groups = _groups(findings, unconfirmed)
     of_sets = _probabilities(findings, criteria)
@@ -192,15 +192,17 @@ def _unexplained(findings: Findings, criteria: Criteria) -> bool:
     return findings.residual is None or not is_noise(findings.residual, criteria)
 
 
-def _reasons(findings: Findings, named: Names, was_contradicted: bool, criteria: Criteria) -> tuple[Reason, ...]:
-    """Why the named effects may stand for others; validation data that contradict a named one are no such reason."""
+def _reasons(
+    findings: Findings, named: Names, dispensable_contradicted: bool, criteria: Criteria
+) -> tuple[Reason, ...]:  # fmt: skip
+    """Why the named effects may stand for others."""
     residual = findings.residual
     floor_known = residual is not None and residual.floor is not None
     holds: dict[Reason, bool] = {
         "untested": residual is None,
         "unexplained": residual is not None and not is_noise(residual, criteria),
         "at_bound": bool({*findings.at_bound} & {*named}) and not floor_known,
-        "dispensable_contradicted": was_contradicted,
+        "dispensable_contradicted": dispensable_contradicted,
     }
     return tuple(reason for reason, is_so in holds.items() if is_so)
 
