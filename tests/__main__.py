@@ -41,7 +41,7 @@ if __name__ == "__main__":
     install_system_packages()
     # A worker a core, and one more while others wait; the tests of a file share what they set up; files in the order
     # of tests/conftest.py.
-    everything = ["-n", str((os.cpu_count() or 1) + 1), "--dist", "loadfile", "--no-loadscope-reorder"]
+    everything = ["--workers", str((os.cpu_count() or 1) + 1)]
     chosen = sys.argv[1:]
     of_whole = all(argument == "--full" or argument.startswith("--costs=") for argument in chosen)
     whole = [*everything, *chosen] if of_whole else chosen

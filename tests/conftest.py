@@ -10,23 +10,15 @@ import logging
 import os
 import sys
 import threading
-from collections.abc import Callable, Collection, Generator, Iterator
+from collections.abc import Callable, Collection, Iterator
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 import pytest
 
-from tests.dearest import (  # noqa: F401  hooks
-    pytest_runtest_logstart,
-    pytest_runtest_makereport,
-    pytest_runtest_teardown,
-    pytest_sessionfinish,
-    pytest_terminal_summary,
-    pytest_testnodedown,
-)
-from tests.first_collects import after_the_first
 from tests.rounding import rounded_otherwise
+
+pytest_plugins = ("tests.dearest", "tests.workers")
 
 ROOT = Path(__file__).resolve().parents[1]
 
@@ -40,13 +32,6 @@ os.environ["PYTHONWARNINGS"] = "error::RuntimeWarning"
 # What is imported and collected stays, and with all tests in memory each search of the collector through everything
 # takes a tenth of a second and more.
 gc.set_threshold(1_000_000, 20, 50)
-
-
-@pytest.hookimpl(wrapper=True)
-def pytest_collection(session: pytest.Session) -> Generator[None, object, object]:
-    """One worker compiles what all of them collect."""
-    with after_the_first(Path(__file__)) if hasattr(session.config, "workerinput") else contextlib.nullcontext():
-        return (yield)
 
 
 def pytest_collection_finish() -> None:
@@ -92,9 +77,6 @@ The files of the browser stay together and go with their first; mypy takes a min
 backup comes first: what it compares is all that the shared service holds.
 """
 
-OWN_SERVICE = "tests/browser/test_workbench.py"
-"""Has a service of its own, and takes so long that it has a worker to itself."""
-
 
 def asked_for_full(config: pytest.Config) -> bool:
     """Whether the full forms were asked for, by ``--full`` or SERVOIDENT_FULL=1."""
@@ -120,19 +102,6 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
         return (1 if name.startswith("app/") else 0 if name in places else 2), place, name
 
     items.sort(key=turn)
-
-
-@pytest.hookimpl(optionalhook=True)
-def pytest_xdist_make_scheduler(config: pytest.Config, log: Any) -> Any:
-    """A file's tests stay on one worker; those of the browser too, which share a service and its window."""
-    from xdist.scheduler import LoadFileScheduling
-
-    class Scheduling(LoadFileScheduling):
-        def _split_scope(self, nodeid: str) -> str:
-            file = super()._split_scope(nodeid)
-            return "browser" if file.startswith("tests/browser/") and file != OWN_SERVICE else file
-
-    return Scheduling(config, log) if config.getvalue("dist") == "loadfile" else None
 
 
 class _Raised(logging.Handler):

@@ -21,20 +21,21 @@ from tests.nursery import Nursery
 SHARED = "what files share"
 NAMED = 10
 """Files that are named; a run of no more has nothing to name."""
-BEFORE = "processor_before"
-"""What a worker tells its controller: seconds until its first test."""
 
-_counted = 0.0
-_before: list[float] = []
-_of_workers: list[float] = []
+_counted: dict[int, float] = {}
+"""Of each process, by its number, what was counted: a worker is a fork, and begins with nothing."""
+_BEFORE = pytest.StashKey[float]()
 _LAST = pytest.StashKey[bool]()
+
+
+def pytest_collection_finish(session: pytest.Session) -> None:
+    """All is imported and collected."""
+    session.config.stash[_BEFORE] = _spent()
 
 
 def pytest_runtest_logstart() -> None:
     """A test begins."""
-    spent = _spent()
-    if not _before:
-        _before.append(spent)
+    _spent()
 
 
 def pytest_runtest_teardown(item: pytest.Item, nextitem: pytest.Item | None) -> None:
@@ -52,18 +53,6 @@ def pytest_runtest_makereport(item: pytest.Item) -> Generator[None, Any, Any]:
     return report
 
 
-def pytest_sessionfinish(session: pytest.Session) -> None:
-    """A worker says what it took to collect."""
-    if hasattr(session.config, "workeroutput"):
-        session.config.workeroutput[BEFORE] = sum(_before)
-
-
-@pytest.hookimpl(optionalhook=True)
-def pytest_testnodedown(node: Any) -> None:
-    """A worker has ended."""
-    _of_workers.append(getattr(node, "workeroutput", {}).get(BEFORE, 0.0))
-
-
 def pytest_terminal_summary(terminalreporter: Any, config: pytest.Config) -> None:
     """The dearest files; what each test cost, where a file for that was named."""
     costs: Counter[str] = Counter()
@@ -74,8 +63,8 @@ def pytest_terminal_summary(terminalreporter: Any, config: pytest.Config) -> Non
                 costs[report.payer] += report.processor
                 of_tests[report.nodeid if report.payer != SHARED else SHARED, report.when] += report.processor
     if len(costs) > NAMED:
-        told = f", {sum(_of_workers):.0f} s before the first of each worker" if _of_workers else ""
-        terminalreporter.section(f"{sum(costs.values()):.0f} s of the processor in tests{told}; the most in")
+        told = f"{sum(costs.values()):.0f} s of the processor in tests, {config.stash[_BEFORE]:.0f} s before the first"
+        terminalreporter.section(f"{told}; the most in")
         for file, seconds in costs.most_common(NAMED):
             terminalreporter.line(f"{seconds:6.1f} s  {file}")
     if file := config.getoption("--costs"):
@@ -85,6 +74,6 @@ def pytest_terminal_summary(terminalreporter: Any, config: pytest.Config) -> Non
 
 def _spent() -> float:
     """Seconds of the processor since this was asked last."""
-    global _counted
-    before, _counted = _counted, sum(os.times()[:4]) + Nursery.used
-    return _counted - before
+    own = os.getpid()
+    before, _counted[own] = _counted.get(own, 0.0), sum(os.times()[:4]) + Nursery.used
+    return _counted[own] - before

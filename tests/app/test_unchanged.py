@@ -38,7 +38,7 @@ def test_it_is_found_on_any_processor_with_any_number_of_threads(full: bool, cor
         pytest.skip(f"this machine has fewer than {cores} cores")
     pinned = f"os.sched_setaffinity(0, sorted(os.sched_getaffinity(0))[:{cores}])"
     code = f"import os, sys, pytest; {pinned}; sys.exit(pytest.main(sys.argv[1:]))"
-    wanted = ["-q", "-p", "no:xdist", "-k", "found_again", "tests/app/test_unchanged.py"]
+    wanted = ["-q", "-k", "found_again", "tests/app/test_unchanged.py"]
     command, environment = [sys.executable, "-c", code, *wanted], os.environ | generic()
     done = subprocess.run(command, cwd=ROOT, env=environment, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stdout[-3000:]
