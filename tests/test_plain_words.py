@@ -11,6 +11,8 @@ from pathlib import Path
 
 import pytest
 
+from tests.words.old_texts import GONE, KEPT, has
+
 ROOT = Path(__file__).resolve().parents[1]
 BANNED = {
     "mend": "edit, correct", "mended": "corrected", "foretell": "predict", "foretells": "predicts", "anew": "again",
@@ -143,14 +145,29 @@ def mean(text: str) -> float:
 
 def test_no_text_has_a_word_that_was_given_up():
     """Case does not count, nor does what is part of a longer word."""
-    held = {word: re.compile(rf"\b{word}\b", re.IGNORECASE) for word in BANNED}
+    held = re.compile(rf"\b({'|'.join(sorted(BANNED, key=len, reverse=True))})\b", re.IGNORECASE)
     found = [
-        f"{name}: {word!r}, say {BANNED[word]}: {text[max(0, at.start() - 30) : at.end() + 30]!r}"
+        f"{name}: {at[0]!r}, say {BANNED[at[0].lower()]}: {text[max(0, at.start() - 30) : at.end() + 30]!r}"
         for name, text in shown().items()
-        for word, pattern in held.items()
-        for at in pattern.finditer(text)
+        for at in held.finditer(text)
     ]
     assert not found, "\n".join(found)
+
+
+def test_no_text_that_readers_stumbled_over_comes_back():
+    found = [f"{name}: {part!r}" for name, text in shown().items() for part in GONE if has(text, part)]
+    assert not found, "\n".join(found)
+
+
+@pytest.mark.parametrize("part", KEPT)
+def test_what_is_kept_with_a_reason_is_still_there(part):
+    assert any(has(text, part) for text in shown().values())
+
+
+def test_a_text_that_came_back_is_seen_over_lines_and_as_a_label():
+    assert has("Effects: a start that waits\n  for enough drive.", "a start that waits for enough drive")
+    assert has("\n\n  Mend…\n\n", "Mend…")
+    assert not has("mend.html, Mend… it", "Mend…")
 
 
 @pytest.mark.parametrize("name", LONGEST)

@@ -19,10 +19,9 @@ def test_a_machine_nobody_described_is_taken_for_what_it_is(seed, full):
     assert outcome.error < 1.1 * outcome.lab.noise, str(outcome)
 
 
+@pytest.mark.full
 @pytest.mark.parametrize("seed", [2, 3])
-def test_where_nothing_is_hidden_nothing_is_found(seed, full):
-    if not full and seed != 2:
-        pytest.skip("a quarter of a minute each: run with --full")
+def test_where_nothing_is_hidden_nothing_is_found(seed):
     outcome = trial(seed, hidden=False)
     assert outcome.structure_right, str(outcome)
     assert outcome.effects == (), str(outcome)

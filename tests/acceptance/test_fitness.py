@@ -15,7 +15,7 @@ from tests.reference import qian_reference as reference
 NAMES = reference.PARAMETERS
 TRUTH = np.array([getattr(reference.Plant(), name) for name in NAMES])
 TOLERANCE = 5e-3  # relative
-VECTORS, FEW = 100, 5  # of each kind, in the full form and in the short one
+VECTORS, FEW = 100, 2  # of each kind, in the full form and in the short one
 APART = 0.01  # of the truth, of those near it
 HOPELESS = 10.0  # an unstable model: the reference grows beyond this within the record
 

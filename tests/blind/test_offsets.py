@@ -7,12 +7,13 @@ import pytest
 
 from ident.workflows import compare
 from tests.blind.offsets import Off, scores, trial
+from tests.short_form import short_form
 
 SPRINGLESS = (171019, 171084, 171090)  # an inertia that is turned: a torque that lasts would turn it as an offset reads
 OTHERS = (171004, 171009, 171031, 171174)
 
 
-@pytest.mark.parametrize("seed", [*SPRINGLESS, *OTHERS])
+@pytest.mark.parametrize("seed", short_form([*SPRINGLESS, *OTHERS], 171084, 171009, 171174))
 def test_no_headline_hides_an_offset(seed):
     row = trial(seed)
     assert row["large"]

@@ -16,10 +16,9 @@ from tests.reference.unlisted_reference import NAMES, Hidden, drawn
 PLANT = linear.Plant()
 
 
+@pytest.mark.full
 @pytest.mark.parametrize("name", NAMES)
-def test_an_equation_as_a_user_writes_it_is_that_of_the_reference(name, full):
-    if not full and name not in ("mount", "feedback_play"):
-        pytest.skip("two seconds each: run with --full")
+def test_an_equation_as_a_user_writes_it_is_that_of_the_reference(name):
     hidden = drawn(name, np.random.default_rng([5, NAMES.index(name)]))
     machine = Secret(PLANT, hidden._replace(s=0.1 * hidden.s), 0.005, 1)
     clean, own = machine.measured(machine.trials[4:6], noise=0.0), written(machine.hidden)

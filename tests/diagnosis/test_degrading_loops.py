@@ -80,6 +80,7 @@ def test_a_column_that_degrades_and_pinches_is_named(seed):
     assert last["verify"] < 0.1
 
 
+@pytest.mark.full
 def test_a_column_that_stays_as_it_is_degrades_in_no_verdict():
     matrix = column(1, degrades=False)
     found = diagnose(matrix, identify(matrix), propose=False)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 from dataclasses import replace
 from functools import lru_cache
+from itertools import product
 from pathlib import Path
 
 import numpy as np
@@ -15,6 +16,7 @@ from ident.figures.closed_loop import closed_loop
 from ident.fit.result import FitResult
 from ident.hybrid.controller_design import design_controller
 from ident.run import Specimen
+from tests.short_form import short_form
 
 FIT = Path(__file__).resolve().parents[1] / "stored" / "fit.json"
 
@@ -27,8 +29,7 @@ def made(structure="feedback"):
     return design_controller(fit, Specimen(8.75, 17.5e3), structure=structure, **case)
 
 
-@pytest.mark.parametrize("theme", ["light", "dark"])
-@pytest.mark.parametrize("format_", MEDIA)
+@pytest.mark.parametrize(("theme", "format_"), short_form(product(["light", "dark"], MEDIA), ("dark", "svg")))
 def test_it_is_drawn_in_every_format_and_theme(theme, format_):
     """As JSON, SVG, PNG and PDF."""
     starts = {"svg": b"<svg", "png": b"\x89PNG", "pdf": b"%PDF", "json": b"{"}

@@ -44,7 +44,7 @@ def acceleration(fit: FitResult) -> Combination:
 
 def test_its_gain_is_not_biased_and_its_standard_error_holds(full):
     found = []
-    for seed in range(48 if full else 12):
+    for seed in range(48 if full else 8):
         fit = identify(pushed(seed), SETTINGS)
         assert fit.window is not None
         assert fit.window.memory is not None

@@ -15,6 +15,7 @@ from ident.simulation.steps import steps_at_reversals
 from ident.workflows import identify
 from tests.diagnosis.damper import Damper
 from tests.reference.periodic_reference import Law, driven
+from tests.short_form import short_form
 
 WAY, FORCE = "presliding_friction.displacement", "presliding_friction.force"
 LOW_RATE = Damper(damping=500.0, stiffness=0.0, friction=60.0, amplitude=0.02, frequency=1.5, rate=50.0, noise=0.005,
@@ -33,7 +34,7 @@ def test_the_steps_follow_the_motion_at_its_reversals():
     assert found.tolist() == [1, 1, 2, 4, 8, 8]
 
 
-@pytest.mark.parametrize("displacement", [1e-4, 3e-4])
+@pytest.mark.parametrize("displacement", short_form([1e-4, 3e-4], 3e-4))
 def test_a_width_shorter_than_the_way_about_a_reversal_is_found(displacement):
     """In one step a sample, of which one covers five times the width, friction and width end a third off."""
     damper = replace(LOW_RATE, displacement=displacement)

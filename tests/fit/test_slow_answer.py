@@ -12,6 +12,7 @@ from ident.fit.slow_answer import NAME, lags
 from ident.matrix import Actuator, Matrix
 from ident.run import Run
 from ident.workflows import identify
+from tests.short_form import short_form
 
 RATE = 50.0
 
@@ -39,7 +40,7 @@ def axis(seed: int) -> Matrix:
     return Matrix(Actuator("LATE"), tuple(runs))
 
 
-@pytest.mark.parametrize("seed", [4, 5])
+@pytest.mark.parametrize("seed", short_form([4, 5], 5))
 def test_which_stage_is_late_is_not_known_but_how_late_all_are(seed):
     fit = identify(axis(seed), Settings(model="open_valve"))
     assert fit.undetermined

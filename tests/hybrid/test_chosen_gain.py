@@ -14,6 +14,7 @@ from ident.hybrid.loop_figures import phase_margins
 from ident.workflows import identify
 from tests.acceptance.matrices import NOISE, as_matrix
 from tests.reference import qian_reference
+from tests.short_form import short_form
 from tests.stability import servo_reference as reference
 from tests.stability.test_judgement import UNITS, fit_of
 
@@ -34,7 +35,7 @@ def measured(of, gain) -> dict[str, float]:
     return {"phase_margin": margin, "bandwidth": band, "peak": 20 * np.log10(G.max())}
 
 
-@pytest.mark.parametrize("quantity", TARGETS)
+@pytest.mark.parametrize("quantity", short_form(TARGETS, "peak"))
 def test_the_true_machine_has_what_is_wanted(quantity, full):
     """Fits off by 0.5 % of each parameter: 100 machines each, one in the short form."""
     rng, (wanted, tolerance) = np.random.default_rng([59, len(quantity)]), TARGETS[quantity]
@@ -57,7 +58,7 @@ def fitted_to(of, seed) -> FitResult:
     return identify(as_matrix(records, "linear"), Settings(seed=1))
 
 
-@pytest.mark.parametrize("number", range(3))
+@pytest.mark.parametrize("number", short_form(range(3), 0))
 def test_a_gain_from_a_fit_gives_the_true_machine_what_is_wanted(number, full):
     """Seeds 560 to 562: machines within 30 % of Table 4, each target from one fit; 34 of them in the long form."""
     for draw in range(34 if full else 1):

@@ -66,6 +66,7 @@ def test_a_table_gives_the_acceleration_of_noise():
     assert_followed(shaken({"kind": "blwn", "band": "28 Hz", "amplitude": "0.05 g", "duration": "4 s"}))
 
 
+@pytest.mark.full
 def test_a_table_gives_the_acceleration_of_a_measured_earthquake():
     """El Centro, a fifth of it, from the public record."""
     if not EL_CENTRO.is_file():

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from dataclasses import replace
+from itertools import product
 from pathlib import Path
 
 import numpy as np
@@ -20,6 +21,7 @@ from ident.run import Run
 from ident.workflows import identify
 from tests.reference import first_order_reference as reference
 from tests.reference import qian_reference
+from tests.short_form import short_form
 
 LOOPS = [(reference.Loop(8e-3, 0.9),), (reference.Loop(30e-3, 1.1),)]
 
@@ -80,8 +82,9 @@ def test_the_file_has_the_names_of_the_contract_and_the_last_sample():
     assert data["tau"][-1] == found.tau[-1]
 
 
-@pytest.mark.parametrize("format_", ["svg", "png", "pdf", "json"])
-@pytest.mark.parametrize("theme", ["light", "dark"])
+@pytest.mark.parametrize(
+    ("format_", "theme"), short_form(product(["svg", "png", "pdf", "json"], ["light", "dark"]), ("svg", "light"))
+)
 def test_the_figure_is_drawn_in_every_format(format_, theme):
     drawn = render(tracking(track(recorded(LOOPS[0], 2.0)), Actuator("SW-1"), look(theme)), format_)
     assert len(drawn) > 1000

@@ -96,6 +96,7 @@ def test_a_throttle_that_friction_keeps_from_ringing_is_a_motor_against_a_spring
     assert found.verdict.effects == ("coulomb_friction",)
 
 
+@pytest.mark.full
 def test_a_pendulum_is_a_motor_against_a_spring_that_its_weight_takes_the_place_of(full):
     """A motor that integrates, with the same weight, has no fewer parameters: the weight is the spring."""
     matrix = machine(3, weight=60.0)

@@ -153,7 +153,7 @@ def test_a_parser_that_goes_astray_ends_as_a_refusal(parser, code, tmp_path, mon
     from ident.readers.apart import read_apart
 
     _install(tmp_path, monkeypatch, parser)
-    limits = Limits(parser_seconds=2.0 if parser == "hangs" else 10.0, parser_memory=1 << 30)
+    limits = Limits(parser_seconds=1.0 if parser == "hangs" else 10.0, parser_memory=1 << 30)
     with pytest.raises(Unusable) as refused:
         read_apart(parser, b"x", "run", limits)
     assert refused.value.code == code.replace("eats", parser)

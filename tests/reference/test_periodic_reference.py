@@ -11,6 +11,7 @@ from tests.reference.periodic_reference import Law, bouc_wen, bouc_wen_along, da
 RATE = 200.0  # Hz
 
 
+@pytest.mark.full
 def test_a_sine_through_the_bare_mass_has_the_amplitude_and_phase_of_its_transfer_function():
     m, c, k, w = 2.0, 30.0, 900.0, 2 * np.pi * 2.0
     t = np.arange(2000) / RATE
@@ -20,6 +21,7 @@ def test_a_sine_through_the_bare_mass_has_the_amplitude_and_phase_of_its_transfe
     assert np.std((x - wanted)[1000:]) < 1e-4 * np.std(wanted)
 
 
+@pytest.mark.full
 def test_a_position_loop_settles_like_its_poles():
     m, c, stiff = 1.0, 12.0, 400.0
     t = np.arange(400) / RATE
@@ -28,6 +30,7 @@ def test_a_position_loop_settles_like_its_poles():
     assert x == pytest.approx(1 - np.exp(-d * t) * (np.cos(wd * t) + d / wd * np.sin(wd * t)), abs=1e-6)
 
 
+@pytest.mark.full
 def test_dry_friction_starts_slides_and_stops_when_it_should():
     m, c, Kt, Fc = 1.0, 5.0, 2.0, 0.7
     command = np.concatenate([0.3 * np.ones(40), np.ones(160), np.zeros(200)])
@@ -80,11 +83,13 @@ OF_LOOP = {
 SHOWN, EQUAL = 1e-3, 1e-4  # of the deviation: what an effect changes at least, what finer steps change at most
 
 
+@pytest.mark.full
 @pytest.mark.parametrize("name", EFFECTS)
 def test_each_effect_acts_on_a_mass_and_finer_steps_change_nothing(name):
     _acts(Law(m=2.0, c=30.0, k=900.0), name, EFFECTS[name], 50.0)
 
 
+@pytest.mark.full
 @pytest.mark.parametrize("name", OF_LOOP)
 def test_each_effect_of_a_loop_acts_and_finer_steps_change_nothing(name):
     _acts(Law(m=2.0, c=60.0, Kt=20.0, Kp=100.0), name, OF_LOOP[name], 0.05)

@@ -182,12 +182,11 @@ def test_the_strength_comes_with_its_standard_error():
     assert abs(abs(term.strength) - 0.6 * PLANT.Cl) < 4 * term.std_error  # half of what leaks in one direction
 
 
+@pytest.mark.full
 @pytest.mark.parametrize("colour", ["white", "slow", "hum", "drift"])
 @pytest.mark.parametrize("seed", [1, 2])
-def test_noise_of_any_colour_is_no_physics(colour, seed, full):
-    if not full and (colour, seed) != ("slow", 1):
-        pytest.skip("some seconds each: run with --full")
-    matrix = machine(seed, 12 if full else 6)
+def test_noise_of_any_colour_is_no_physics(colour, seed):
+    matrix = machine(seed, 12)
     runs = []
     for number, run in enumerate(matrix.runs):
         rng = np.random.default_rng([9, seed, number])

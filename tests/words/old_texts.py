@@ -3,10 +3,7 @@
 from __future__ import annotations
 
 import re
-
-import pytest
-
-from tests.test_plain_words import shown
+from functools import cache
 
 GONE = (
     "as much is left that the record's own past does not foretell: it follows a drift",
@@ -94,20 +91,10 @@ def has(text: str, part: str) -> bool:
     """Whether a text has a part, however its lines are broken; of one or two words, as a label of its own only."""
     if len(part.split()) < 3:
         return part in map(str.strip, text.split("\n"))
-    return part in re.sub(r"\s+", " ", text)
+    return part in in_one_line(text)
 
 
-def test_no_text_that_readers_stumbled_over_comes_back():
-    found = [f"{name}: {part!r}" for name, text in shown().items() for part in GONE if has(text, part)]
-    assert not found, "\n".join(found)
-
-
-@pytest.mark.parametrize("part", KEPT)
-def test_what_is_kept_with_a_reason_is_still_there(part):
-    assert any(has(text, part) for text in shown().values())
-
-
-def test_a_text_that_came_back_is_seen_over_lines_and_as_a_label():
-    assert has("Effects: a start that waits\n  for enough drive.", "a start that waits for enough drive")
-    assert has("\n\n  Mend…\n\n", "Mend…")
-    assert not has("mend.html, Mend… it", "Mend…")
+@cache
+def in_one_line(text: str) -> str:
+    """The text with a space for each break."""
+    return re.sub(r"\s+", " ", text)
