@@ -14,6 +14,7 @@ from ident.run import Run
 from tests.blind.machines import Machine
 from tests.blind.noises import with_noise
 from tests.reference import qian_reference as linear
+from tests.short_form import short_form
 
 SHARE = 0.01
 
@@ -62,7 +63,7 @@ def test_repeats_tell_where_the_command_fills_the_spectrum(clean):
     assert told == pytest.approx({run.id: size / np.std(run.measured) for run in twice.runs}, rel=0.15)
 
 
-@pytest.mark.parametrize("kind", ["low_passed", "pink"])
+@pytest.mark.parametrize("kind", short_form(["low_passed", "pink"], "pink"))
 def test_floors_from_a_repeat_scatter_as_they_say(clean, kind):
     """Not much less, so that a fit is not called short of them by chance, and not much more."""
     off = []
