@@ -34,7 +34,7 @@ os.environ["PYTHONWARNINGS"] = "error::RuntimeWarning"
 gc.set_threshold(1_000_000, 20, 50)
 
 
-def pytest_collection_finish() -> None:
+def pytest_collection_finish(session: pytest.Session) -> None:
     """Loops of the references are compiled once for all processes, though they know nothing of the library's way.
 
     What is there before the first test stays: the collector need not look through it again.
@@ -46,6 +46,10 @@ def pytest_collection_finish() -> None:
             for function in vars(module).values():
                 if hasattr(function, "py_func"):
                     shared(function)
+    if session.config.getoption("--workers") > 1 and hasattr(os, "fork"):
+        from tests.running import nursery
+
+        nursery()  # one for all workers
     gc.freeze()
     gc.set_threshold(50_000, 20, 50)
 

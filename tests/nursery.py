@@ -3,6 +3,7 @@
 Each is a fork of one that has done nothing yet but import, with a life, memory, environment and threads of its own, so
 that a start and a kill cost what they do and not what the imports do: five seconds of a core, with the processes in
 which a service works things out. Requests are lines of JSON on standard input, and so are answers on standard output.
+The workers of a run have one in common, which they inherit, and ask it in turn.
 """
 
 from __future__ import annotations
@@ -17,8 +18,8 @@ import subprocess
 import sys
 import threading
 import time
-from collections.abc import Mapping, Sequence
-from contextlib import suppress
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager, suppress
 from multiprocessing import forkserver, resource_tracker
 from pathlib import Path
 from typing import Any, ClassVar
@@ -38,7 +39,7 @@ class Nursery:
 
     def __init__(self, environment: Mapping[str, str]) -> None:
         called, root = [sys.executable, "-m", "tests.nursery"], Path(__file__).resolve().parents[1]
-        self._turn = threading.Lock()
+        self._turn, self._made_by = threading.Lock(), os.getpid()
         self._parent = subprocess.Popen(
             called, stdin=subprocess.PIPE, stdout=subprocess.PIPE, env=dict(environment), text=True, cwd=root
         )
@@ -62,9 +63,11 @@ class Nursery:
 
     def ended(self, number: int, within: float = WAIT) -> int:
         """The exit status of a process when it has ended. Raises TimeoutError."""
-        found: tuple[int, float] | None = self._ask({"ended": number, "within": within})
-        if found is None:
-            raise TimeoutError(f"process {number} goes on")
+        deadline = time.monotonic() + within
+        while (found := self._ask({"ended": number})) is None:
+            if time.monotonic() > deadline:
+                raise TimeoutError(f"process {number} goes on")
+            time.sleep(0.01)
         status, used = found
         self._own += used
         Nursery.used += used
@@ -77,7 +80,9 @@ class Nursery:
             self.ended(number)
 
     def close(self) -> None:
-        """Start no more."""
+        """Start no more; a fork of who made it leaves it to the others."""
+        if os.getpid() != self._made_by:
+            return
         self._parent.kill()
         self._parent.wait()
         Nursery.used -= self._own  # which counts for the parent from here on, and so for this process
@@ -85,7 +90,7 @@ class Nursery:
     def _ask(self, asked: dict[str, Any]) -> Any:
         assert self._parent.stdin is not None
         assert self._parent.stdout is not None
-        with self._turn:
+        with self._turn, _in_turn():
             print(json.dumps(asked), file=self._parent.stdin, flush=True)
             return json.loads(self._parent.stdout.readline())
 
@@ -101,7 +106,7 @@ def main() -> None:
     for line in sys.stdin:
         asked = json.loads(line)
         if "ended" in asked:
-            print(json.dumps(_ended(asked["ended"], asked["within"])), flush=True)
+            print(json.dumps(_ended(asked["ended"])), flush=True)
             continue
         number = os.fork()
         if number == 0:
@@ -110,16 +115,23 @@ def main() -> None:
         print(number, flush=True)
 
 
-def _ended(number: int, within: float) -> tuple[int, float] | None:
+@contextmanager
+def _in_turn() -> Iterator[None]:
+    """A block that one process at a time goes through."""
+    import fcntl
+
+    with open(__file__, "rb") as lock:
+        fcntl.flock(lock, fcntl.LOCK_EX)
+        try:
+            yield
+        finally:  # by name: a process that was forked meanwhile has the file open, too
+            fcntl.flock(lock, fcntl.LOCK_UN)
+
+
+def _ended(number: int) -> tuple[int, float] | None:
     """Exit status and seconds of the processor of a process that ended, None where it goes on."""
-    deadline = time.monotonic() + within
-    while True:
-        found, status, used = os.wait4(number, os.WNOHANG)
-        if found:
-            return os.waitstatus_to_exitcode(status), used.ru_utime + used.ru_stime
-        if time.monotonic() > deadline:
-            return None
-        time.sleep(0.005)
+    found, status, used = os.wait4(number, os.WNOHANG)
+    return (os.waitstatus_to_exitcode(status), used.ru_utime + used.ru_stime) if found else None
 
 
 def _become(

@@ -20,6 +20,7 @@ def lab(service):
     return Client("http://127.0.0.1:8000", http=service)
 
 
+@pytest.mark.usefixtures("few_effects")
 def test_from_an_upload_to_an_approved_set(lab, tmp_path):
     folder = unpacked(files("SW-CLIENT"), tmp_path / "m")
     (folder / ".hidden").write_text("stays here")

@@ -8,7 +8,6 @@ import pytest
 from playwright.sync_api import expect
 
 from tests.browser.story import LONG
-from tests.short_form import short_form
 
 pytestmark = pytest.mark.usefixtures("watch")
 MAP, BODE = "#figure-residual-map", "#figure-bode"
@@ -76,7 +75,8 @@ def test_a_band_drawn_across_the_map_moves_the_bode_plot_without_the_service(pag
     assert len([url for url in watch.requests if "bode.json" in url]) == asked
 
 
-@pytest.mark.parametrize("name", short_form(["bode", "time", "residual-curve", "sensitivity"], "time"))
+@pytest.mark.full
+@pytest.mark.parametrize("name", ["bode", "time", "residual-curve", "sensitivity"])
 def test_a_figure_that_follows_a_pick_shows_what_it_would_if_it_were_drawn_anew(name, page, site, fitted):
     figure, runs = f"#figure-{name}", [run["id"] for run in site.client.get(f"/fits/{fitted}").json()["result"]["runs"]]
     canvas = page.locator(f"{figure} canvas")
@@ -126,6 +126,7 @@ def test_run_and_band_are_picked_by_keyboard_alone(page, site, fitted):
     assert page.get_by_label("To (Hz)").evaluate("field => field.validationMessage")
 
 
+@pytest.mark.full
 def test_a_frequency_of_the_address_that_no_axis_has_is_none(page, site, fitted):
     opened(page, f"{site.address}/fits/{fitted}?low=-1&high=50")
     answered(page, BODE, "high=50")

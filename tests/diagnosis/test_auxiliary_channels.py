@@ -81,6 +81,7 @@ def test_its_position_begins_where_it_was_measured(first):
     assert [runs.start(run)[place] for run in runs.runs] == [run.channels["displacement"][0] for run in runs.runs]
 
 
+@pytest.mark.full
 @pytest.mark.usefixtures("few_effects")
 def test_friction_that_grows_with_a_recorded_pressure_is_proposed():
     found = diagnosed()

@@ -63,6 +63,7 @@ def test_the_tanks_are_followed_and_what_torricelli_s_law_determines_is_found(ma
     assert found.transducer_offset["displacement"].value == pytest.approx(READS, abs=0.4)
 
 
+@pytest.mark.full
 def test_a_bent_gauge_leaves_the_time_constants_determined():
     """A curve that is right at zero alone turns the scale of the level too, on which every parameter hangs."""
     matrix = Matrix(Actuator("TANKS"), (tanks(0, "fit", bend=0.03),))
