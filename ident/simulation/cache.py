@@ -30,8 +30,10 @@ def cache_folder() -> Path:
         if not _is_private(folder):
             raise PermissionError(folder)
     except OSError:
-        folder = Path(tempfile.mkdtemp(prefix="servoident-"))
-        atexit.register(shutil.rmtree, folder, ignore_errors=True)
+        base = Path(tempfile.mkdtemp(prefix="servoident-"))
+        atexit.register(shutil.rmtree, base, ignore_errors=True)
+        folder = base / "kernels"
+        folder.mkdir(mode=0o700)
     return folder
 
 
@@ -81,6 +83,21 @@ def tidy(folder: Path, largest: int = LARGEST) -> None:
         if idle > OLDEST or (idle > IN_USE and total > largest):
             _remove(files)
             total -= sizes[name]
+
+
+def tidy_daily(folder: Path) -> None:
+    """The same, once a day for all processes: nothing is removed earlier, and to look at thousands of files takes a
+    second.
+
+    The time of the last is that of a file beside the folder.
+    """
+    mark = folder.with_name(f"{folder.name}.tidied")
+    with suppress(OSError):
+        if time.time() - mark.stat().st_mtime < IN_USE:
+            return
+    with suppress(OSError):
+        mark.touch()
+    tidy(folder)
 
 
 def _last_use(files: list[Path]) -> float:

@@ -15,7 +15,7 @@ from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
-from ident.simulation.cache import cache_folder, tidy, used, write
+from ident.simulation.cache import cache_folder, tidy_daily, used, write
 from ident.simulation.jit import in_turns
 
 _watchers: list[Callable[[], None]] = []
@@ -41,7 +41,7 @@ def function(name: str, source: str) -> Callable[..., Any]:
     except FileNotFoundError:  # another process made room at that moment
         compiled = _loaded(name, path, source)
     if not is_compiled(compiled):
-        tidy(path.parent)
+        tidy_daily(path.parent)
         for tell in tuple(_watchers):
             tell()
     return compiled

@@ -12,7 +12,7 @@ from contextlib import contextmanager, suppress
 from functools import cache
 from pathlib import Path
 
-from ident.simulation.cache import cache_folder, tidy, used, write
+from ident.simulation.cache import cache_folder, tidy_daily, used, write
 
 _MARK = hashlib.sha256().digest_size  # bytes before the code: its hash
 
@@ -78,4 +78,4 @@ def _path(text: str) -> Path:
 @cache
 def _tidied(folder: Path) -> None:
     """The folder is looked through once by each process that adds to it."""
-    tidy(folder)
+    tidy_daily(folder)

@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 
 from ident.simulation import compiled
-from ident.simulation.cache import IN_USE, OLDEST, tidy
+from ident.simulation.cache import IN_USE, OLDEST, tidy, tidy_daily
 
 SOURCE = """from numba import njit
 
@@ -58,6 +58,20 @@ def test_several_processes_may_tidy_at_once(tmp_path: Path) -> None:
     with ThreadPoolExecutor(4) as pool:
         assert list(pool.map(tidy, 4 * [tmp_path])) == 4 * [None]
     assert not names(tmp_path)
+
+
+def test_a_folder_is_looked_through_once_a_day(tmp_path: Path) -> None:
+    """Whichever process comes first: what nobody used for long stays until the next day."""
+    folder = tmp_path / "kernels"
+    folder.mkdir()
+    tidy_daily(folder)
+    kernel(folder, "old", OLDEST + DAY)
+    tidy_daily(folder)
+    assert names(folder) == {"old"}
+    (mark,) = (file for file in tmp_path.iterdir() if file.is_file())
+    os.utime(mark, (time.time() - IN_USE - 1.0,) * 2)
+    tidy_daily(folder)
+    assert not names(folder)
 
 
 @pytest.fixture
