@@ -145,28 +145,29 @@ class Simulation:
         return dict(zip(known, np.concatenate([flat, spare], axis=1), strict=True))
 
     def _held(self, lanes: int) -> Array:
-        held = np.array([[float(run.hold == "zoh")] for run in self.runs])
-        return _filled(np.broadcast_to(held, self.shape).ravel(), lanes)
+        return np.array([float(run.hold == "zoh") for run in self.runs])[self._run_of(lanes)]
+
+    def _run_of(self, lanes: int) -> NDArray[np.intp]:
+        """The number of the run of each lane; the spare lanes are of the last."""
+        return np.minimum(np.arange(lanes) // self.shape[1], len(self.runs) - 1)
 
     def _input(self, lanes: int, name: str, built: Kernel, values: Mapping[str, Array]) -> _Input:
         """One input of every run at the fine steps; a delay shifts the command alone."""
-        delay = np.zeros(lanes)
+        delay, whole, before = np.zeros(lanes), np.zeros(lanes, dtype=np.int64), 2
         if name == INPUT and built.shift is not None:
             delay = np.broadcast_to(constant(built.shift, values) / values[STEP], (lanes,))
-        whole = _whole(delay)
-        before = int(whole.max()) + 2
+            whole = _whole(delay)
+            before += int(whole.max())
         records = [fine(run, name, self.steps, before) for run in self.runs]
         starts = np.cumsum([0, *(len(record) for record in records[:-1])]) + before
-        begin = _filled(np.repeat(starts, self.shape[1]).astype(float), lanes).astype(np.int64)
         past = [name == INPUT and (run.past is not None or run.hold == "band-limited") for run in self.runs]
-        known = _filled(np.repeat(past, self.shape[1]).astype(float), lanes) > 0
-        return _Input(np.concatenate(records) if records[1:] else records[0], begin - whole, delay, known)
+        run_of, record = self._run_of(lanes), np.concatenate(records) if records[1:] else records[0]
+        return _Input(record, starts[run_of] - whole, delay, np.array(past)[run_of])
 
     def _packed(self, built: Kernel, values: Mapping[str, Array], lanes: int, inputs: Mapping[str, _Input]) -> Array:
         """The kernel's buffers, one of sixteen lanes after the other, flat."""
         rows = np.zeros((built.rows, lanes))
-        for row, node in built.constants:
-            rows[row] = constant(node, values)
+        built.fill_constants(rows, values)
         for known in built.filters:
             pack_filter(rows, known, values)
         for name, first in built.inputs.items():
@@ -176,8 +177,9 @@ class Simulation:
             if name == INPUT and built.shift is not None:
                 late = _begun_late(of, values[HELD])
                 rows[first], rows[first + 1] = np.where(of.delay > 0, late, rows[first])
-            rows[first] = np.where(of.known, of.record[of.begin - 1], rows[first])
-            rows[first + 1] = np.where(of.known, of.first, rows[first + 1])
+            if of.known.any():
+                rows[first] = np.where(of.known, of.record[of.begin - 1], rows[first])
+                rows[first + 1] = np.where(of.known, of.first, rows[first + 1])
         if self.start is not None:
             for i, name in enumerate(self.chain.states):
                 rows[built.states[name]] = _filled(self.start[..., i].ravel(), lanes)

@@ -78,8 +78,7 @@ def packed_kernel(
     share = np.maximum(delay - whole, 0.0)
     lane |= {HELD: np.ones(LANES), SHARE: share}
     rows = np.zeros((built.rows, LANES))
-    for row, node in built.constants:
-        rows[row] = constant(node, lane)
+    built.fill_constants(rows, lane)
     for known_filter in built.filters:
         pack_filter(rows, known_filter, lane)
     return PackedKernel(built, rows, steps, whole, share)

@@ -5,10 +5,15 @@ from __future__ import annotations
 import ast
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from types import CodeType
+
+import numpy as np
+from numpy.typing import NDArray
 
 from ident.cached import cached_property
 from ident.chain.chain import INPUT, Chain
 from ident.simulation.kernel.machine_code import WIDE, Advance, Fed, address, advance
+from ident.simulation.kernel.source import constants, evaluated
 
 HELD, SHARE = "held", "share"
 """Rows that the packing fills: 1 where a lane's command is held between samples; the delay's fraction of a step."""
@@ -59,6 +64,15 @@ class Kernel:
     def address(self, lanes: int) -> tuple[int, object]:
         """Where the machine code of :attr:`advance` stands for the first `lanes` alone, and what keeps it there."""
         return address(self.lines, self._fed, self.shown, lanes)
+
+    def fill_constants(self, rows: NDArray[np.float64], values: Mapping[str, NDArray[np.float64]]) -> None:
+        """Put what depends on symbols alone into its rows of a buffer (rows, lanes), by `values` of each symbol."""
+        for (row, _), value in zip(self.constants, evaluated(self._constants, values), strict=True):
+            rows[row] = value
+
+    @cached_property
+    def _constants(self) -> CodeType:
+        return constants([node for _, node in self.constants])
 
     @property
     def _fed(self) -> tuple[Fed, ...]:

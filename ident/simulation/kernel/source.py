@@ -210,7 +210,17 @@ _KNOWN = {**ARITHMETIC, "coefficient": coefficient}
 
 def constant(node: ast.expr, values: Mapping[str, Any]) -> Any:
     """The value of an expression of symbols for all lanes."""
-    return eval(_code(node), _KNOWN, values)
+    return evaluated(_code(node), values)
+
+
+def constants(nodes: Sequence[ast.expr]) -> CodeType:
+    """Expressions of symbols as code whose value, of :func:`evaluated`, is the values of all of them in turn."""
+    return _code(ast.Tuple(list(nodes), ast.Load()))
+
+
+def evaluated(code: CodeType, values: Mapping[str, Any]) -> Any:
+    """The value of compiled expressions of symbols for all lanes."""
+    return eval(code, _KNOWN, values)
 
 
 @lru_cache(maxsize=8192)
