@@ -48,6 +48,14 @@ _EFFECTS_A_CHAIN = 8
 """Effects of one simulated chain, one for each lane: the kernel has registers for so many. No answer depends on it."""
 
 
+@dataclass(frozen=True)
+class _Known:
+    """What is known of the models of one set of effects, windows and bounds: objectives, and errors on trial."""
+
+    objectives: dict[tuple[tuple[str, ...], int], SimulatedFitness] = field(default_factory=dict)
+    trial_errors: Once[tuple[tuple[str, ...], int, bytes], float] = field(default_factory=Once)
+
+
 @dataclass
 class CandidateModels:
     """The models of a preset for the fit runs of a matrix, with effects of the catalogue and of the user.
@@ -67,7 +75,7 @@ class CandidateModels:
     left_out: frozenset[str] = frozenset()
     horizon: float | None = None
     memory: float | None = None
-    _known: dict[tuple[tuple[str, ...], int], SimulatedFitness] = field(default_factory=dict)
+    _known: _Known = field(default_factory=_Known, repr=False)
     _records: dict[int, tuple[Run, ...]] = field(default_factory=dict)
     _compared: dict[int, ComparedRecords] = field(default_factory=dict)
     _recent: RecentMoments = field(default_factory=RecentMoments, repr=False)
@@ -105,7 +113,7 @@ class CandidateModels:
     def without(self, runs: Iterable[str]) -> CandidateModels:
         """The same models, fitted to fewer runs."""
         return replace(
-            self, left_out=self.left_out | frozenset(runs), _known={}, _records={}, _compared={}, bars=Once()
+            self, left_out=self.left_out | frozenset(runs), _known=_Known(), _records={}, _compared={}, bars=Once()
         )
 
     def doubting(self, fitted: FittedModel) -> CandidateModels:
@@ -113,23 +121,27 @@ class CandidateModels:
         floors, ratio = self.floors.by_run, CRITERIA.noise.floor_contradicted
         left = {run.id: found.error for run, found in zip(fitted.fitness.runs, fitted.local.runs, strict=True)}
         contradicted = frozenset(run for run, error in left.items() if (floor := floors[run]) and floor > ratio * error)
-        return replace(self, contradicted=contradicted, _known={}, _compared={}, bars=Once()) if contradicted else self
+        return (
+            replace(self, contradicted=contradicted, _known=_Known(), _compared={}, bars=Once())
+            if contradicted
+            else self
+        )
 
     def with_effects(self, effects: Mapping[str, Effect], given: Settings) -> CandidateModels:
         """The models of other effects, and of what is given of these."""
-        return replace(self, effects=effects, given=given, _known={})
+        return replace(self, effects=effects, given=given, _known=_Known())
 
     def with_shapes(self, effects: Mapping[str, Effect]) -> CandidateModels:
         """The same models, their effects with other shapes: what the best takes by chance is another, too."""
-        return replace(self, effects=effects, _known={}, bars=Once())
+        return replace(self, effects=effects, _known=_Known(), bars=Once())
 
     def with_given(self, given: Settings) -> CandidateModels:
         """The same models, with other values held fixed or bounded."""
-        return replace(self, given=given, _known={})
+        return replace(self, given=given, _known=_Known())
 
     def over_windows(self, horizon: float | None, memory: float | None) -> CandidateModels:
         """The same models, fitted over other windows."""
-        return replace(self, horizon=horizon, memory=memory, _known={}, _compared={}, bars=Once())
+        return replace(self, horizon=horizon, memory=memory, _known=_Known(), _compared={}, bars=Once())
 
     def model(self, effects: Iterable[str]) -> Preset:
         """The preset with these effects, in the order of the catalogue."""
@@ -234,17 +246,17 @@ class CandidateModels:
 
     def fitness(self, effects: tuple[str, ...], samples: int = 0) -> SimulatedFitness:
         """The objective of the model with these effects, on records of at most `samples` in all where that is given."""
-        key = (effects, samples)
-        if key not in self._known:
+        key, objectives = (effects, samples), self._known.objectives
+        if key not in objectives:
             model = self.model(effects)
             given = of_model(self.given, model, self.effects.keys())
             space = search_space(model, self.matrix, given, self.band)
             runs = self._shortened(samples) if samples else self.runs
-            self._known[key] = SimulatedFitness(
+            objectives[key] = SimulatedFitness(
                 model, self.matrix, runs, self.band, space, horizon=self.horizon, memory=self.memory, trusting=True,
                 recent=self._recent,
             )  # fmt: skip
-        known = self._known[key]
+        known = objectives[key]
         return known.fresh(known.runs)  # no search goes on from the first states in which another one ended
 
     def compared_records(self, samples: int = 0) -> ComparedRecords:
@@ -464,7 +476,10 @@ class CandidateModels:
 
     def trial_error(self, refit: FittedModel, samples: int = CRITERIA.estimation.trial_samples) -> float:
         """What a first refit has to beat: the error of a refit on the beginnings of the records."""
-        return self.fitness(refit.effects, samples).exact(refit.point, sensitivities=False).error
+        asked = refit.effects, samples, refit.point.tobytes()
+        return self._known.trial_errors.of(
+            asked, lambda: self.fitness(refit.effects, samples).exact(refit.point, sensitivities=False).error
+        )
 
     def trial(
         self, effects: tuple[str, ...], starts: Sequence[Mapping[str, float]], aim: float = np.inf
