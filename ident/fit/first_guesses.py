@@ -3,13 +3,25 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from weakref import WeakKeyDictionary
 
 import numpy as np
 from numpy.typing import NDArray
 
+from ident.run import Run
 from ident.simulation.inputs import closed
 
 Array = NDArray[np.float64]
+_known: WeakKeyDictionary[Run, float] = WeakKeyDictionary()
+"""Of each run its first position: each refit asks for the same ones."""
+
+
+def first_position(run: Run) -> float:
+    """The position in which a run begins whose motion was given by its speed: its way goes as far to either side."""
+    known = _known.get(run)
+    if known is None:
+        known = _known[run] = begins_about_middle(run.channels["velocity"]) / run.sample_rate
+    return known
 
 
 def begins_about_middle(speed: Array) -> float:

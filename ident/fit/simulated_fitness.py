@@ -119,7 +119,7 @@ class SimulatedFitness(SimulatedRuns):
             promised = local([found[run.id] for run in self.runs], with_means)
             if not (p and any(run.promises for run in promised.runs) and worth(promised)):
                 return promised
-            self.settled({name: value[:1] for name, value in values.items()}, np.empty(0), steps)
+            self.settled({name: value[:1] for name, value in values.items()}, np.empty(0), steps, known=found)
             found = {run: moments.as_begun() for run, moments in self._moments(values, strides)[1].items()}
         return local([found[run.id] for run in self.runs], with_means)
 

@@ -7,7 +7,7 @@ moved begins where it was measured. Were it free, what hangs on the position cou
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Hashable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from itertools import zip_longest
 from typing import Self
@@ -21,7 +21,7 @@ from ident.chain.conditions import conditions
 from ident.effects.effect import Effect
 from ident.fit.anchoring import Anchoring
 from ident.fit.criteria import FIT_CRITERIA
-from ident.fit.first_guesses import begins_about_middle, with_followers
+from ident.fit.first_guesses import first_position, with_followers
 from ident.fit.modes import extreme, fastest, motion
 from ident.fit.normal_matrices import NormalMatrices, block_length, first_state, normal_matrices_of
 from ident.fit.products import add_block_products, add_products, completed
@@ -58,7 +58,8 @@ class SimulatedRuns:
     too, which eq. (17) does not see. A free run `begun_over` windows has the first states that these find, by their
     horizon and memory: none is free to make up for where the record drifts to. A search follows the kinks of a core
     `roughly`. `sizes` are those of the core's states, (n,), and `sizes_of_effects` those of what effects begin with,
-    (m,), once a run has begun that moves.
+    (m,), once a run has begun that moves. The latter are found where they are first asked for: `unsized` are the runs
+    that have begun since, with the values and the steps a sample there.
     """
 
     preset: Preset
@@ -73,6 +74,8 @@ class SimulatedRuns:
     roughly: bool = field(default=False, kw_only=True)
     sizes: Array = field(default_factory=lambda: np.zeros(1), kw_only=True)
     sizes_of_effects: Array = field(default_factory=lambda: np.zeros(1), kw_only=True)
+    unsized: tuple[tuple[Run, Mapping[str, Array], int], ...] = field(default=(), kw_only=True, repr=False)
+    _last_modes: tuple[tuple[Hashable, ...], Modes] | None = field(default=None, init=False, repr=False)
 
     @property
     def chain(self) -> Chain:
@@ -112,19 +115,22 @@ class SimulatedRuns:
         return vector, steps
 
     def settled(
-        self, values: Mapping[str, Array], strides: Array, steps: int, runs: tuple[Run, ...] | None = None
-    ) -> dict[str, NormalMatrices]:
+        self, values: Mapping[str, Array], strides: Array, steps: int, runs: tuple[Run, ...] | None = None,
+        known: Mapping[str, NormalMatrices] | None = None,
+    ) -> dict[str, NormalMatrices]:  # fmt: skip
         """The matrices of every run by its id; without sensitivities the first states are followed until they hold.
 
-        `strides` (p,) are those of the vectors behind the first; `runs` some of all.
+        `strides` (p,) are those of the vectors behind the first; `runs` some of all; `known` the matrices from the
+        first states as they are, where these were simulated before.
         """
-        found: dict[str, NormalMatrices] = {}
+        found = dict(known or {})
         settling, pending = Settling(), self.runs if runs is None else runs
-        for _ in range(1 if len(strides) else _OF.rounds):
-            todo = list(self.together(len(strides) + 1 + len(self.chain.begun), of=pending))
-            parts = each(lambda runs: self._normal_matrices(runs, values, strides, steps), todo)
-            for some, part in zip(todo, parts, strict=True):
-                found.update((run.id, moments) for run, moments in zip(some, part, strict=True))
+        for number in range(1 if len(strides) else _OF.rounds):
+            if number or known is None:
+                todo = list(self.together(len(strides) + 1 + len(self.chain.begun), of=pending))
+                parts = each(lambda runs: self._normal_matrices(runs, values, strides, steps), todo)
+                for some, part in zip(todo, parts, strict=True):
+                    found.update((run.id, moments) for run, moments in zip(some, part, strict=True))
             if len(strides):
                 return found
             pending = tuple(run for run in pending if self.goes_on(run, settling, found[run.id]))
@@ -227,7 +233,8 @@ class SimulatedRuns:
         if not len(free):
             return self.simulation(runs, values, steps)
         vectors, states = len(next(iter(values.values()))), len(free)
-        wide = {name: np.concatenate([value, np.repeat(value[:1], states)]) for name, value in values.items()}
+        lanes = np.append(np.arange(vectors), np.zeros(states, np.intp))
+        wide = {name: value[lanes] for name, value in values.items()}
         start = np.repeat(np.array([self.start(run) for run in runs])[:, None], vectors + states, axis=1)
         start[:, vectors + np.arange(states), free] += self._reach[free]
         return self.simulation(runs, wide, steps, start)
@@ -320,15 +327,13 @@ class SimulatedRuns:
         vector = {name: np.array([value]) for name, value in values.items()}
         steps = int(self.steps(vector).max())
         self.sizes = np.maximum(self.sizes, model.sizes(self.band)[0] * run.drive)
-        self.sizes_of_effects = np.maximum(self.sizes_of_effects, self._sizes_of_effects(run, vector, steps))
+        self.unsized = (*self.unsized, (run, vector, steps))
         guesses = [first_state(run, model), *(() if self.preset.is_linear else model.standing_at(run.measured[0]))]
         start = np.zeros((1, len(guesses), len(self.chain.begun)))
         start[..., [self.chain.states.index(name) for name in self.preset.core.states]] = guesses
         for state in self.preset.imposed.keys() & self.chain.states:
             if self.preset.imposed[state] not in run.channels and "velocity" in run.channels:
-                start[..., self.chain.states.index(state)] = (
-                    begins_about_middle(run.channels["velocity"]) / run.sample_rate
-                )
+                start[..., self.chain.states.index(state)] = first_position(run)
         start = self._with_followers(start, run, values)
         if start.shape[1] == 1:
             return list(start[0])
@@ -384,6 +389,9 @@ class SimulatedRuns:
     @cached_property
     def _reach(self) -> Array:
         """A small step of each state: of the size that it has, or where it has none of the output's."""
+        for begun in self.unsized:
+            self.sizes_of_effects = np.maximum(self.sizes_of_effects, self._sizes_of_effects(*begun))
+        self.unsized = ()
         reach = np.full(len(self.chain.begun), np.mean([np.std(run.measured) for run in self.runs]))
         for names, sizes in ((self.preset.core.states, self.sizes), (self._of_effects, self.sizes_of_effects)):
             known = [self.chain.begun.index(name) for name in names]
@@ -449,7 +457,12 @@ class SimulatedRuns:
         At rest and in motion.
         Beyond :data:`ident.simulation.steps.FASTEST` it is followed only roughly.
         """
-        return fastest(of or self.chain, self._extreme, self.matrix.actuator, values, self._motion)
+        chain, last = of or self.chain, self._last_modes
+        asked = (*(value.tobytes() for value in values.values()), *values, chain)
+        if last is None or last[0] != asked:
+            found = fastest(chain, self._extreme, self.matrix.actuator, values, self._motion)
+            last = self._last_modes = asked, found
+        return last[1]
 
     @cached_property
     def _motion(self) -> dict[str, float]:

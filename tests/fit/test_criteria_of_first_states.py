@@ -114,7 +114,7 @@ def test_a_first_state_is_moved_by_a_thousandth_of_its_size():
     chain = SimpleNamespace(begun=["x", "other"])
     of: Any = SimpleNamespace(
         chain=chain, runs=(run,), preset=SimpleNamespace(core=SimpleNamespace(states=["x"])), _of_effects=["other"],
-        sizes=np.array([2.0]), sizes_of_effects=np.zeros(1),
+        sizes=np.array([2.0]), sizes_of_effects=np.zeros(1), unsized=(),
     )  # fmt: skip
     assert SimulatedRuns._reach.func(of) == pytest.approx([2e-3, 3e-3])
 

@@ -8,9 +8,11 @@ import numpy as np
 import pytest
 
 from ident.diagnosis.candidate_models import CandidateModels
-from ident.fit import recent_moments
+from ident.fit import recent_moments, simulated_runs
+from ident.fit.normal_matrices import NormalMatrices
 from ident.fit.recent_moments import RecentMoments
 from ident.fit.settings import Settings
+from ident.fit.simulated_runs import SimulatedRuns
 from ident.matrix import Actuator, Matrix
 from ident.run import Run
 from ident.simulation.simulate import Simulation
@@ -85,6 +87,65 @@ def test_another_first_state_is_another_simulation():
     far.starts = {run: start + 3.0 for run, start in near.starts.items()}
     there = far.exact(point, worth=lambda _promised: False)
     assert there.runs[0].power != first.runs[0].power
+
+
+def test_what_a_refit_leaves_on_trial_is_simulated_once(simulated):
+    """A ranking asks for it as the target of its trials, of its finalists and of its starts from elsewhere."""
+    of = models("at rest")
+    refit = of.refit(("coulomb_friction",), of.fitness(("coulomb_friction",)).space.typical)
+    before, asked = len(simulated), of.trial_error(refit)
+    assert of.trial_error(refit) == asked
+    assert len(simulated) == before + 1
+    assert of.over_windows(0.3, None).trial_error(refit) != asked
+
+
+def test_first_states_are_followed_from_what_was_simulated(monkeypatch):
+    """What the first states promise is known where it is decided that they are followed."""
+    fitness = models("moving").fitness(("coulomb_friction",))
+    rounds, settled, each = [], SimulatedRuns.settled, SimulatedRuns._normal_matrices
+
+    def following(runs, values, strides, *asked, **known):
+        rounds.append([])
+        return settled(runs, values, strides, *asked, **known)
+
+    def simulating(*asked):
+        rounds[-1].append(asked[3])
+        return each(*asked)
+
+    def at_once(own, run, settling, found):
+        settling.step(run.id, own.start(run), found)
+        return False
+
+    monkeypatch.setattr(SimulatedRuns, "settled", following)
+    monkeypatch.setattr(SimulatedRuns, "_normal_matrices", simulating)
+    monkeypatch.setattr(SimulatedRuns, "goes_on", at_once)
+    monkeypatch.setattr(NormalMatrices, "promises", property(lambda _found: True))
+    fitness.exact(POINT[: len(fitness.space.axes)])
+    assert [len(of) for of in rounds] == [1, 0]
+
+
+def test_steps_are_asked_for_once_where_a_record_begins_in_motion(monkeypatch):
+    """For its first states and for its moments."""
+    asked, fastest = [], simulated_runs.fastest
+    monkeypatch.setattr(simulated_runs, "fastest", lambda *of: asked.append(0) or fastest(*of))
+    fitness = models("moving").fitness(("coulomb_friction",))
+    point = POINT[: len(fitness.space.axes)]
+    fitness.exact(point)
+    assert len(asked) == 1
+    fitness.exact(0.9 * point)
+    assert len(asked) == 2
+
+
+def test_what_effects_begin_with_is_measured_where_a_first_state_is_moved(simulated):
+    """A prediction moves none: it begins where the linear model does."""
+    fitness = models("moving").fitness(("presliding_friction",))
+    values = {name: float(value[0]) for name, value in fitness.space.values(np.full((1, 8), 0.5)).items()}
+    fitness.begin(values)
+    begun = len(simulated)
+    assert np.all(fitness.sizes_of_effects == 0.0)
+    _ = fitness._reach
+    assert len(simulated) == begun + 1
+    assert np.all(fitness.sizes_of_effects > 0.0)
 
 
 def test_only_so_many_are_kept(monkeypatch):
