@@ -106,7 +106,12 @@ def is_real(evidence: Evidence, bar: Callable[[], float], criteria: EvidenceCrit
     and the bar comes near to the largest possible gain: half of the largest possible gain passes, too.
     """
     gain = min(evidence.gain, evidence.without)
-    return gain > criteria.least_gain and (gain > criteria.reaches * evidence.most or gain > bar())
+    return may_be_real(evidence, criteria) and (gain > criteria.reaches * evidence.most or gain > bar())
+
+
+def may_be_real(evidence: Evidence, criteria: EvidenceCriteria = EVIDENCE_CRITERIA) -> bool:
+    """Whether the gain is worth a parameter, without which no bar is asked for, and no further simulation."""
+    return min(evidence.gain, evidence.without) > criteria.least_gain
 
 
 _BY_CHANCE = Question(lambda *_: False, lambda _: message("why.chance"), shows=True)
@@ -117,7 +122,8 @@ def improves_on_the_whole(
     evidence: Evidence, bar: Callable[[], float], criteria: EvidenceCriteria = EVIDENCE_CRITERIA
 ) -> bool:  # fmt: skip
     """Whether the second model gains more than chance, and passes each question that is not of a part of the data."""
-    on_the_whole = all(question.yes(evidence, criteria) for question in QUESTIONS if not question.of_a_part)
+    asked = (question for question in QUESTIONS if not question.of_a_part)
+    on_the_whole = may_be_real(evidence, criteria) and all(question.yes(evidence, criteria) for question in asked)
     return on_the_whole and is_real(evidence, bar, criteria)
 
 
@@ -129,8 +135,8 @@ def worth_adding(
     The selection asks it of fitted models through :mod:`ident.diagnosis.model_comparison`. Without a `bar` the second
     model has to gain half of all that can be gained.
     """
-    improves = improves_on_the_whole(evidence, bar, criteria)
-    return improves and all(question.yes(evidence, criteria) for question in QUESTIONS if question.of_a_part)
+    passes = may_be_real(evidence, criteria) and all(question.yes(evidence, criteria) for question in QUESTIONS)
+    return passes and is_real(evidence, bar, criteria)  # last: a bar takes longer than all other answers together
 
 
 def refusing(evidence: Evidence, is_worth_adding: bool) -> Question | None:
