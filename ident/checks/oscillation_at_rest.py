@@ -27,6 +27,7 @@ SHARE = 0.5  # of the power that is as quick or quicker, that the oscillation ha
 WIDTH = 3  # lines to either side of the largest that a Hann window spreads it over, and growth with it
 DIES = 0.1  # logarithm of the amplitude lost over the stretch, beyond which it rings down
 GROWS = 0.5  # logarithm of the amplitude gained over the stretch, below which it has settled
+TINY = float(np.finfo(float).tiny)
 MAINS, NEAR = (50.0, 60.0), 0.003  # Hz, and the relative distance within which it may be picked up from them
 
 
@@ -105,13 +106,17 @@ def _swings(parts: Sequence[Samples], least: float) -> tuple[float, float] | Non
 
 
 def _followed(y: Samples, frequency: float) -> tuple[float, float, float, float]:
-    """What swings at about a frequency (1/sample): its power, what of it is not smooth, its growth, and how far off."""
+    """What swings at about a frequency (1/sample): its power, what of it is not smooth, its growth, and how far off.
+
+    The two straight lines take 4 of the 2 m numbers of m periods: m/(m − 2) makes up for that. Of three periods of
+    noise the lines would leave a third, and of many periods all.
+    """
     turning = _averaged(y * np.exp(-2j * np.pi * frequency * np.arange(len(y))), max(1, round(1.0 / frequency)))
     at = np.arange(len(turning)) * max(1, round(1.0 / frequency))
-    size = np.polyfit(at, np.log(np.abs(turning) + np.finfo(float).tiny), 1)
+    size = np.polyfit(at, np.log(np.abs(turning) + TINY), 1)
     phase = np.polyfit(at, np.unwrap(np.angle(turning)), 1)
     smooth = np.exp(np.polyval(size, at) + 1j * np.polyval(phase, at))
-    power, off = 2.0 * _rms(turning) ** 2, 2.0 * _rms(turning - smooth) ** 2
+    power, off = 2.0 * _rms(turning) ** 2, 2.0 * _rms(turning - smooth) ** 2 * len(at) / max(len(at) - 2, TINY)
     return power, off, float(size[0]), float(phase[0]) / (2.0 * np.pi)
 
 

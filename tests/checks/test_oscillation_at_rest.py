@@ -68,6 +68,17 @@ def test_what_dies_down_in_each_of_several_rests_is_none(damping):
     assert self_oscillation(stepped(damping)) is None
 
 
+@pytest.mark.parametrize("seed", [1, 5, 8, 9])
+def test_noise_of_a_narrow_band_in_several_rests_is_no_oscillation(seed):
+    """Three periods of it in each rest lie near to a straight line of phase, by chance."""
+    rng = np.random.default_rng([3, seed])
+    command = np.repeat(rng.uniform(-1.5, 1.5, 5), 100)
+    noise = np.convolve(rng.standard_normal(len(command) + 7), np.ones(8) / 8, mode="valid")
+    units = {"command": "m", "displacement": "m"}
+    run = Run("steps", "", 20.0, {"command": command, "displacement": command + noise}, units)
+    assert self_oscillation(run) is None
+
+
 def test_the_ripple_of_what_turns_is_driven_round_and_no_oscillation():
     swings = record(0.1 * np.sin(2 * np.pi * 12.3 * T))
     turns = replace(swings, output="velocity", channels={**swings.channels, "velocity": swings.measured})
