@@ -24,8 +24,15 @@ from ident.diagnosis.report import report
 from ident.diagnosis.result import Diagnosis, NextRun, Suspect
 from ident.diagnosis.selection import Selection
 from ident.diagnosis.selection_loop import select
-from ident.diagnosis.sentences import alternative_sentences, dispensable_sentence, free_run_sentence, horizon_sentence
+from ident.diagnosis.sentences import (
+    alternative_sentences,
+    dispensable_sentence,
+    free_run_sentence,
+    horizon_sentence,
+    slip_sentence,
+)  # fmt: skip
 from ident.diagnosis.shown_effects import fitted_with_shown
+from ident.diagnosis.slip_forces import slip_forces
 from ident.diagnosis.stages import EFFECTS, ERROR_BUDGET, FURTHER, LABELS, LATER, NEXT_RUN, TERMS, Stages, not_looked_at
 from ident.diagnosis.undetermined import rested
 from ident.diagnosis.unfitted import unranked, unsearched, with_missing_inputs, with_oscillations
@@ -89,7 +96,7 @@ class Diagnoser:
         steps = in_time(selection.ladder) or selection.known_ladder()
         findings = challenged(selection, steps, suspects, self.stages, pairs, elsewhere)
         catalogue = self._with_follow_up(report(self.fit, self.models, selection, steps, findings))
-        windows = (*self._windows(catalogue), *_forgiven(selection))
+        windows = (*self._windows(catalogue), *_forgiven(selection), *_sliding(selection))
         differing = run_sentences(selection, self.stages, self.budget) if catalogue.verdict.unexplained else ()
         story = _Story(catalogue, findings, (*differing, *windows, *delays, *alternative_sentences(elsewhere)))
         terms = DiscoveryResult()
@@ -227,6 +234,12 @@ def _forgiven(selection: Selection) -> Iterator[str]:
     """The sentence on the free run of the last model, where it is fitted over windows and there is time for it."""
     if selection.models.horizon is not None and (free := in_time(lambda: selection.fitted.free_run)):
         yield from free_run_sentence(free)
+
+
+def _sliding(selection: Selection) -> Iterator[str]:
+    """The sentence on the two forces at which the last model slides, where there is time for its standard errors."""
+    fitted, effects = selection.fitted, selection.models.effects
+    yield from slip_sentence(in_time(lambda: slip_forces(fitted, [effects[name] for name in fitted.effects])))
 
 
 @dataclass(frozen=True)

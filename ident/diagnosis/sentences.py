@@ -17,6 +17,7 @@ from ident.diagnosis.evidence.probability import is_improbable, is_rather_noise
 from ident.diagnosis.evidence.rule import QUESTIONS, refusing
 from ident.diagnosis.result import Explanation, Suspect
 from ident.diagnosis.run_consistency import InconsistentParameter
+from ident.diagnosis.slip_forces import SlipForces
 from ident.diagnosis.total_delay import TotalDelay
 from ident.diagnosis.verification import Contradiction, VerifyChange
 from ident.effects.effect import Effect
@@ -270,6 +271,14 @@ def free_run_sentence(free: FreeRun) -> Iterator[str]:
     """A sentence on a free run that drifts further than windows explain."""
     if drifts(free):
         yield str(message("free_run", error=sqrt(free.power), expected=sqrt(free.expected)))
+
+
+def slip_sentence(found: SlipForces | None) -> Iterator[str]:
+    """The sentence that friction with a constant force is also friction that differs each way."""
+    if found is not None:
+        sizes = {"forward": found.forward, "backward": found.backward}
+        sizes |= {"friction": found.friction, "constant": found.constant}
+        yield str(message("slip_forces", **{name: (size, found.unit) for name, size in sizes.items()}))
 
 
 def delay_sentence(late: TotalDelay, described: Callable[[str], str] = title, without: Sequence[str] = ()) -> str:

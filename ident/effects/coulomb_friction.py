@@ -13,4 +13,5 @@ COULOMB_FRICTION = Effect(
     looks="flat tops where the speed changes sign; less magnitude and more phase lag at small amplitudes",
     source="Strano and Terzo, Fc sgn v",
     steps=2,
+    slides=True,
 )

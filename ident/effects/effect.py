@@ -67,6 +67,8 @@ class Effect:
     """
     takes_over: tuple[str, ...] = ()
     """Symbols of a machine's springs, of which a part is this effect's at small motions: its strength over its way."""
+    slides: bool = False
+    """Whether its strength is the force against a motion while it slides or yields, the same to both sides."""
     unless: str = ""
     """A symbol of a machine that no diagnosis names it of: one that has it in its core, or has no such part."""
     own: bool = False

@@ -45,4 +45,5 @@ FRICTION_BEHIND_PLAY = Effect(
     source="a play, a spring and a slider in series (Jenkins element): a friction damper with clearance in its joints",
     steps=2,
     needs=force_answers,
+    slides=True,
 )

@@ -31,4 +31,5 @@ PRESLIDING_FRICTION = Effect(
     looks="rounded hysteresis at every amplitude; at small amplitudes a stiffness instead of sticking",
     source="Dahl 1968: z' = (v - |v| z)/xs, here advanced exactly over the way of a step",
     steps=2,
+    slides=True,
 )

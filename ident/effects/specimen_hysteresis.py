@@ -39,4 +39,5 @@ SPECIMEN_HYSTERESIS = Effect(
     ),
     of_specimen=True,
     takes_over=("k0", "kS"),
+    slides=True,
 )

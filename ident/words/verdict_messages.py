@@ -162,6 +162,9 @@ VERDICT: Mapping[str, str] = {
         "twice. Record one run twice with the same command to learn how much of the error is noise.",
     "verdict.not_repeated_floor_unknown":
         "Record one run twice with the same command to learn how much of the error is noise.",
+    "slip_forces":
+        "Friction of {forward:quantity} forwards and {backward:quantity} backwards is the same to these data as "
+        "friction of {friction:quantity} with a constant force of {constant:quantity}.",
     "inconsistent":
         "Fitted to each run alone, the model has {parameters:all}. A machine has one value of each, so these records "
         "determine no value of {names:all}. {cause}",

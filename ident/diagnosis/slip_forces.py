@@ -1,0 +1,51 @@
+"""Dry friction beside a constant force: friction that is not the same to both sides is the same to the data.
+
+A friction Fc sgn v with a constant force F is Fc + F against a motion one way, and Fc − F against a motion the other
+way. Where the machine slides most of the time no record tells the two readings apart, so a verdict says both. The
+constant force is that of a static load, or what the transducer of a force reads above the model.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection
+from dataclasses import dataclass
+from math import hypot
+
+from ident.diagnosis.criteria import CRITERIA
+from ident.diagnosis.fitted_model import FittedModel
+from ident.effects.effect import Effect
+from ident.effects.static_load import STATIC_LOAD
+
+
+@dataclass(frozen=True)
+class SlipForces:
+    """The forces at which a machine slides `forward` and `backward`, and the friction with a constant force, SI."""
+
+    forward: float
+    backward: float
+    friction: float
+    constant: float
+    unit: str
+
+
+def slip_forces(refit: FittedModel, effects: Collection[Effect]) -> SlipForces | None:
+    """The two forces of a model with these effects; None without friction, or where no constant force is determined.
+
+    A constant force as large as the friction is no part of it.
+    """
+    found = refit.parameters
+    sliding = [found[name] for one in effects if one.slides and (name := one.added[0].name) in found]
+    if not sliding:
+        return None
+    friction, unit = sum(one.value for one in sliding), sliding[0].unit
+    constants = [(one.value, one.std_error) for name, one in refit.transducer_offset.items() if name == "force"]
+    load = found.get(STATIC_LOAD.added[0].name)
+    if load is not None:
+        constants.append((-load.value, load.std_error))  # a load that pushes forward is less to slide against
+    errors = [error for _, error in constants if error is not None]
+    constant = sum(value for value, _ in constants)
+    if len(errors) < max(len(constants), 1) or abs(constant) <= CRITERIA.verification.deviations * hypot(*errors):
+        return None
+    if abs(constant) >= friction:
+        return None
+    return SlipForces(friction + constant, friction - constant, friction, abs(constant), unit)
