@@ -78,6 +78,7 @@ OF_RECORDS = _of_files(
     "damping_asymmetry",
     "friction_behind_play",
     "degrading_hysteresis",
+    "relaxation",
     "elastic_coupling",
     "elastic_load",
     "sensor_curve",

@@ -34,6 +34,10 @@ _RINGING = 4.0
 straight between the samples, has little power there, and a light damping needs little.
 Test: tests/diagnosis/test_hanging_mass.py"""
 
+_RELAXING = 30.0
+"""Times the longest time of an answer, up to which a part may relax: what creeps is slower than what moves it.
+Test: tests/diagnosis/test_relaxation.py"""
+
 
 def _measured_by(unit: str) -> tuple[str, float | None]:
     """The measure of a strength of this unit; a force for each power of the speed or the way by its power."""
@@ -54,6 +58,8 @@ def scale_of(effect: Effect, parameter: Parameter, sizes: Mapping[str, str]) -> 
     text, reach = _measured_by(parameter.unit)
     if parameter.start is Starts.RESONANCE and reach is not None:
         reach *= _RINGING
+    if parameter.searched and parameter.unit == "s" and reach is not None:
+        reach *= _RELAXING
     if parameter.of_motion:
         text, reach = _OF_MOTION[parameter.unit]
     logarithmic = parameter.searched and parameter.logarithmic

@@ -139,6 +139,12 @@ def degraded(force: float, way: float = 0.3, loss: float = 0.2, pinched: float =
     return STIFFNESS * x + DAMPING * SPEED + force * z
 
 
+def relaxed(stiffness: float, time: float = 0.2) -> np.ndarray:
+    """The force of a spring and a damper with a spring and a damper in series (Maxwell) that relaxes, moved at a
+    speed."""
+    return moved() + stiffness * solved(lambda t, s: [at(SPEED, t) - s[0] / time], 1)[0]
+
+
 def dry(v: float) -> float:
     """The direction of sliding; so steep that what creeps is far below what is compared."""
     return float(np.tanh(v / 1e-4))
@@ -202,6 +208,9 @@ CASES = {
         {"degrading_hysteresis.force": 25.0, "degrading_hysteresis.yield_displacement": 0.3,
          "degrading_hysteresis.degradation": 0.2, "degrading_hysteresis.pinching": 0.6},
         lambda k: degraded(25.0 * k), {"velocity": SPEED}, output="force"),
+    "relaxation": Case(
+        "specimen", {"relaxation.stiffness": 60.0, "relaxation.time": 0.2},
+        lambda k: relaxed(60.0 * k), {"velocity": SPEED}, output="force"),
     "arm_gravity": Case(
         "drive", {"arm_gravity.torque": 30.0, "arm_gravity.hanging": 0.5},
         lambda k: mass(lambda _t, x, _v: 30.0 * k * np.sin(x - 0.5)), {}),
@@ -292,7 +301,7 @@ def test_an_effect_is_looked_for_only_where_the_record_could_show_it():
     assert of_records & found - springs == {"normal_force_friction", "pressure_friction"}
     answers = Run("r", "", RATE, {"velocity": SPEED, "force": FORCE, "load_pressure": SQUEEZE}, {}, output="force")
     moves = CandidateModels.of(Matrix(Actuator("A"), (answers,)), Settings(model="specimen")).effects
-    assert {"pressure_friction", "pressure_force", "degrading_hysteresis"} <= set(moves)
+    assert {"pressure_friction", "pressure_force", "degrading_hysteresis", "relaxation"} <= set(moves)
     several = Matrix(Actuator("A"), (answers, replace(answers, id="s")))
     assert "degrading_hysteresis" not in CandidateModels.of(several, Settings(model="specimen")).effects
     speed, volts = np.cos(T), {"command": "V", "velocity": "rad/s"}
