@@ -16,7 +16,7 @@ FEW = ("relaxation", "presliding_friction", "specimen_hysteresis", "coulomb_fric
 
 
 def rubber(seed: int, time: float, share: float) -> Run:
-    """Zener's solid: a spring, and beside it another that relaxes (Maxwell), moved by sines of 0.1 to 3 Hz, by SciPy."""
+    """Zener's solid: a spring, and one that relaxes in parallel (Maxwell), moved by sines of 0.1 to 3 Hz, by SciPy."""
     rng, t = np.random.default_rng([5, seed]), np.arange(round(15.0 * RATE)) / RATE
     fine = np.arange(20 * len(t)) / (20 * RATE)
     x = sum(np.sin(2 * np.pi * f * fine + rng.uniform(0, 6.28)) for f in np.linspace(0.1, 3.0, 12)) * 4e-4
@@ -28,7 +28,7 @@ def rubber(seed: int, time: float, share: float) -> Run:
 
 
 @pytest.mark.full
-@pytest.mark.parametrize(("time", "share"), [(0.1, 1.0), (0.5, 0.4), (0.03, 0.5)])
+@pytest.mark.parametrize(("time", "share"), [(0.5, 0.4), (0.03, 0.5)])
 def test_a_force_that_relaxes_is_named_with_its_stiffness_and_its_time(monkeypatch, time, share):
     rank_only(monkeypatch, FEW)
     records = Matrix(Actuator("RUBBER"), (rubber(0, time, share), rubber(1, time, share)))
