@@ -6,7 +6,7 @@ from collections.abc import Iterable
 
 from ident.chain.channels import unmeasured
 from ident.effects.effect import Effect
-from ident.effects.needs import electric
+from ident.effects.needs import electric, turns_round
 from ident.matrix import Matrix
 from ident.presets import Preset
 from ident.presets.middle import about
@@ -20,8 +20,9 @@ def offered_effects(
     catalogue: Iterable[Effect], custom: Iterable[Effect], preset: Preset, matrix: Matrix
 ) -> dict[str, Effect]:  # fmt: skip
     """The effects of the catalogue and of the user by their names, each about the middle of the stroke."""
-    yields = _has_specimen(preset, matrix)
-    listed = (*(effect for effect in catalogue if yields or not effect.of_specimen), *custom)
+    yields, round_ = _has_specimen(preset, matrix), turns_round(matrix)
+    may_act = (one for one in catalogue if (yields or not one.of_specimen) and not (round_ and one.of_place))
+    listed = (*may_act, *custom)
     return {
         effect.name: about(effect, preset.middle)
         for effect in listed

@@ -13,4 +13,5 @@ CUBIC_STIFFNESS = Effect(
     units={"S": "N"},
     looks="static gain and resonance change with amplitude",
     source="Duffing",
+    of_place=True,
 )

@@ -54,6 +54,8 @@ class Effect:
     """What it does in a few words, where its name is of a part that a machine need not have."""
     of_specimen: bool = False
     """Whether it is a specimen's: no diagnosis names it where nothing is known of a specimen."""
+    of_place: bool = False
+    """Whether it acts at places of a way, such as its ends: no diagnosis names it of what turns round."""
     needs: Need | None = None
     """What a matrix must have for a diagnosis to look for it (:mod:`ident.effects.needs`); None is nothing."""
     shown: bool = False

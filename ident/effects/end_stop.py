@@ -29,4 +29,5 @@ END_STOP = Effect(
     looks="displacement is clipped at one level, or needs much more pressure beyond it",
     source="contact with a linear spring",
     steps=2,
+    of_place=True,
 )

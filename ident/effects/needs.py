@@ -84,6 +84,16 @@ def speed_measured(matrix: Matrix) -> bool:
     return all(run.output == "velocity" for run in matrix.runs)
 
 
+def turns_round(matrix: Matrix) -> bool:
+    """Whether speeds of rotation alone are recorded, one of which adds up to more than a turn within its run.
+
+    What turns round comes to no end of a way, and nothing tells the place at which it began.
+    """
+    speeds = [run for run in matrix.runs if run.output == "velocity" and "displacement" not in run.channels]
+    turning = len(speeds) == len(matrix.runs) and all(run.units.get("velocity") == "rad/s" for run in speeds)
+    return turning and any(np.ptp(np.cumsum(run.measured)) > 2.0 * np.pi * run.sample_rate for run in speeds)
+
+
 def one_sided(samples: NDArray[np.float64]) -> bool:
     """Whether samples stay on one side of zero."""
     lowest, highest = float(samples.min()), float(samples.max())

@@ -13,4 +13,5 @@ POSITION_FRICTION = Effect(
     looks="flat tops at large displacements only; damping that grows with amplitude",
     source="bent rod, seals and guides that are tighter towards the ends",
     steps=4,
+    of_place=True,
 )

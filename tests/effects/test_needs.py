@@ -314,6 +314,16 @@ def test_an_effect_is_looked_for_only_where_the_record_could_show_it():
         assert of_records & candidates("drive", turning, **recorded) - springs == {"arm_gravity", "load_friction"}
 
 
+@pytest.mark.parametrize(("turns", "unit", "is_looked_for"), [(0.9, "rad/s", True), (1.1, "rad/s", False), (9.0, "m/s", True)])
+def test_what_turns_round_has_no_place_on_its_way(turns, unit, is_looked_for):
+    """A stop, or what grows towards the ends, is not looked for where a speed alone adds up to more than a turn."""
+    way = np.ptp(np.cumsum(np.cos(T))) / RATE
+    speed = turns * 2.0 * np.pi / way * np.cos(T)
+    found = candidates("motor", {"command": "V", "velocity": unit}, command=FORCE, velocity=speed)
+    assert ({"end_stop", "position_friction"} <= found) is is_looked_for
+    assert "coulomb_friction" in found
+
+
 @pytest.mark.parametrize(("below", "is_one_sided"), [(0.9 * ONE_SIDED, True), (1.1 * ONE_SIDED, False)])
 def test_a_record_is_one_sided_up_to_a_twentieth(below, is_one_sided):
     run = Run("r", "", RATE, {"command": T, "displacement": np.linspace(-below, 1.0, len(T))})
