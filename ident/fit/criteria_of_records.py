@@ -141,6 +141,11 @@ class FirstStates:
     """[of a state's size] By which a first state is moved for a sensitivity. Why: small for the model, large for
     rounding.
     Test: test_criteria_of_first_states.py::test_a_first_state_is_moved_by_a_thousandth_of_its_size"""
+    of_effects: float = 3.0
+    """[times the largest value that it takes in a run begun with none] Largest first state that is an effect's own.
+    Why: a mass next to nothing behind a spring stretched without bounds would move each run by itself; after a
+    resonance an effect may begin with more than a run gives it.
+    Test: test_criteria_of_first_states.py::test_an_effect_begins_with_three_times_what_the_run_gives_it_at_most"""
     rounding: float = 1e-11
     """[of a record's deviation] Below which a moved first state does not show. Why: rounding of a simulation of many
     steps.

@@ -383,8 +383,20 @@ class SimulatedRuns:
     def _follow(self, run: Run, start: Array, step: Array) -> None:
         free = self._free(run)
         if len(step) and np.all(np.isfinite(step)):
-            self.starts[run.id] = start.copy()
-            self.starts[run.id][free] += self._reach[free] * step
+            followed = start.copy()
+            followed[free] += self._reach[free] * step
+            self.starts[run.id] = np.clip(followed, -self._most, self._most)
+
+    @property
+    def _most(self) -> Array:
+        """The largest first state of each: of an effect's own a few times what a run shows of it that begins with none.
+
+        A mass that is next to nothing would else begin behind a spring that is stretched without bounds, and move the
+        machine by itself.
+        """
+        most, own = np.full(len(self.chain.begun), np.inf), [self.chain.begun.index(name) for name in self._of_effects]
+        most[own] = np.where(self.sizes_of_effects > 0, _OF.of_effects * self.sizes_of_effects, np.inf)
+        return most
 
     @cached_property
     def _reach(self) -> Array:

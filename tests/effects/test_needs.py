@@ -314,7 +314,9 @@ def test_an_effect_is_looked_for_only_where_the_record_could_show_it():
         assert of_records & candidates("drive", turning, **recorded) - springs == {"arm_gravity", "load_friction"}
 
 
-@pytest.mark.parametrize(("turns", "unit", "is_looked_for"), [(0.9, "rad/s", True), (1.1, "rad/s", False), (9.0, "m/s", True)])
+@pytest.mark.parametrize(
+    ("turns", "unit", "is_looked_for"), [(0.9, "rad/s", True), (1.1, "rad/s", False), (9.0, "m/s", True)]
+)
 def test_what_turns_round_has_no_place_on_its_way(turns, unit, is_looked_for):
     """A stop, or what grows towards the ends, is not looked for where a speed alone adds up to more than a turn."""
     way = np.ptp(np.cumsum(np.cos(T))) / RATE

@@ -119,6 +119,17 @@ def test_a_first_state_is_moved_by_a_thousandth_of_its_size():
     assert SimulatedRuns._reach.func(of) == pytest.approx([2e-3, 3e-3])
 
 
+def test_an_effect_begins_with_three_times_what_the_run_gives_it_at_most():
+    """A mass that is next to nothing would begin behind a spring stretched without bounds, and move the machine."""
+    of: Any = SimpleNamespace(
+        chain=SimpleNamespace(begun=["x", "stretch", "unseen"]), _of_effects=["stretch", "unseen"],
+        sizes_of_effects=np.array([2.0, 0.0]), starts={}, _free=lambda _: np.arange(3), _reach=np.ones(3),
+    )  # fmt: skip
+    of._most = SimulatedRuns._most.fget(of)
+    SimulatedRuns._follow(of, record("r", START), np.zeros(3), np.array([9.0, -9.0, 9.0]))
+    assert of.starts["r"] == pytest.approx([9.0, -6.0, 9.0])
+
+
 @pytest.mark.parametrize(("shows", "share"), [(0.85e-11, 0.0), (1.15e-11, 1.0)])
 def test_a_first_state_that_shows_by_rounding_alone_has_no_share(shows, share):
     power = np.array([[[shows**2]]])
