@@ -39,6 +39,21 @@ def _like(refit: FittedModel, here: FittedModel, best: FittedModel) -> FittedMod
     return here if refit is best or indistinguishable(here, refit) else best
 
 
+def rivals(
+    fitted: FittedModel, others: Sequence[FittedModel], groups: Mapping[str, Sequence[Member]]
+) -> tuple[Alternative, ...]:  # fmt: skip
+    """Each effect of the models `others` in the place of one of the fitted model and in no group with it, with the
+    numbers of the two models.
+    """
+    found = []
+    for other in others:
+        new, gone = {*other.effects} - {*fitted.effects}, {*fitted.effects} - {*other.effects}
+        for effect, name in zip(new, gone, strict=True) if len(new) == 1 else ():
+            if effect not in {member.effect for member in groups.get(name, ())}:
+                found.append(Alternative(effect, name, separation(evidence(fitted, other))))
+    return tuple(found)
+
+
 def alternatives(groups: Mapping[str, Sequence[Member]]) -> tuple[Alternative, ...]:
     """Each other effect of a group in the place of the effect that it is of, with the numbers that decide."""
     return tuple(

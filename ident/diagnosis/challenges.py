@@ -7,7 +7,7 @@ from functools import partial
 from itertools import pairwise
 
 from ident.diagnosis.alternative_structures import AlternativeModel, alternative_explanations
-from ident.diagnosis.ambiguity import alternatives
+from ident.diagnosis.ambiguity import alternatives, rivals
 from ident.diagnosis.budget import SearchBudget
 from ident.diagnosis.ladder import Rungs
 from ident.diagnosis.model_comparison import verified_change
@@ -31,7 +31,7 @@ def challenged(
     elsewhere: Sequence[Explanation] = (),
 ) -> Findings:  # fmt: skip
     """The findings on a selection: its residual, validation data and bounds, together with those of other stages."""
-    models, fitted = selection.models, selection.fitted
+    models, fitted, sets = selection.models, selection.fitted, selection.refitted_sets
     residual = in_time(lambda: models.last_residual(fitted))
     if residual is None:
         stages.miss(NOISE)
@@ -42,9 +42,10 @@ def challenged(
         added=selection.added,
         alternatives=tuple(tuple(one.effect for one in group) for group in selection.alternatives.values()),
         compared=in_time(lambda: alternatives(selection.alternatives)) or (),
+        rivals=in_time(lambda: rivals(fitted, sets.as_probable(fitted), selection.alternatives)) or (),
         lag_pairs=tuple(lag_pairs),
         residual=residual,
-        set_gains=in_time(selection.refitted_sets.gains),
+        set_gains=in_time(sets.gains),
         verify=verify or (),
         at_bound=tuple(name for name in selection.added if models.at_bound(fitted, name)),
         suspects=tuple(suspects),

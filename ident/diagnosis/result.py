@@ -162,10 +162,11 @@ class NoiseTest:
 
 @dataclass(frozen=True)
 class Alternative:
-    """An effect of a group in the place of the effect that was added, and the numbers that do not distinguish the two.
+    """An effect in the place of the effect that was added, and the numbers by which the data distinguish the two, or
+    not.
 
-    They are of its refit and of the model with the added effect, or of the best model with an effect of the group,
-    where the refit is indistinguishable from that one alone.
+    They are of its refit and of the model with the added effect; of an effect of a group, of the best model with an
+    effect of the group, where the refit is indistinguishable from that one alone.
     """
 
     effect: str
@@ -184,7 +185,8 @@ class Verdict:
     machines that are as good. Two kinds of effects of the ladder are not named: `stood_in` are redundant with proposed
     terms, and validation data show nothing of `unconfirmed` ones. `indistinguishable` are groups of effects one of
     which is named, or two lags or delays that two others replace as well; `alternatives` has the numbers that decide
-    the groups of the first kind. `probability` is the probability of the verdict, None where it is not known;
+    the groups of the first kind, `rivals` those of effects that are as probable in the place of a named one and in no
+    group with it. `probability` is the probability of the verdict, None where it is not known;
     `probabilities` has each effect that was refitted, "nothing" and something "unlisted", `group_probabilities` has one
     for each group. The residual is `unexplained` by the numbers of `noise_test`; they are None where there was no time
     for the test.
@@ -207,6 +209,7 @@ class Verdict:
     noise_test: NoiseTest | None = field(default=None, metadata=WHERE_KNOWN)
     because: tuple[Reason, ...] = field(default=(), metadata=WHERE_KNOWN)
     alternatives: tuple[Alternative, ...] = field(default=(), metadata=WHERE_KNOWN)
+    rivals: tuple[Alternative, ...] = field(default=(), metadata=WHERE_KNOWN)
 
 
 @dataclass(frozen=True)

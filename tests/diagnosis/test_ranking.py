@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from ident.diagnosis.ambiguity import alternatives, indistinguishable_group
+from ident.diagnosis.ambiguity import alternatives, indistinguishable_group, rivals
 from ident.diagnosis.candidate import Candidate, in_rank_order
 from ident.diagnosis.criteria import CRITERIA
 from ident.diagnosis.evidence.chance import bar
@@ -81,6 +81,18 @@ def test_the_numbers_of_a_group_are_those_that_decided_it():
     assert replace(found.separation, apart=2.0 * found.separation.apart_limit).by == "apart"
     assert replace(found.separation, means_apart=4e-4).by == "means_apart"
     assert replace(found.separation, difference=-2.0 * found.separation.difference_limit, hidden=0.0).by == "difference"
+
+
+def test_a_rival_in_no_group_has_the_number_that_keeps_it_out():
+    """As probable by its gain, and its output is farther from the other's than the noise hides."""
+    here, other = refit(missing=0.03, own=0.02), refit(missing=0.03, other=0.02)
+    here.effects, other.effects = ("lag", "asymmetry"), ("leak", "lag")
+    (found,) = rivals(here, [other], {"asymmetry": ()})
+    assert (found.effect, found.instead_of, found.separation.by) == ("leak", "asymmetry", "apart")
+    member: Any = SimpleNamespace(effect="leak")
+    assert rivals(here, [other], {"asymmetry": [member]}) == ()
+    other.effects = ("leak", "play")
+    assert rivals(here, [other], {}) == ()
 
 
 @pytest.mark.parametrize(
