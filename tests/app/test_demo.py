@@ -10,7 +10,7 @@ from typing import Any
 import pytest
 
 from app.cli.demo import LACKING, SOUND, begin, wanted
-from tests.running import CHROMIUM, Service, command, free_port
+from tests.running import CHROMIUM, LITTLE, Service, command, free_port
 
 
 @pytest.fixture(scope="module")
@@ -20,11 +20,11 @@ def data(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.fixture(scope="module")
-def demo(data: Path) -> Iterator[Service]:
+def demo(data: Path, full: bool) -> Iterator[Service]:
     """The demo of a user whose service keeps its data there, as soon as it prints its address."""
     with pytest.MonkeyPatch.context() as own:
         own.setenv("SERVOIDENT_DATA", str(data))
-        with command("demo", "--port", free_port(), until="token=") as line:
+        with command("demo", "--port", free_port(), until="token=", first="" if full else LITTLE) as line:
             yield Service.that_said(line)
 
 

@@ -30,9 +30,12 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
 
 @pytest.fixture(scope="session")
 def browser_type_launch_args() -> dict[str, object]:
-    """Asks nothing elsewhere; pages of the one site share a process: one for each takes half of a short test."""
+    """Asks nothing elsewhere; pages of the one site share a process: one for each takes half of a short test.
+
+    No page lives long enough for its scripts to be compiled a second time, for speed.
+    """
     quiet = ["--no-sandbox", "--disable-gpu", "--disable-background-networking", "--disable-component-update"]
-    quiet += ["--disable-sync", "--no-first-run", "--disable-extensions"]
+    quiet += ["--disable-sync", "--no-first-run", "--disable-extensions", "--js-flags=--no-opt"]
     shared = ["--process-per-site", "--renderer-process-limit=1", "--disable-site-isolation-trials"]
     return {"executable_path": CHROMIUM, "args": [*quiet, *shared]}
 
