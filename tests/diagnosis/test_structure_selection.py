@@ -160,6 +160,7 @@ def test_a_cylinder_is_found_by_its_speed():
     assert (first.error["held_out"] or 1.0) < 0.006
 
 
+@pytest.mark.full
 def test_a_speed_along_a_way_is_that_of_a_motor():
     """A cart behind a motor: a lag that is no machine leaves as little, but no friction and no spring act on it."""
     matrix = motor(8)

@@ -106,7 +106,7 @@ def pages(service: TestClient, matrix: str, fitted: str) -> Iterator[dict[str, s
     service.delete(f"{API}/own-effects/offered")
 
 
-@pytest.mark.parametrize("role", short_form(EVERY, "lab", "ci"))
+@pytest.mark.parametrize("role", short_form(EVERY, "lab"))
 def test_no_page_offers_what_is_refused(service: TestClient, pages: dict[str, str], role: str) -> None:
     """A page that a role may not see is refused; on the others everything that can be clicked is allowed."""
     token = service.post(f"{API}/tokens", json={"name": f"sees {role}", "role": role}).json()["token"]
