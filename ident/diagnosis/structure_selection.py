@@ -6,7 +6,7 @@ more parameters then comes before the first where the first is improbable among 
 parameters and as small an error. A model with more parameters comes before it only where that is as small an error
 without an effect, and with one gains half of all that can be gained in addition to the first with its effect: a
 missing effect may hide the machine. A first model with a parameter at its bound is the wrong machine: a model with a
-smaller error comes before it.
+smaller error that is as probable comes before it.
 """
 
 from __future__ import annotations
@@ -169,14 +169,15 @@ def _preferred(
     more.
 
     Where the first is improbable among them, the simplest of the most probable models comes before it. Where a
-    parameter of the first is at its bound, a model with a smaller error and no parameter at a bound comes before it. So
-    does a simpler model whose error is not larger beyond chance, unless that model alone is unusual; of models that are
-    as simple, one that is about as probable as any of them. It is no simpler where an effect of the first takes the
-    place of what it lacks.
+    parameter of the first is at its bound, a model that is as probable, with a smaller error and no parameter at a
+    bound, comes before it. So does a simpler model whose error is not larger beyond chance, unless that model alone is
+    unusual; of models that are as simple, one that is about as probable as any of them. It is no simpler where an
+    effect of the first takes the place of what it lacks.
     """
     if probable.get(first.machine, 1.0) < CRITERIA.structure.improbable:
         return min(_as_probable(others, probable), key=_parameters), message("structure.more_probable")
-    within = [one for one in others if one.error < first.error and not one.at_bound]
+    as_likely = [one for one in others if probable.get(one.machine, 0.0) >= probable.get(first.machine, 0.0)]
+    within = [one for one in as_likely if one.error < first.error and not one.at_bound]
     if first.at_bound and within:
         return _simplest(within), message("structure.within")
     simpler = [

@@ -267,6 +267,7 @@ def test_one_that_asks_beyond_its_bound_gives_way_to_one_that_does_not(first, ot
 
     lag, motor = model("lag", 0.324, first), model("motor", 0.306, other)
     assert _preferred(lag, [lag, motor], set(), {})[0].machine == taken
+    assert _preferred(lag, [lag, motor], set(), {"lag": 0.7, "motor": 0.3})[0].machine == "lag"
 
 
 @pytest.mark.parametrize(("left", "taken"), [(0.006, "open_valve"), (0.0, "first_order")])
