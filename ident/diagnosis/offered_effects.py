@@ -20,9 +20,8 @@ def offered_effects(
     catalogue: Iterable[Effect], custom: Iterable[Effect], preset: Preset, matrix: Matrix
 ) -> dict[str, Effect]:  # fmt: skip
     """The effects of the catalogue and of the user by their names, each about the middle of the stroke."""
-    yields, round_ = _has_specimen(preset, matrix), turns_round(matrix)
-    may_act = (one for one in catalogue if (yields or not one.of_specimen) and not (round_ and one.of_place))
-    listed = (*may_act, *custom)
+    yields, has_places = _has_specimen(preset, matrix), not turns_round(matrix)
+    listed = (*(e for e in catalogue if (yields or not e.of_specimen) and (has_places or not e.of_place)), *custom)
     return {
         effect.name: about(effect, preset.middle)
         for effect in listed
