@@ -43,3 +43,22 @@ def with_followers(start: Array, A: Array, own: Sequence[int], core: Sequence[in
     along = start.copy()
     along[..., own] = along[..., core] @ follows.T
     return np.concatenate([start, along], axis=1)
+
+
+def in_order(power: Array) -> NDArray[np.intp]:
+    """The numbers of guesses by the power (g,) of what each leaves of a record, the least first."""
+    return np.argsort(np.where(np.isfinite(power), power, np.inf), kind="stable")
+
+
+def order_stays(power: Array, outputs: Array, rest: Array) -> bool:
+    """Whether the `rest` (m,) of a record cannot change the order of guesses: their outputs have come together.
+
+    `power` (g,) is that of their residuals r so far, `outputs` (n, g) are the last ones. Two that lie within δ of each
+    other from there on change the difference of their powers by Σ |δ (r + r')| ≤ 2 δ √m |r| + δ² m at most, and a
+    residual is taken to have at most twice the size of the record.
+    """
+    order = in_order(power)
+    gaps, ran_away = np.diff(power[order]), ~np.isfinite(power[order[:-1]])  # it leaves no less, nor does the next
+    apart = np.abs(np.diff(outputs[:, order], axis=1)).max(axis=0)
+    changes = 4.0 * apart * np.sqrt(len(rest)) * np.linalg.norm(rest) + apart**2 * len(rest)
+    return bool(np.all((gaps >= changes) | ran_away))

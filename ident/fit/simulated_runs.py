@@ -21,7 +21,7 @@ from ident.chain.conditions import conditions
 from ident.effects.effect import Effect
 from ident.fit.anchoring import Anchoring
 from ident.fit.criteria import FIT_CRITERIA
-from ident.fit.first_guesses import first_position, with_followers
+from ident.fit.first_guesses import first_position, in_order, order_stays, with_followers
 from ident.fit.modes import extreme, fastest, motion
 from ident.fit.normal_matrices import NormalMatrices, block_length, first_state, normal_matrices_of
 from ident.fit.products import add_block_products, add_products, completed
@@ -342,9 +342,9 @@ class SimulatedRuns:
         with np.errstate(over="ignore", invalid="ignore"):
             for rows, first, last in self.simulation((run,), vectors, steps, start).outputs():
                 power += np.sum((run.measured[first:last, None] - rows[:, 0]) ** 2, axis=0)
-                if np.all(rows == rows[:, :, :1]):  # what they began with is forgotten: the rest is the same for all
+                if order_stays(power, rows[:, 0], run.measured[last:]):
                     break
-        return list(start[0, np.argsort(np.where(np.isfinite(power), power, np.inf), kind="stable")])
+        return list(start[0, in_order(power)])
 
     def _with_followers(self, start: Array, run: Run, values: Mapping[str, float]) -> Array:
         """Guesses (1, g, n) with, behind them, the same with states of effects where they have followed the machine."""

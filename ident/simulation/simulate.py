@@ -119,7 +119,7 @@ class Simulation:
         As many as memory near the core holds; where lanes may come together few at first, then twice as many each time.
         """
         samples, most = self.runs[0].length, max(1, _CHUNK // (length * lanes.count)) * length
-        begin, size = 0, most if self.start is None or lanes.used <= WIDE else length
+        begin, size = 0, most if self.start is None else length
         while begin < samples:
             end = min(begin + size, samples)
             yield begin, end

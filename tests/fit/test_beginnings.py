@@ -15,7 +15,7 @@ from scipy.signal import lfilter
 
 from ident.beginning import beginning
 from ident.diagnosis.candidate_models import CandidateModels
-from ident.fit.first_guesses import begins_about_middle
+from ident.fit.first_guesses import begins_about_middle, in_order, order_stays
 from ident.fit.identification import Identification, completed
 from ident.fit.normal_matrices import NormalMatrices
 from ident.fit.result import FitResult
@@ -306,6 +306,24 @@ def test_a_motion_that_is_given_by_its_speed_is_guessed_to_go_about_the_middle()
     """A sine, from a phase of one radian."""
     speed = np.cos(0.1 * np.arange(400.0) + 1.0)
     assert begins_about_middle(speed) == pytest.approx(np.sin(1.0) / 0.1, rel=0.01)
+
+
+def test_guesses_are_simulated_until_the_rest_of_the_record_cannot_change_their_order():
+    """Two that lie 1e-9 apart come no nearer, and change what each leaves by no more than what the gap is."""
+    rest = np.ones(100)
+    together = np.array([[1.0, 1.0 + 1e-9]])
+    assert order_stays(np.array([2.0, 1.0]), together, rest)
+    assert order_stays(np.array([1.0, 1.0 + 4.2e-7]), together, rest)
+    assert not order_stays(np.array([1.0, 1.0 + 3.8e-7]), together, rest)
+    assert not order_stays(np.array([2.0, 1.0]), np.array([[1.0, 1.1]]), rest)
+
+
+def test_the_same_guesses_and_those_that_ran_away_stay_in_their_order():
+    same, rest = np.ones((1, 2)), np.ones(100)
+    assert order_stays(np.array([1.0, 1.0]), same, rest)
+    assert list(in_order(np.array([np.inf, 3.0, np.nan, 2.0]))) == [3, 1, 0, 2]
+    assert order_stays(np.array([np.inf, np.nan]), np.full((1, 2), np.nan), rest)
+    assert order_stays(np.array([1.0, np.inf]), np.array([[1.0, np.inf]]), rest)
 
 
 def test_where_a_specimen_stands_is_not_told_by_a_force_of_nothing():
