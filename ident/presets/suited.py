@@ -146,10 +146,12 @@ def _arrives(run: Run, channel: str) -> bool:
 def unusual(model: Preset, runs: Sequence[Described]) -> bool:
     """Whether a machine of this kind moves otherwise as a rule: a motor turns, a cylinder goes along a way.
 
-    Of a speed alone nothing tells them apart. A motor is then a lag with a mass, on which friction and springs act.
+    Of a speed alone nothing tells them apart. A motor is then a lag with a mass, on which friction and springs act. An
+    angle opens no valve: it tilts a beam or turns a drum, and what it moves along a way is no cylinder's either.
     """
     units = {run.units.get(run.output, "1") for run in runs}
-    return bool(units <= {"m"} and model.data.turns)
+    tilted = all(run.units.get("command") == "rad" for run in runs)
+    return bool(units <= {"m"} and model.data.turns and not tilted)
 
 
 def _allows(model: Preset, run: Described) -> bool:
