@@ -27,6 +27,8 @@ class Starts(Enum):
     RESONANCE = "resonance"
     """A frequency, 1/s, of a part that is held still: below the one at which the output answers its command by ringing,
     by what of the mass hangs there."""
+    RELAXATION = "relaxation"
+    """A time, s, in which a part relaxes: along its axis, which goes to many times the time of an answer."""
     STROKE_END = "end of the stroke"
     """The inverse of a way, 1/m: of the largest way that was covered, where a stop that was hit stands."""
     STROKE_MIDDLE = "middle of the stroke"

@@ -152,14 +152,15 @@ class VerdictView(BaseModel):
     """What to add, what the data cannot tell apart, whose label is doubted, whether the residual is unexplained.
 
     `standing` is found where the error is at the noise floor, stand_in where it is above it or may be, contradicted
-    where the error rises with an effect (`contradicted_by`) on runs to verify, nothing where no effect helps. `because`
-    has the reasons of a stand-in, `alternatives` the numbers that decide a group, `rivals` those of effects that are as
-    probable as a named one and in no group with it. `noise_test` has the numbers by which the residual is unexplained,
-    null where it was not asked. `at_bound` are effects whose strength ended at a bound that the search set, `elsewhere`
-    what other models explain as well, and `stood_in` effects of the ladder that are not named, for beside proposed
-    terms they are not needed, and `unconfirmed` those that are not named, for validation data show nothing of them.
-    `probability` is that of the verdict, null where it was not asked; `probabilities` those of each effect that was
-    refitted, of "nothing" and of something "unlisted", `group_probabilities` those of the groups.
+    where the error rises with an effect (`contradicted_by`) on runs to verify, nothing where no effect helps.
+    `because` has the reasons of a stand-in, `alternatives` the numbers that decide a group, `competing` those of
+    effects that are as probable as a named one and in no group with it. `noise_test` has the numbers by which the
+    residual is unexplained, null where it was not asked. `at_bound` are effects whose strength ended at a bound
+    that the search set, `elsewhere` what other models explain as well, and `stood_in` effects of the ladder that
+    are not named, for beside proposed terms they are not needed, and `unconfirmed` those that are not named, for
+    validation data show nothing of them. `probability` is that of the verdict, null where it was not asked;
+    `probabilities` those of each effect that was refitted, of "nothing" and of something "unlisted",
+    `group_probabilities` those of the groups.
     """
 
     effects: list[str]
@@ -181,7 +182,7 @@ class VerdictView(BaseModel):
         default_factory=list
     )
     alternatives: list[AlternativeView] = Field(default_factory=list)
-    rivals: list[AlternativeView] = Field(default_factory=list)
+    competing: list[AlternativeView] = Field(default_factory=list)
 
 
 class EffectSetView(BaseModel):

@@ -39,7 +39,7 @@ def _like(refit: FittedModel, here: FittedModel, best: FittedModel) -> FittedMod
     return here if refit is best or indistinguishable(here, refit) else best
 
 
-def rivals(
+def competing(
     fitted: FittedModel, others: Sequence[FittedModel], groups: Mapping[str, Sequence[Member]]
 ) -> tuple[Alternative, ...]:  # fmt: skip
     """Each effect of the models `others` in the place of one of the fitted model and in no group with it, with the

@@ -13,6 +13,7 @@ from ident.cached import cached_property
 from ident.diagnosis.compared_records import ComparedRecords
 from ident.diagnosis.criteria import CRITERIA
 from ident.diagnosis.fitted_model import FittedModel
+from ident.diagnosis.objectives import Objectives
 from ident.diagnosis.offered_effects import offered_effects, place_in_words
 from ident.diagnosis.resting import Resting
 from ident.diagnosis.tie_breaking import stable_minimum, stable_ranking
@@ -48,14 +49,6 @@ _EFFECTS_A_CHAIN = 8
 """Effects of one simulated chain, one for each lane: the kernel has registers for so many. No answer depends on it."""
 
 
-@dataclass(frozen=True)
-class _Known:
-    """What is known of the models of one set of effects, windows and bounds: objectives, and errors on trial."""
-
-    objectives: dict[tuple[tuple[str, ...], int], SimulatedFitness] = field(default_factory=dict)
-    trial_errors: Once[tuple[tuple[str, ...], int, bytes], float] = field(default_factory=Once)
-
-
 @dataclass
 class CandidateModels:
     """The models of a preset for the fit runs of a matrix, with effects of the catalogue and of the user.
@@ -63,8 +56,7 @@ class CandidateModels:
     `given` are what the user holds fixed or bounds; `left_out` the ids of runs that are not fitted; `horizon` (s) the
     length of the windows over which a machine that integrates is fitted, None for whole runs, `memory` (s) as there. Of
     the runs that are `contradicted` no noise floor is known: the error of a fitted model is below the one that was
-    stated. Parameters that the data do not determine stay where they are `resting` until a model asks for another
-    place.
+    stated. Parameters that the data do not determine stay where they are `resting` until a model moves them.
     """
 
     preset: Preset
@@ -75,7 +67,7 @@ class CandidateModels:
     left_out: frozenset[str] = frozenset()
     horizon: float | None = None
     memory: float | None = None
-    _known: _Known = field(default_factory=_Known, repr=False)
+    _known: Objectives = field(default_factory=Objectives, repr=False)
     _records: dict[int, tuple[Run, ...]] = field(default_factory=dict)
     _compared: dict[int, ComparedRecords] = field(default_factory=dict)
     _recent: RecentMoments = field(default_factory=RecentMoments, repr=False)
@@ -113,7 +105,7 @@ class CandidateModels:
     def without(self, runs: Iterable[str]) -> CandidateModels:
         """The same models, fitted to fewer runs."""
         return replace(
-            self, left_out=self.left_out | frozenset(runs), _known=_Known(), _records={}, _compared={}, bars=Once()
+            self, left_out=self.left_out | frozenset(runs), _known=Objectives(), _records={}, _compared={}, bars=Once()
         )
 
     def doubting(self, fitted: FittedModel) -> CandidateModels:
@@ -121,27 +113,25 @@ class CandidateModels:
         floors, ratio = self.floors.by_run, CRITERIA.noise.floor_contradicted
         left = {run.id: found.error for run, found in zip(fitted.fitness.runs, fitted.local.runs, strict=True)}
         contradicted = frozenset(run for run, error in left.items() if (floor := floors[run]) and floor > ratio * error)
-        return (
-            replace(self, contradicted=contradicted, _known=_Known(), _compared={}, bars=Once())
-            if contradicted
-            else self
-        )
+        if not contradicted:
+            return self
+        return replace(self, contradicted=contradicted, _known=Objectives(), _compared={}, bars=Once())
 
     def with_effects(self, effects: Mapping[str, Effect], given: Settings) -> CandidateModels:
         """The models of other effects, and of what is given of these."""
-        return replace(self, effects=effects, given=given, _known=_Known())
+        return replace(self, effects=effects, given=given, _known=Objectives())
 
     def with_shapes(self, effects: Mapping[str, Effect]) -> CandidateModels:
         """The same models, their effects with other shapes: what the best takes by chance is another, too."""
-        return replace(self, effects=effects, _known=_Known(), bars=Once())
+        return replace(self, effects=effects, _known=Objectives(), bars=Once())
 
     def with_given(self, given: Settings) -> CandidateModels:
         """The same models, with other values held fixed or bounded."""
-        return replace(self, given=given, _known=_Known())
+        return replace(self, given=given, _known=Objectives())
 
     def over_windows(self, horizon: float | None, memory: float | None) -> CandidateModels:
         """The same models, fitted over other windows."""
-        return replace(self, horizon=horizon, memory=memory, _known=_Known(), _compared={}, bars=Once())
+        return replace(self, horizon=horizon, memory=memory, _known=Objectives(), _compared={}, bars=Once())
 
     def model(self, effects: Iterable[str]) -> Preset:
         """The preset with these effects, in the order of the catalogue."""
@@ -256,8 +246,7 @@ class CandidateModels:
                 model, self.matrix, runs, self.band, space, horizon=self.horizon, memory=self.memory, trusting=True,
                 recent=self._recent,
             )  # fmt: skip
-        known = objectives[key]
-        return known.fresh(known.runs)  # no search goes on from the first states in which another one ended
+        return objectives[key].fresh(objectives[key].runs)  # no search goes on from the first states of another
 
     def compared_records(self, samples: int = 0) -> ComparedRecords:
         """The records of at most so many samples in all, as models are compared on them."""

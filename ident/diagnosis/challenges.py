@@ -7,7 +7,7 @@ from functools import partial
 from itertools import pairwise
 
 from ident.diagnosis.alternative_structures import AlternativeModel, alternative_explanations
-from ident.diagnosis.ambiguity import alternatives, rivals
+from ident.diagnosis.ambiguity import alternatives, competing
 from ident.diagnosis.budget import SearchBudget
 from ident.diagnosis.ladder import Rungs
 from ident.diagnosis.model_comparison import verified_change
@@ -42,7 +42,7 @@ def challenged(
         added=selection.added,
         alternatives=tuple(tuple(one.effect for one in group) for group in selection.alternatives.values()),
         compared=in_time(lambda: alternatives(selection.alternatives)) or (),
-        rivals=in_time(lambda: rivals(fitted, sets.as_probable(fitted), selection.alternatives)) or (),
+        competing=in_time(lambda: competing(fitted, sets.as_probable(fitted), selection.alternatives)) or (),
         lag_pairs=tuple(lag_pairs),
         residual=residual,
         set_gains=in_time(sets.gains),

@@ -130,7 +130,7 @@ class FittedModel:
         if self.local.runs[number].counted:
             return residual - offset_at(self.fitness.runs[number], self._offsets)
         with np.errstate(over="ignore", invalid="ignore"):
-            return residual - residual.mean()
+            return np.asarray(residual - residual.mean())
 
     def _residuals(self, whole: Sequence[Array]) -> OutOfFold:
         """The residuals in eq. (17), and their means."""

@@ -181,15 +181,15 @@ class Verdict:
 
     `standing` says how sure the effects are, see :data:`ident.diagnosis.verification.Standing`; None where it is not
     known; `because` has the reasons of a stand-in. `contradicted_by` are effects with which the error rises on
-    validation data, `at_bound` effects whose strength ended at a bound of the search, `elsewhere` explanations by other
-    machines that are as good. Two kinds of effects of the ladder are not named: `stood_in` are redundant with proposed
-    terms, and validation data show nothing of `unconfirmed` ones. `indistinguishable` are groups of effects one of
-    which is named, or two lags or delays that two others replace as well; `alternatives` has the numbers that decide
-    the groups of the first kind, `rivals` those of effects that are as probable in the place of a named one and in no
-    group with it. `probability` is the probability of the verdict, None where it is not known;
-    `probabilities` has each effect that was refitted, "nothing" and something "unlisted", `group_probabilities` has one
-    for each group. The residual is `unexplained` by the numbers of `noise_test`; they are None where there was no time
-    for the test.
+    validation data, `at_bound` effects whose strength ended at a bound of the search, `elsewhere` explanations by
+    other machines that are as good. Two kinds of effects of the ladder are not named: `stood_in` are redundant with
+    proposed terms, and validation data show nothing of `unconfirmed` ones. `indistinguishable` are groups of
+    effects one of which is named, or two lags or delays that two others replace as well; `alternatives` has the
+    numbers that decide the groups of the first kind, `competing` those of effects that are as probable in the place
+    of a named one and in no group with it. `probability` is the probability of the verdict, None where it is not
+    known; `probabilities` has each effect that was refitted, "nothing" and something "unlisted",
+    `group_probabilities` has one for each group. The residual is `unexplained` by the numbers of `noise_test`; they
+    are None where there was no time for the test.
     """
 
     effects: tuple[str, ...] = ()
@@ -209,7 +209,7 @@ class Verdict:
     noise_test: NoiseTest | None = field(default=None, metadata=WHERE_KNOWN)
     because: tuple[Reason, ...] = field(default=(), metadata=WHERE_KNOWN)
     alternatives: tuple[Alternative, ...] = field(default=(), metadata=WHERE_KNOWN)
-    rivals: tuple[Alternative, ...] = field(default=(), metadata=WHERE_KNOWN)
+    competing: tuple[Alternative, ...] = field(default=(), metadata=WHERE_KNOWN)
 
 
 @dataclass(frozen=True)

@@ -1,8 +1,8 @@
-"""Dry friction beside a constant force: friction that is not the same to both sides is the same to the data.
+"""Dry friction and a constant force: friction that is not the same in both directions is the same to the data.
 
-A friction Fc sgn v with a constant force F is Fc + F against a motion one way, and Fc − F against a motion the other
-way. Where the machine slides most of the time no record tells the two readings apart, so a verdict says both. The
-constant force is that of a static load, or what the transducer of a force reads above the model.
+A friction Fc sgn v with a constant force F is Fc + F against a motion forwards, and Fc − F against a motion backwards.
+Where the machine slides most of the time no record distinguishes the two readings, so a verdict says both. The constant
+force is that of a static load, or the offset of the transducer of a force.
 """
 
 from __future__ import annotations
@@ -34,11 +34,13 @@ def slip_forces(refit: FittedModel, effects: Collection[Effect]) -> SlipForces |
     A constant force as large as the friction is no part of it.
     """
     found = refit.parameters
-    sliding = [found[name] for one in effects if one.slides and (name := one.added[0].name) in found]
+    sliding = [found[name] for effect in effects if effect.slides and (name := effect.added[0].name) in found]
     if not sliding:
         return None
-    friction, unit = sum(one.value for one in sliding), sliding[0].unit
-    constants = [(one.value, one.std_error) for name, one in refit.transducer_offset.items() if name == "force"]
+    friction, unit = sum(force.value for force in sliding), sliding[0].unit
+    constants: list[tuple[float, float | None]] = [
+        (offset.value, offset.std_error) for name, offset in refit.transducer_offset.items() if name == "force"
+    ]
     load = found.get(STATIC_LOAD.added[0].name)
     if load is not None:
         constants.append((-load.value, load.std_error))  # a load that pushes forward is less to slide against

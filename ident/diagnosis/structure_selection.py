@@ -176,8 +176,8 @@ def _preferred(
     """
     if probable.get(first.machine, 1.0) < CRITERIA.structure.improbable:
         return min(_as_probable(others, probable), key=_parameters), message("structure.more_probable")
-    as_likely = [one for one in others if probable.get(one.machine, 0.0) >= probable.get(first.machine, 0.0)]
-    within = [one for one in as_likely if one.error < first.error and not one.at_bound]
+    as_likely = [model for model in others if probable.get(model.machine, 0.0) >= probable.get(first.machine, 0.0)]
+    within = [model for model in as_likely if model.error < first.error and not model.at_bound]
     if first.at_bound and within:
         return _simplest(within), message("structure.within")
     simpler = [
@@ -190,7 +190,7 @@ def _preferred(
     ]
     if first.with_effect is not None and simpler:
         fewest = min(map(_parameters, simpler))
-        simplest = [one for one in simpler if one.parameters == fewest]
+        simplest = [model for model in simpler if model.parameters == fewest]
         return _as_probable(simplest, probable)[0], message("structure.simpler")
     return first, message("structure.simplest")
 
@@ -222,9 +222,9 @@ def _judged(fitted: Sequence[_FittedStructure]) -> tuple[float | None, list[_Jud
     that integrates is among the best over windows, or the least error over whole runs is smaller than the least error
     over windows, nothing was integrated: then whole runs count.
     """
-    in_windows = [one for one in fitted if one.fit.window]
+    in_windows = [model for model in fitted if model.fit.window]
     likeliest = _likeliest_windows(in_windows)
-    tried = [one.judged(likeliest) for one in fitted]
+    tried = [model.judged(likeliest) for model in fitted]
     if likeliest is None:
         return None, tried
     if len(in_windows) < len(fitted):
@@ -239,12 +239,12 @@ def _judged(fitted: Sequence[_FittedStructure]) -> tuple[float | None, list[_Jud
 def _likeliest_windows(fitted: Sequence[_FittedStructure]) -> Window | None:
     """The windows of the model that makes the records most likely over its own, None where none is fitted over windows.
 
-    The longest ones would judge a machine that integrates twice by a speed that others begin anew, or do not have.
+    The longest windows would judge a machine that integrates twice by a speed that no other model has.
     """
-    windows = [one.fit.window for one in fitted if one.fit.window]
+    windows = [model.fit.window for model in fitted if model.fit.window]
     if len({(window.horizon, window.memory) for window in windows}) < 2:
         return windows[0] if windows else None
-    return max(zip(fitted, windows, strict=True), key=lambda one: one[0].judged(one[1]).log_likelihood)[1]
+    return max(zip(fitted, windows, strict=True), key=lambda own: own[0].judged(own[1]).log_likelihood)[1]
 
 
 def _all_fitted(

@@ -61,19 +61,19 @@ class Findings:
     """The findings of all stages of a diagnosis, in numbers and names.
 
     `added` are the effects of the selection, in their order; `alternatives` has for each the effects that are
-    indistinguishable from it, itself included, and `compared` the numbers by which they are; `rivals` are effects that
-    are as probable in its place and in no group with it. `lag_pairs` are two added lags, and the lags of which any two
-    do as well. `residual` is None where there was no time for the test of noise; `set_gains` are the gains of all sets
-    of effects that were refitted. `verify` has the change of the validation error by each added effect; `at_bound` are
-    effects whose strength ended at the bound of its search, `dispensable` are effects without which the model does as
-    well, given confirmed terms. `suspects` are runs with a doubtful label, `elsewhere` are explanations by other
-    machines that are as good.
+    indistinguishable from it, itself included, and `compared` the numbers by which they are; `competing` are
+    effects that are as probable in its place and in no group with it. `lag_pairs` are two added lags, and the lags
+    of which any two do as well. `residual` is None where there was no time for the test of noise; `set_gains` are
+    the gains of all sets of effects that were refitted. `verify` has the change of the validation error by each
+    added effect; `at_bound` are effects whose strength ended at the bound of its search, `dispensable` are effects
+    without which the model does as well, given confirmed terms. `suspects` are runs with a doubtful label,
+    `elsewhere` are explanations by other machines that are as good.
     """
 
     added: Names = ()
     alternatives: Sequence[Names] = ()
     compared: Sequence[Alternative] = ()
-    rivals: Sequence[Alternative] = ()
+    competing: Sequence[Alternative] = ()
     lag_pairs: Sequence[Names] = ()
     residual: Residual | None = None
     set_gains: SetGains | None = None
@@ -151,7 +151,7 @@ def conclude(findings: Findings, criteria: Criteria = CRITERIA) -> Verdict:
         alternatives=tuple(
             compared for compared in findings.compared if any(compared.instead_of in group for group in groups)
         ),
-        rivals=tuple(rival for rival in findings.rivals if rival.instead_of in named),
+        competing=tuple(effect for effect in findings.competing if effect.instead_of in named),
         suspects=tuple(findings.suspects),
         unexplained=_unexplained(findings, criteria),
         noise_test=None if findings.residual is None else noise_test(findings.residual, criteria),

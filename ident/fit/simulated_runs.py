@@ -31,11 +31,10 @@ from ident.matrix import Matrix
 from ident.parallel import cores, each
 from ident.parameter import AtReversals
 from ident.presets import Preset
-from ident.rounding import TINY
 from ident.run import MOTIONS, Run
 from ident.simulation.equilibrium import equilibrium
 from ident.simulation.simulate import Simulation, side_by_side
-from ident.simulation.steps import Modes, steps_at_jumps, steps_at_passages, steps_at_reversals, steps_needed
+from ident.simulation.steps import Modes, steps_needed, steps_where_reversed
 
 Array = NDArray[np.float64]
 BegunOver = tuple[float, float | None]
@@ -179,7 +178,9 @@ class SimulatedRuns:
         anchored, joint = anchoring.from_start(), side_by_side(simulations)
         together = max(1, _BLOCK // length) * length
         for rows, begin, end in joint.outputs(together):
-            for own, raw, shown in zip(sums, *(_parts(of, len(sums)) for of in (rows, anchored(rows))), strict=True):
+            for own, raw, shown in zip(
+                sums, *(np.split(of, len(sums), 2) for of in (rows, anchored(rows))), strict=True
+            ):
                 add_block_products(shown, records[begin:end], q - 2, length, own[begin // length :])
                 if begin == 0 and window and len(self._free(runs[0])):
                     own[0] += self._beginning(runs, raw, own[0])
@@ -395,17 +396,21 @@ class SimulatedRuns:
         machine by itself.
         """
         most, own = np.full(len(self.chain.begun), np.inf), [self.chain.begun.index(name) for name in self._of_effects]
-        most[own] = np.where(self.sizes_of_effects > 0, _OF.of_effects * self.sizes_of_effects, np.inf)
+        most[own] = np.where(self._sized() > 0, _OF.of_effects * self._sized(), np.inf)
         return most
+
+    def _sized(self) -> Array:
+        """The sizes of what effects begin with, in all runs that have begun."""
+        for begun in self.unsized:
+            self.sizes_of_effects = np.maximum(self.sizes_of_effects, self._sizes_of_effects(*begun))
+        self.unsized = ()
+        return self.sizes_of_effects
 
     @cached_property
     def _reach(self) -> Array:
         """A small step of each state: of the size that it has, or where it has none of the output's."""
-        for begun in self.unsized:
-            self.sizes_of_effects = np.maximum(self.sizes_of_effects, self._sizes_of_effects(*begun))
-        self.unsized = ()
         reach = np.full(len(self.chain.begun), np.mean([np.std(run.measured) for run in self.runs]))
-        for names, sizes in ((self.preset.core.states, self.sizes), (self._of_effects, self.sizes_of_effects)):
+        for names, sizes in ((self.preset.core.states, self.sizes), (self._of_effects, self._sized())):
             known = [self.chain.begun.index(name) for name in names]
             reach[known] = np.where(sizes > 0, sizes, reach[known])
         return np.asarray(_OF.reach * reach)
@@ -444,14 +449,9 @@ class SimulatedRuns:
 
     def _at_reversals(self, of: AtReversals, size: Array, values: Mapping[str, Array]) -> NDArray[np.int64]:
         """Steps a sample that a way, a speed or a force (v,) asks for where the motion reverses."""
-        rate = min(run.sample_rate for run in self.matrix.runs)
-        if of is AtReversals.WAY:
-            return steps_at_reversals(self._way_in_a_sample, size)
-        if of is AtReversals.SPEED:
-            return steps_at_passages(self._way_in_a_sample * rate, size)
-        moves = self._motion.get("x", 0.0) > 0 and "m0" in values
-        jumps = 2.0 * np.abs(size) / np.maximum(values["m0"] * rate**2 * self._motion["x"], TINY) if moves else 0.0
-        return steps_at_jumps(jumps + np.zeros(len(size)))
+        rate, moves = min(run.sample_rate for run in self.matrix.runs), self._motion.get("x", 0.0)
+        force = values["m0"] * rate**2 * moves if moves > 0 and "m0" in values else None
+        return steps_where_reversed(of, size, self._way_in_a_sample, rate, force)
 
     @cached_property
     def _way_in_a_sample(self) -> float:
@@ -466,8 +466,7 @@ class SimulatedRuns:
     def fastest(self, values: Mapping[str, Array], of: Chain | None = None) -> Modes:
         """Each vector's fastest mode in radians a sample, of the linear core and the effects at small signals.
 
-        At rest and in motion.
-        Beyond :data:`ident.simulation.steps.FASTEST` it is followed only roughly.
+        At rest and in motion. Beyond :data:`ident.simulation.steps.FASTEST` it is followed only roughly.
         """
         chain, last = of or self.chain, self._last_modes
         asked = (*(value.tobytes() for value in values.values()), *values, chain)
@@ -499,9 +498,3 @@ def is_simulated(preset: Preset, matrix: Matrix) -> bool:
 def every_run(preset: Preset, matrix: Matrix) -> SimulatedRuns:
     """All runs of a matrix; those that fit it, where there are some, say what its commands excite."""
     return SimulatedRuns(preset, matrix, matrix.runs, excited_band(matrix.of_use("fit") or matrix.runs))
-
-
-def _parts(rows: Array, count: int) -> list[Array]:
-    """Of rows (samples, runs, vectors) of so many simulations that were carried out as one, those of each."""
-    own = rows.shape[2] // count
-    return [rows[:, :, first : first + own] for first in range(0, rows.shape[2], own)]

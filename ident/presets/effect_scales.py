@@ -37,6 +37,7 @@ Test: tests/diagnosis/test_hanging_mass.py"""
 _RELAXING = 30.0
 """Times the longest time of an answer, up to which a part may relax: what creeps is slower than what moves it.
 Test: tests/diagnosis/test_relaxation.py"""
+_FARTHER = {Starts.RESONANCE: _RINGING, Starts.RELAXATION: _RELAXING}
 
 
 def _measured_by(unit: str) -> tuple[str, float | None]:
@@ -56,10 +57,8 @@ def scale_of(effect: Effect, parameter: Parameter, sizes: Mapping[str, str]) -> 
     A user's effect states its own bounds, which hold. So they do where the model has no force.
     """
     text, reach = _measured_by(parameter.unit)
-    if parameter.start is Starts.RESONANCE and reach is not None:
-        reach *= _RINGING
-    if parameter.searched and parameter.unit == "s" and reach is not None:
-        reach *= _RELAXING
+    if reach is not None:
+        reach *= _FARTHER.get(parameter.start, 1.0)
     if parameter.of_motion:
         text, reach = _OF_MOTION[parameter.unit]
     logarithmic = parameter.searched and parameter.logarithmic

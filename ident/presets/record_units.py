@@ -67,8 +67,9 @@ class RecordUnits:
         unknown = self.unknown if drive is None else {name: of for name, of in self.unknown.items() if name != "m"}
         if self.pressed:
             unit = written(_without(powers_of(unit) or {}, {}))  # Pa/Pa is 1
-        if unknown and (powers := powers_of(unit)) is not None and {*powers} & {*unknown, "kg"}:
-            unit = written(_without(powers, unknown))
+        of_unit = powers_of(unit) or {}
+        if of_unit.keys() & {*unknown, "kg"} and unknown:
+            unit = written(_without(of_unit, unknown))
         return unit if self.clock == "s" else re.sub(r"\bs\b", self.clock, unit)
 
     @property

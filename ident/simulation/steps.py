@@ -11,6 +11,8 @@ from numpy.typing import NDArray
 from ident.chain.chain import INPUT_RATE, Chain
 from ident.chain.exact_lags import with_exact_lags
 from ident.effects.effect import Effect
+from ident.parameter import AtReversals
+from ident.rounding import TINY
 
 Array = NDArray[np.float64]
 Modes = NDArray[np.complex128]
@@ -45,6 +47,22 @@ _FASTER = 1.5
 """Times as fast as at rest is a mode that motion makes faster. Why: less asks for no more steps, which are powers of
 two, and slopes by differences are off by a hundredth where forces are large."""
 FASTEST = FINE * MOST  # radians a sample of the fastest mode that is followed closely; one beyond is said
+
+
+def steps_where_reversed(
+    of: AtReversals, size: Array, turned: float, rate: float, force: Array | None
+) -> NDArray[np.int64]:  # fmt: skip
+    """Steps a sample that a way, a speed or a force (v,) asks for where the motion reverses.
+
+    `turned` is that of :func:`steps_at_reversals`, `rate` the sample rate, Hz. `force` (v,) would move the mass by the
+    amplitude of its motion in a sample; None where it has no mass, or does not move.
+    """
+    if of is AtReversals.WAY:
+        return steps_at_reversals(turned, size)
+    if of is AtReversals.SPEED:
+        return steps_at_passages(turned * rate, size)
+    jumps = np.zeros(len(size)) if force is None else 2.0 * np.abs(size) / np.maximum(force, TINY)
+    return steps_at_jumps(jumps + np.zeros(len(size)))
 
 
 def steps_at_reversals(turned: float, ways: Array) -> NDArray[np.int64]:

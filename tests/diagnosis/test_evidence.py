@@ -362,25 +362,6 @@ def test_an_effect_is_added_where_it_improves_and_generalises_alone() -> None:
     assert worth_adding(little, lambda: 0.1 * found.most)
 
 
-def test_a_bar_is_asked_for_where_nothing_else_speaks_against_an_effect() -> None:
-    """Of long records it takes as long as a refit, and what it is compared with is known at once."""
-    before, after = periodic(30, 0.3, seed=13)
-    found = compared([before], [after], [Record(1.0, period=87.3)])
-    asked: list[float] = []
-
-    def bar() -> float:
-        asked.append(0.1 * found.most)
-        return asked[-1]
-
-    little = replace(found, gain=0.2 * found.most, without=0.2 * found.most)
-    loses = {**found.parts, [*SPANS][-1]: BlockMean(-0.5 * found.explainable, 1e-9, 20)}
-    assert not worth_adding(replace(little, by_part=lambda: loses), bar)
-    assert not worth_adding(replace(little, gain=3.3, by_free_run=lambda: asked.append(1.0)), bar)  # type: ignore[arg-type, return-value]
-    assert not asked
-    assert worth_adding(little, bar)
-    assert len(asked) == 1
-
-
 def test_a_gain_below_the_least_adds_nothing_however_low_the_bar() -> None:
     before, after = periodic(30, 0.3, seed=13)
     found = compared([before], [after], [Record(1.0, period=87.3)])

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from ident.diagnosis.ambiguity import alternatives, indistinguishable_group, rivals
+from ident.diagnosis.ambiguity import alternatives, competing, indistinguishable_group
 from ident.diagnosis.candidate import Candidate, in_rank_order
 from ident.diagnosis.criteria import CRITERIA
 from ident.diagnosis.evidence.chance import bar
@@ -87,12 +87,12 @@ def test_a_rival_in_no_group_has_the_number_that_keeps_it_out():
     """As probable by its gain, and its output is farther from the other's than the noise hides."""
     here, other = refit(missing=0.03, own=0.02), refit(missing=0.03, other=0.02)
     here.effects, other.effects = ("lag", "asymmetry"), ("leak", "lag")
-    (found,) = rivals(here, [other], {"asymmetry": ()})
+    (found,) = competing(here, [other], {"asymmetry": ()})
     assert (found.effect, found.instead_of, found.separation.by) == ("leak", "asymmetry", "apart")
     member: Any = SimpleNamespace(effect="leak")
-    assert rivals(here, [other], {"asymmetry": [member]}) == ()
+    assert competing(here, [other], {"asymmetry": [member]}) == ()
     other.effects = ("leak", "play")
-    assert rivals(here, [other], {}) == ()
+    assert competing(here, [other], {}) == ()
 
 
 @pytest.mark.parametrize(

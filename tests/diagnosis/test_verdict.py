@@ -191,8 +191,8 @@ def test_the_numbers_of_a_group_stand_beside_it_and_those_of_no_group_are_left_o
     )  # fmt: skip
     assert conclude(found).alternatives == both
     assert conclude(replace(found, dispensable=("play",))).alternatives == both[:1]
-    rivals = replace(found, rivals=both, dispensable=("play",))
-    assert conclude(rivals).rivals == both[:1]  # of named effects alone
+    competing = replace(found, competing=both, dispensable=("play",))
+    assert conclude(competing).competing == both[:1]  # of named effects alone
 
 
 def test_two_lags_that_are_named_are_as_probable_as_both_together():

@@ -89,7 +89,7 @@ def test_what_an_effect_states_is_of_its_kind():
     units = {
         Starts.PHASE: "1", Starts.SPECTRAL_LINES: "1/s", Starts.STROKE_END: "1/m", Starts.STROKE_MIDDLE: "m",
         Starts.TIME: "s", Starts.FRICTION: "Pa", Starts.FRICTION_GRADIENT: "Pa/m",
-        Starts.FINELY: "m", Starts.RESONANCE: "1/s",
+        Starts.FINELY: "m", Starts.RESONANCE: "1/s", Starts.RELAXATION: "s",
     }  # fmt: skip
     any_unit = (Starts.ALONG_RANGE, Starts.AS_KNOWN)
     stated = [(p.start, p.unit) for e in CATALOGUE for p in e.parameters if p.start not in any_unit]
