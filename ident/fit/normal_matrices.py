@@ -257,6 +257,14 @@ def normal_matrices_of(runs: Sequence[Run], blocks: Array, p: int) -> list[Norma
     return [_separated(run, one) for run, one in zip(runs, found, strict=True)]
 
 
+def at_point(run: Run, found: NormalMatrices) -> NormalMatrices:
+    """The moments of a run without those of sensitivities: as a simulation of the point alone has them, to the bit."""
+    if not len(found.blocks):  # it ran away
+        return found
+    first = found.remove.shape[1] - 1
+    return normal_matrices_of((run,), found.blocks[None, :, first:, first:].copy(), 0)[0]
+
+
 def _separated(run: Run, found: NormalMatrices) -> NormalMatrices:
     """The moments of a run whose offset and first states differ in their effect, or without one of them."""
     of_speed = run.output == "velocity"

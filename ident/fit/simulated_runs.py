@@ -23,7 +23,7 @@ from ident.fit.anchoring import Anchoring
 from ident.fit.criteria import FIT_CRITERIA
 from ident.fit.first_guesses import first_position, in_order, order_stays, with_followers
 from ident.fit.modes import extreme, fastest, motion
-from ident.fit.normal_matrices import NormalMatrices, block_length, first_state, normal_matrices_of
+from ident.fit.normal_matrices import NormalMatrices, at_point, block_length, first_state, normal_matrices_of
 from ident.fit.products import add_block_products, add_products, completed
 from ident.fit.reduction import excited_band
 from ident.fit.settling import Least, Settling, better
@@ -122,7 +122,7 @@ class SimulatedRuns:
         `strides` (p,) are those of the vectors behind the first; `runs` some of all; `known` the matrices from the
         first states as they are, where these were simulated before.
         """
-        found = dict(known or {})
+        found = {r.id: self._as_seen((r,), [at_point(r, known[r.id])])[0] for r in self.runs} if known else {}
         settling, pending = Settling(), self.runs if runs is None else runs
         for number in range(1 if len(strides) else _OF.rounds):
             if number or known is None:

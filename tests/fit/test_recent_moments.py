@@ -124,6 +124,22 @@ def test_first_states_are_followed_from_what_was_simulated(monkeypatch):
     assert [len(of) for of in rounds] == [1, 0]
 
 
+def test_what_is_known_leads_to_the_same_first_states_as_a_simulation_of_it():
+    """To the bit: rounding chooses among optima of a record in which friction sticks and slips."""
+    fitness, starts = models("moving").fitness(("coulomb_friction",)), []
+    values = fitness.space.values(np.concatenate([POINT[None, : len(fitness.space.axes)]] * 3))
+    values = {name: value * [1.0, 1.0001, 1.0] for name, value in values.items()}
+    alone = {name: value[:1] for name, value in values.items()}
+    for known in (True, False):
+        runs = fitness.fresh(fitness.runs)
+        runs.begin({name: float(value[0]) for name, value in values.items()})
+        found = runs.settled(values, np.array([1e-4, 1e-4]), 1)
+        runs.settled(alone, np.empty(0), 1, known=found if known else None)
+        starts.append(runs.starts["r"])
+    assert np.any(starts[0])
+    assert np.array_equal(*starts)
+
+
 def test_steps_are_asked_for_once_where_a_record_begins_in_motion(monkeypatch):
     """For its first states and for its moments."""
     asked, fastest = [], simulated_runs.fastest
