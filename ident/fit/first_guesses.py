@@ -60,5 +60,6 @@ def order_stays(power: Array, outputs: Array, rest: Array) -> bool:
     order = in_order(power)
     gaps, ran_away = np.diff(power[order]), ~np.isfinite(power[order[:-1]])  # it leaves no less, nor does the next
     apart = np.abs(np.diff(outputs[:, order], axis=1)).max(axis=0)
-    changes = 4.0 * apart * np.sqrt(len(rest)) * np.linalg.norm(rest) + apart**2 * len(rest)
+    residual = 2.0 * np.linalg.norm(rest)
+    changes = 2.0 * apart * np.sqrt(len(rest)) * residual + apart**2 * len(rest)
     return bool(np.all((gaps >= changes) | ran_away))
