@@ -160,7 +160,8 @@ def _remaining(
     """The messages that the residual is more than noise, and why a part of it may be noise or a further effect."""
     examined = complete and limit is None
     if is_rather_noise(probabilities):
-        yield message("verdict.above_floor", probability=probabilities["unlisted"])
+        key = "verdict.correlated" if floor is None else "verdict.above_floor"
+        yield message(key, probability=probabilities["unlisted"])
     else:
         yield _probable("verdict.unlisted" if examined else "verdict.remains", "unlisted", probabilities)
     if limit is not None:

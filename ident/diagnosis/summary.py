@@ -44,7 +44,9 @@ def _missing(diagnosis: Diagnosis) -> Message:
     if not diagnosis.complete:
         return message("summary.stopped" if diagnosis.candidates else "summary.unexamined")
     if verdict.unexplained and is_rather_noise(verdict.probabilities):
-        return message("summary.above_floor", probability=verdict.probabilities["nothing"])
+        correlated = verdict.noise_test is not None and verdict.noise_test.floor is None
+        key = "summary.correlated" if correlated else "summary.above_floor"
+        return message(key, probability=verdict.probabilities["nothing"])
     if verdict.unexplained:
         return _probable(diagnosis, "unlisted", "summary.unlisted", "summary.unlisted_probable")
     return _probable(diagnosis, "nothing", "summary.nothing", "summary.nothing_probable")

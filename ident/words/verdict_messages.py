@@ -27,6 +27,8 @@ SUMMARY: Mapping[str, str] = {
     "summary.above_floor":
         "Probably nothing is missing (probability {probability:probability}), though the error is larger than its "
         "noise floor explains.",
+    "summary.correlated":
+        "Probably nothing is missing (probability {probability:probability}), though the residual is correlated.",
     "summary.nothing": "Nothing is missing.",
     "summary.nothing_probable": "Nothing is missing (probability {probability:probability}).",
     "summary.missing_input": "Missing: an input that is not in the record of {run:run}.",
@@ -148,6 +150,9 @@ VERDICT: Mapping[str, str] = {
     "verdict.label": "The label of {run:run} in matrix.yaml looks wrong ({what}): {evidence}.",
     "verdict.above_floor":
         "The error is larger than its noise floor explains. Drift and disturbances are a more probable cause than "
+        "something that no effect in the library explains (probability {probability:probability}).",
+    "verdict.correlated":
+        "The residual is correlated from sample to sample. Drift and disturbances are a more probable cause than "
         "something that no effect in the library explains (probability {probability:probability}).",
     "verdict.unlisted": "Something remains that no effect in the library explains.",
     "verdict.unlisted_probable":

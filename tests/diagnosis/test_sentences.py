@@ -64,6 +64,11 @@ def test_an_error_above_its_floor_is_drift_rather_than_something_unlisted_where_
     for unlisted, said in ((0.09, "Drift and disturbances are a more probable cause"), (0.6, "Something remains that")):
         text = verdict_text((), (), (), True, {"fit": 0.2}, 0.2, probabilities={"nothing": 0.3, "unlisted": unlisted})
         assert said in text
+        without = verdict_text(
+            (), (), (), True, {"fit": 0.2}, None, probabilities={"nothing": 0.3, "unlisted": unlisted}
+        )
+        assert said in without
+        assert "floor explains" not in without
 
 
 def test_effects_that_are_nearly_as_probable_as_the_named_one_are_said():

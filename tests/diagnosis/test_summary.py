@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 from ident.diagnosis.parameter_estimate import ParameterEstimate
-from ident.diagnosis.result import Baseline, Diagnosis, NextRun, Rung, Suspect, Verdict
+from ident.diagnosis.result import Baseline, Diagnosis, NextRun, NoiseTest, Rung, Suspect, Verdict
 
 STRENGTH = {"dead_zone.half_width": ParameterEstimate(8e-5, "m", 2e-7, "δ")}
 FOUND = Diagnosis(
@@ -93,6 +93,8 @@ def test_nothing_something_unlisted_and_what_is_contradicted_are_said():
     assert more.summary[0] == (
         "Probably nothing is missing (probability 89 %), though the error is larger than its noise floor explains."
     )
+    no_floor = replace(more, verdict=replace(more.verdict, noise_test=NoiseTest(0.11, 0.5, correlation=0.8)))
+    assert no_floor.summary[0] == "Probably nothing is missing (probability 89 %), though the residual is correlated."
     unlisted = replace(nothing, verdict=Verdict(unexplained=True, probabilities={"unlisted": 0.9}))
     assert unlisted.summary[0] == "Missing: something that no effect in the library explains (probability 90 %)."
     against = lines(standing="contradicted", contradicted_by=("dead_zone",))
