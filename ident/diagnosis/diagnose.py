@@ -35,7 +35,7 @@ from ident.diagnosis.shown_effects import fitted_with_shown
 from ident.diagnosis.slip_forces import slip_forces
 from ident.diagnosis.stages import EFFECTS, ERROR_BUDGET, FURTHER, LABELS, LATER, NEXT_RUN, TERMS, Stages, not_looked_at
 from ident.diagnosis.undetermined import rested
-from ident.diagnosis.unfitted import unranked, unsearched, with_missing_inputs, with_oscillations
+from ident.diagnosis.unfitted import unranked, unsearched, unstable, with_missing_inputs, with_oscillations
 from ident.diagnosis.verdict import Findings, conclude
 from ident.effects.effect import Effect
 from ident.errors import TimeIsUp, Unusable
@@ -64,6 +64,10 @@ def diagnose(matrix: Matrix, fit: FitResult, custom: Sequence[Effect], budget: S
             diagnosis = Diagnoser(models, matrix, fit, custom, budget).diagnosis()
         except TimeIsUp:
             diagnosis = unranked(matrix, fit, budget.seconds_taken)
+        except Unusable as error:
+            if error.code != "bad-fit" or not swings:
+                raise
+            diagnosis = unstable(matrix, fit, budget.seconds_taken)
     diagnosis = with_missing_inputs(replace(diagnosis, seconds=budget.seconds_taken), missing)
     return with_oscillations(diagnosis, swings)
 

@@ -29,6 +29,17 @@ def unranked(matrix: Matrix, fit: FitResult, seconds: float) -> Diagnosis:
     return _of_fit(matrix, fit, message("verdict.unranked"), seconds)
 
 
+def unstable(matrix: Matrix, fit: FitResult, seconds: float) -> Diagnosis:
+    """The diagnosis of a fit that is unstable on records that oscillate: the oscillation is the finding.
+
+    No error of such a fit is reported: it grows with the length of the records.
+    """
+    why = message("verdict.unstable_fit")
+    found = _told(matrix, _settings(fit), Baseline(dict(NO_ERRORS)), dict(NO_ERRORS), why, seconds)
+    verdict = replace(found.verdict, standing="nothing")
+    return replace(found, verdict=verdict, preprocessing=fit.preprocessing, complete=True, not_looked_at=())
+
+
 def unsearched(matrix: Matrix, fit: FitResult, missing: Sequence[MissingInput], seconds: float) -> Diagnosis:
     """The diagnosis of a fit whose data miss an input: an effect would only imitate it, so none is looked for."""
     why = message("verdict.missing_input", evidence=missing[0].evidence)
@@ -68,9 +79,12 @@ def with_oscillations(diagnosis: Diagnosis, swings: Sequence[SelfOscillation]) -
 def _of_fit(matrix: Matrix, fit: FitResult, why: Message, seconds: float) -> Diagnosis:
     """A diagnosis with the errors of the fit alone, and the reason for it."""
     error, floor = ({**NO_ERRORS, **of} for of in (fit.error, fit.noise_floor))
-    settings = Settings.from_json(dict(fit.settings)) if fit.settings else Settings(model=fit.model)
     baseline = Baseline(error, fit.offset.get("fit"))
-    return replace(_told(matrix, settings, baseline, floor, why, seconds), preprocessing=fit.preprocessing)
+    return replace(_told(matrix, _settings(fit), baseline, floor, why, seconds), preprocessing=fit.preprocessing)
+
+
+def _settings(fit: FitResult) -> Settings:
+    return Settings.from_json(dict(fit.settings)) if fit.settings else Settings(model=fit.model)
 
 
 def _told(

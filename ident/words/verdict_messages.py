@@ -306,6 +306,8 @@ SEARCH: Mapping[str, str] = {
     "verdict.unfitted":
         "The search was stopped early: there was no time to fit a model. Give it more "
         "time (--time, in s), or a fit (--fit).",
+    "verdict.unstable_fit":
+        "The fitted model is unstable on a run of the estimation data, so no effect was looked for.",
     "verdict.unranked":
         "The search was stopped early: there was no time to examine any effect. Give it more "
         "time (--time, in s).",

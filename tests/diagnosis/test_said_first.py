@@ -9,9 +9,10 @@ import pytest
 
 from ident.checks.self_oscillation import self_oscillation
 from ident.diagnosis.budget import SearchBudget
-from ident.diagnosis.diagnose import diagnose
+from ident.diagnosis.diagnose import Diagnoser, diagnose
 from ident.diagnosis.result import Diagnosis, Verdict
 from ident.diagnosis.unfitted import with_oscillations
+from ident.errors import Unusable
 from ident.fit.result import FitResult
 from ident.matrix import Actuator, Matrix
 from tests.checks import test_oscillation_at_rest as tested
@@ -46,6 +47,23 @@ def test_an_oscillation_is_said_first_with_its_frequency_and_growth():
     assert partly.summary[0].startswith("The machine oscillates by itself: in run loop the displacement swings")
     assert partly.summary[2] == "Next: lower the gain of the loop, or leave run loop out of the fit, and fit again."
     assert set(found.to_json()["oscillation"][0]) == {"run", "frequency", "growth", "cause", "evidence"}
+
+
+def test_an_oscillation_is_told_where_the_fitted_model_is_unstable_on_it(monkeypatch):
+    """An error that asks for another fit would hide what was found; without an oscillation it stays one."""
+
+    def unstable(_diagnoser: Diagnoser) -> Diagnosis:
+        raise Unusable("bad-fit", "the fitted model is unstable on a run", "fit", "fit the model to this matrix")
+
+    monkeypatch.setattr(Diagnoser, "diagnosis", unstable)
+    swings = tested.record(0.02 * np.sin(2 * np.pi * 12.3 * tested.T), gain=7.0)
+    found = diagnose(Matrix(Actuator("LD"), (swings,)), FIT, (), SearchBudget(most=1))
+    assert found.oscillation[0]["frequency"] == pytest.approx(12.3, rel=0.01)
+    assert "so no effect was looked for" in found.verdict.text
+    assert (found.complete, found.baseline.error["fit"], found.verdict.standing) == (True, None, "nothing")
+    assert found.summary[0].startswith("The machine oscillates by itself")
+    with pytest.raises(Unusable, match="unstable on a run"):
+        diagnose(Matrix(Actuator("LD"), (tested.record(0.02 * np.sin(0.1 * tested.T)),)), FIT, (), SearchBudget(most=1))
 
 
 def test_the_json_says_where_the_input_acted_and_is_read_again(found):
