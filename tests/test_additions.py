@@ -193,7 +193,7 @@ def copy(tmp_path_factory: pytest.TempPathFactory) -> Path:
 @pytest.mark.full
 @pytest.mark.parametrize("example", EXAMPLES)
 def test_an_example_passes_its_tests(copy, example):
-    called = [sys.executable, "-m", "pytest", "-n", "0", *EXAMPLES[example].split()]
+    called = [sys.executable, "-m", "pytest", *EXAMPLES[example].split()]
     own = os.environ | {"PYTHONPATH": str(copy)}
     done = subprocess.run(called, cwd=copy, env=own, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stdout[-3000:]
