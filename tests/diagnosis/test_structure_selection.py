@@ -19,6 +19,8 @@ from ident.diagnosis.structure_selection import _judged, _preferred, compared_st
 from ident.fit.result import FitResult, Structure, TransducerOffset
 from ident.fit.settings import Settings
 from ident.matrix import Actuator, Matrix
+from ident.presets import preset
+from ident.presets.suited import unusual
 from ident.progress import silent
 from ident.run import Run
 from ident.workflows import identify
@@ -113,6 +115,15 @@ def test_windows_count_where_a_machine_that_integrates_is_among_the_best_over_th
     horizon, tried = _judged([fitted(None, 0.29, 0.33), fitted(900.0, cylinder, 0.87)])
     assert horizon == over
     assert tried[0].error == (0.33 if over is None else 0.29)
+
+
+@pytest.mark.parametrize(("command", "strange"), [("V", True), ("rad", False)])
+def test_a_motor_moves_along_a_way_as_a_rule_where_an_angle_drives_it_alone(command, strange):
+    """An angle opens no valve: what it moves is a ball on a beam, or hangs on a drum."""
+    channels = {"command": np.zeros(9), "displacement": np.zeros(9)}
+    run = Run("r", "", RATE, channels, {"command": command, "displacement": "m"})
+    assert unusual(preset("motor"), [run]) is strange
+    assert not unusual(preset("open_valve"), [run])
 
 
 @pytest.mark.parametrize(("likely", "over"), [(4472.0, 1.6), (4100.0, 5.3)])
