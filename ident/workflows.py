@@ -27,10 +27,11 @@ from ident.diagnosis.competing_models import competing_models
 from ident.diagnosis.criteria import CRITERIA
 from ident.diagnosis.recommended import settings_after
 from ident.diagnosis.result import Diagnosis
-from ident.diagnosis.structure_selection import CompletedFit, FitWithAlternatives, choose_structure
+from ident.diagnosis.structure_selection import choose_structure
 from ident.diagnosis.unfitted import unfitted
 from ident.effects.effect import Effect
 from ident.errors import TimeIsUp, Unusable
+from ident.fit.alternatives import CompletedFit, FitWithAlternatives
 from ident.fit.choices import Choices, settings_of
 from ident.fit.continued import ContinuedIdentification
 from ident.fit.given import Bounds, with_candidates_given
