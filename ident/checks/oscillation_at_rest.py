@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from ident.checks.at_rest import acting, rests
 from ident.noise.power_density import hann
+from ident.rounding import TINY
 from ident.run import BENCH, Run, Samples
 
 PERIODS = 10  # of a stretch at least: fewer tell no growth
@@ -27,7 +28,6 @@ SHARE = 0.5  # of the power that is as quick or quicker, that the oscillation ha
 WIDTH = 3  # lines to either side of the largest that a Hann window spreads it over, and growth with it
 DIES = 0.1  # logarithm of the amplitude lost over the stretch, beyond which it rings down
 GROWS = 0.5  # logarithm of the amplitude gained over the stretch, below which it has settled
-TINY = float(np.finfo(float).tiny)
 MAINS, NEAR = (50.0, 60.0), 0.003  # Hz, and the relative distance within which it may be picked up from them
 
 

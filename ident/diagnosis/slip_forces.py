@@ -46,8 +46,7 @@ def slip_forces(refit: FittedModel, effects: Collection[Effect]) -> SlipForces |
         constants.append((-load.value, load.std_error))  # a load that pushes forward is less to slide against
     errors = [error for _, error in constants if error is not None]
     constant = sum(value for value, _ in constants)
-    if len(errors) < max(len(constants), 1) or abs(constant) <= CRITERIA.verification.deviations * hypot(*errors):
-        return None
-    if abs(constant) >= friction:
+    all_determined = 0 < len(constants) == len(errors)
+    if not all_determined or not CRITERIA.verification.deviations * hypot(*errors) < abs(constant) < friction:
         return None
     return SlipForces(friction + constant, friction - constant, friction, abs(constant), unit)

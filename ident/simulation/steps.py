@@ -62,7 +62,7 @@ def steps_where_reversed(
     if of is AtReversals.SPEED:
         return steps_at_passages(turned * rate, size)
     jumps = np.zeros(len(size)) if force is None else 2.0 * np.abs(size) / np.maximum(force, TINY)
-    return steps_at_jumps(jumps + np.zeros(len(size)))
+    return steps_at_jumps(jumps)
 
 
 def steps_at_reversals(turned: float, ways: Array) -> NDArray[np.int64]:
