@@ -86,10 +86,10 @@ def tidy(folder: Path, largest: int = LARGEST) -> None:
 
 
 def tidy_daily(folder: Path) -> None:
-    """The same, once a day for all processes: nothing is removed earlier, and to look at thousands of files takes a
-    second.
+    """Tidy a folder, unless a process did so within the last day: nothing is removed earlier, and to look at thousands
+    of files takes a second.
 
-    The time of the last is that of a file beside the folder.
+    A file next to the folder has the time at which it was tidied last.
     """
     mark = folder.with_name(f"{folder.name}.tidied")
     with suppress(OSError):

@@ -179,9 +179,10 @@ def test_the_error_over_windows_is_counted_from_where_each_was_measured():
 
 @pytest.mark.parametrize("seed", [1, 2])
 def test_no_window_begins_in_the_free_run_of_one_fold_and_ends_in_that_of_another(seed):
-    """A cart between two limits, its speed begun anew: three parameters of 2,000 samples foretell other data as well.
+    """A cart moves between two limits, and each window starts with a speed of its own. Three parameters that are fitted
+    to 2,000 samples predict other data as well as these.
 
-    The free runs of two folds are metres apart in the end; windows and speeds between them saw a jump that none has.
+    The free runs of two folds end metres apart. A window across two folds saw their distance as a jump.
     """
     random, rate, x, v, push = np.random.default_rng(seed), 100.0, np.zeros(2000), 0.0, 1.0
     u = np.zeros(len(x))
