@@ -63,7 +63,8 @@ def pytest_terminal_summary(terminalreporter: Any, config: pytest.Config) -> Non
                 costs[report.payer] += report.processor
                 of_tests[report.nodeid if report.payer != SHARED else SHARED, report.when] += report.processor
     if len(costs) > NAMED:
-        told = f"{sum(costs.values()):.0f} s of the processor in tests, {config.stash[_BEFORE]:.0f} s before the first"
+        before = config.stash.get(_BEFORE, 0.0)
+        told = f"{sum(costs.values()):.0f} s of the processor in tests, {before:.0f} s before the first"
         terminalreporter.section(f"{told}; the most in")
         for file, seconds in costs.most_common(NAMED):
             terminalreporter.line(f"{seconds:6.1f} s  {file}")
