@@ -305,7 +305,7 @@ def why_this_verdict() -> list[str]:
         "of each effect that is as probable by its gain, in the place of a named one. Or another effect dominates it.",
         "And `probabilities` sum all sets with an effect: it may act together with the named one, not in its place",
         "(`effect_sets` has each set with its gain). An effect that was not refitted there is in no group, either.",
-        "A group around an effect of `stood_in` or `unconfirmed` is not said.",
+        "A group around an effect of `stood_in`, `unconfirmed` or `by_chance` is not said.",
         "`group_probabilities` has the probability of a group. `next_experiment` of the diagnosis is the run that",
         "separates it best.",
         "",

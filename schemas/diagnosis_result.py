@@ -157,8 +157,9 @@ class VerdictView(BaseModel):
     effects that are as probable as a named one and in no group with it. `noise_test` has the numbers by which the
     residual is unexplained, null where it was not asked. `at_bound` are effects whose strength ended at a bound
     that the search set, `elsewhere` what other models explain as well, and `stood_in` effects of the ladder that
-    are not named, for beside proposed terms they are not needed, and `unconfirmed` those that are not named, for
-    validation data show nothing of them. `probability` is that of the verdict, null where it was not asked;
+    are not named, for beside proposed terms they are not needed. `unconfirmed` are those that are not named, for
+    validation data show nothing of them, and `by_chance` those that are not named, for it is more probable than not
+    that nothing is missing. `probability` is that of the verdict, null where it was not asked;
     `probabilities` those of each effect that was refitted, of "nothing" and of something "unlisted",
     `group_probabilities` those of the groups.
     """
@@ -174,6 +175,7 @@ class VerdictView(BaseModel):
     elsewhere: list[ExplanationView] = Field(default_factory=list)
     stood_in: list[str] = Field(default_factory=list)
     unconfirmed: list[str] = Field(default_factory=list)
+    by_chance: list[str] = Field(default_factory=list)
     probability: float | None = None
     probabilities: dict[str, float] = Field(default_factory=dict)
     group_probabilities: list[float] = Field(default_factory=list)

@@ -42,7 +42,7 @@ def _chosen(diagnosis: Diagnosis) -> list[Values]:
         known = [refitted[name] for name in group if name in refitted]
         if len(known) > 1:
             return known[: CRITERIA.conclusion.competing]
-    ladder = [rung.parameters for rung in diagnosis.ladder if rung.parameters]
+    ladder = [rung.parameters for rung in diagnosis.confirmed_ladder if rung.parameters]
     settled = bool(diagnosis.verdict.effects) or not diagnosis.verdict.unexplained
     if settled and ladder:  # only the accuracy of the parameters is in question
         return ladder[-1:]

@@ -57,7 +57,7 @@ def recommended(diagnosis: Diagnosis, terms: int | None = None) -> End:
     """The refit that a diagnosis recommends, with its proposed terms or the first `terms` of them (0: none).
 
     Where no number is given no term is taken that validation data contradict, unless terms behind it correct that, and
-    none behind such a term. Without terms it has no effect of which validation data show nothing.
+    none behind such a term. Without terms it has no effect that is unconfirmed or by chance.
 
     Raises Unusable where it proposes fewer, or has no refit.
     """
@@ -68,7 +68,7 @@ def recommended(diagnosis: Diagnosis, terms: int | None = None) -> End:
     taken = _supported(proposals) if terms is None else proposals[:terms]
     if taken:
         return _with_terms(taken)
-    ladder = [end for end in _rungs(diagnosis) if not {*end.added} & {*diagnosis.verdict.unconfirmed}]
+    ladder = [end for end in _rungs(diagnosis) if not {*end.added} & {*diagnosis.verdict.unsupported}]
     if not ladder:
         raise Unusable("bad-diagnosis", "the diagnosis holds no refit", "start",
                        "give what `servoident diagnose --json FILE` wrote")  # fmt: skip

@@ -19,6 +19,7 @@ from ident.diagnosis.result import NO_ERRORS, Baseline, Diagnosis, EffectSet, Er
 from ident.diagnosis.selection import Selection
 from ident.diagnosis.sentences import evidence_figures, verdict_text, why
 from ident.diagnosis.verdict import Findings, conclude, contradiction
+from ident.diagnosis.verification import noise_on_validation_data
 from ident.errors import TimeIsUp
 from ident.fit.result import FitResult
 from ident.parallel import each
@@ -98,30 +99,23 @@ def _held(selection: Selection) -> tuple[str, ...]:
 def _text(selection: Selection, steps: Rungs, findings: Findings, floor: Errors) -> str:
     """The verdict in sentences; `floor` has the noise floors by use."""
     models, verdict = selection.models, conclude(findings)
-    against = tuple(filter(None, map(contradiction, findings.verify)))
+    changes = (change for change in findings.verify if change.effect in verdict.contradicted_by)
+    against = tuple(filter(None, map(contradiction, changes)))
     in_band = in_time(lambda: models.floors.in_band)
     unconfirmed = {change.effect: change for change in findings.verify if change.effect in verdict.unconfirmed}
-    steps = [step for step in steps if step[0] not in unconfirmed]
+    after = steps[-1][1].errors["fit"]
+    steps = [step for step in steps if step[0] not in verdict.unsupported]
     fewer = None if against else better_with_fewer(steps)
     return verdict_text(
         verdict.effects, verdict.indistinguishable, findings.suspects, verdict.unexplained, steps[-1][1].errors,
         selection.base.error, in_band is not False, floor["fit"], against, selection.complete, models.described,
-        [name for name in findings.at_bound if name not in unconfirmed], fewer,
+        [name for name in findings.at_bound if name not in verdict.unsupported], fewer,
         steps[-1][1].unstable.get("verify", ()), verdict.probabilities, verdict.group_probabilities, selection.limit,
         [unconfirmed[name] for name in verdict.unconfirmed],
         verdict.noise_test is not None and verdict.noise_test.predicted is not None,
         noise_on_validation_data(steps[-1][1].errors, floor),
+        (verdict.by_chance, after) if verdict.by_chance else None,
     )  # fmt: skip
-
-
-def noise_on_validation_data(errors: Errors, floors: Errors) -> float | None:
-    """The error that noise makes on validation data where the model has twice as much of it there as on estimation
-    data; None where it has not, or a floor is not known."""
-    fit, there, floor, floor_there = errors.get("fit"), errors.get("verify"), floors.get("fit"), floors.get("verify")
-    if fit is None or there is None or not floor or not floor_there:
-        return None
-    excess = there / (max(fit / floor, 1.0) * floor_there)
-    return floor_there if excess > CRITERIA.noise.colour else None
 
 
 def better_with_fewer(steps: Rungs) -> tuple[float, tuple[str, ...]] | None:

@@ -182,8 +182,9 @@ class Verdict:
     `standing` says how sure the effects are, see :data:`ident.diagnosis.verification.Standing`; None where it is not
     known; `because` has the reasons of a stand-in. `contradicted_by` are effects with which the error rises on
     validation data, `at_bound` effects whose strength ended at a bound of the search, `elsewhere` explanations by
-    other machines that are as good. Two kinds of effects of the ladder are not named: `stood_in` are redundant with
-    proposed terms, and validation data show nothing of `unconfirmed` ones. `indistinguishable` are groups of
+    other machines that are as good. Three kinds of effects of the ladder are not named: `stood_in` are redundant with
+    proposed terms, validation data show nothing of `unconfirmed` ones, and for all of `by_chance` it is more probable
+    than not that nothing is missing. `indistinguishable` are groups of
     effects one of which is named, or two lags or delays that two others replace as well; `alternatives` has the
     numbers that decide the groups of the first kind, `competing` those of effects that are as probable in the place
     of a named one and in no group with it. `probability` is the probability of the verdict, None where it is not
@@ -210,6 +211,12 @@ class Verdict:
     because: tuple[Reason, ...] = field(default=(), metadata=WHERE_KNOWN)
     alternatives: tuple[Alternative, ...] = field(default=(), metadata=WHERE_KNOWN)
     competing: tuple[Alternative, ...] = field(default=(), metadata=WHERE_KNOWN)
+    by_chance: tuple[str, ...] = field(default=(), metadata=WHERE_KNOWN)
+
+    @property
+    def unsupported(self) -> tuple[str, ...]:
+        """The effects of the ladder that are not recommended: the unconfirmed ones, and those by chance."""
+        return (*self.unconfirmed, *self.by_chance)
 
 
 @dataclass(frozen=True)
@@ -296,8 +303,8 @@ class Diagnosis(Shown):
 
     @property
     def confirmed_ladder(self) -> tuple[Rung, ...]:
-        """The recommended ladder: without the last effects of which validation data show nothing."""
-        return tuple(rung for rung in self.ladder if rung.added not in self.verdict.unconfirmed)
+        """The recommended ladder: without effects of which validation data show nothing, or that are by chance."""
+        return tuple(rung for rung in self.ladder if rung.added not in self.verdict.unsupported)
 
     @property
     def lacks_input(self) -> bool:

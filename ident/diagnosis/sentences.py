@@ -81,7 +81,7 @@ def verdict_text(
     bounded: Sequence[str] = (), fewer: tuple[float, Sequence[str]] | None = None, unstable: Sequence[str] = (),
     probabilities: Mapping[str, float] = MappingProxyType({}), group_probabilities: Sequence[float] = (),
     limit: int | None = None, unconfirmed: Sequence[VerifyChange] = (), by_prediction: bool = False,
-    noise_there: float | None = None,
+    noise_there: float | None = None, by_chance: tuple[Sequence[str], float | None] | None = None,
 ) -> str:  # fmt: skip
     """The verdict in a few sentences, contradictions first.
 
@@ -93,7 +93,7 @@ def verdict_text(
     number of effects, where it ended the search. `unconfirmed` are the changes of the validation error by added effects
     that are not named. `by_prediction`: whether a prediction of the residual by the inputs decided whether it is noise.
     `noise_there` is the error that noise makes on validation data, where the model has far more of it there than on
-    estimation data.
+    estimation data. `by_chance` are the added effects that are more probably chance, and the error with them.
     """
     named = _described_once(described)
     found = [one.message(named(one.effect)) for one in against]
@@ -109,17 +109,15 @@ def verdict_text(
             change = _change(before, errors, fewer, unstable)
         improbable = any(is_improbable(effect.values.get("probability"), probabilities) for effect in effects)
         found.append(_falls(added, effects, change, bool(against) or unexplained, improbable))
+    elif by_chance is not None:
+        change = message("change", before=before, after=by_chance[1])
+        effects = [message("effect", names=[named(name)]) for name in by_chance[0]]
+        found.append(message("verdict.by_chance", probability=probabilities["nothing"], effects=effects, change=change))
     elif not complete or unconfirmed:
         found.append(message("verdict.unconfirmed", before=before))
-    elif unexplained:
-        found.append(message("verdict.none", before=before))
-    elif floor is None:
-        found.append(message("verdict.white", before=before))
-    elif by_prediction:
-        found.append(_probable("verdict.unpredicted", "nothing", probabilities, before=before))
     else:
-        found.append(_probable("verdict.nothing", "nothing", probabilities, before=before))
-    if noise_there is not None and not unexplained and not against:
+        found.append(_nothing(unexplained, floor, by_prediction, probabilities, before))
+    if noise_there is not None and not against and (not unexplained or is_rather_noise(probabilities)):
         found.append(message("verdict.validation", error=errors["verify"], noise=noise_there))
     found += [_shows_nothing(named(change.effect), change) for change in unconfirmed]
     found += [message("verdict.bounded", effect=named(name)) for name in bounded]
@@ -130,6 +128,18 @@ def verdict_text(
     if unexplained:
         found += _remaining(complete, limit, probabilities, in_band, floor, by_prediction)
     return said(found)
+
+
+def _nothing(
+    unexplained: bool, floor: float | None, by_prediction: bool, probabilities: Mapping[str, float], before: float
+) -> Message:
+    """The message that no effect lowers the error, and whether the residual is noise."""
+    if unexplained:
+        return message("verdict.none", before=before)
+    if floor is None:
+        return message("verdict.white", before=before)
+    key = "verdict.unpredicted" if by_prediction else "verdict.nothing"
+    return _probable(key, "nothing", probabilities, before=before)
 
 
 def _shows_nothing(named: str, change: VerifyChange) -> Message:

@@ -8,6 +8,7 @@ from typing import Any
 from ident.diagnosis.evidence.probability import is_improbable, is_rather_noise
 from ident.diagnosis.result import Diagnosis, Suspect
 from ident.diagnosis.sentences import has_two
+from ident.diagnosis.verification import noise_on_validation_data
 from ident.words.message import Message, message
 from ident.words.run_name import run_name
 from ident.words.shown import in_brief
@@ -43,13 +44,24 @@ def _missing(diagnosis: Diagnosis) -> Message:
         return message("summary.label", run=verdict.suspects[0].run)
     if not diagnosis.complete:
         return message("summary.stopped" if diagnosis.candidates else "summary.unexamined")
-    if verdict.unexplained and is_rather_noise(verdict.probabilities):
+    if verdict.by_chance:
+        helping = [_named(diagnosis, name) for name in verdict.by_chance]
+        return message("summary.helping_by_chance", helping=helping)
+    if verdict.unexplained and not is_rather_noise(verdict.probabilities):
+        return _probable(diagnosis, "unlisted", "summary.unlisted", "summary.unlisted_probable")
+    if _fails_on_validation_data(diagnosis):
+        return message("summary.validation")
+    if verdict.unexplained:
         correlated = verdict.noise_test is not None and verdict.noise_test.floor is None
         key = "summary.correlated" if correlated else "summary.above_floor"
         return message(key, probability=verdict.probabilities["nothing"])
-    if verdict.unexplained:
-        return _probable(diagnosis, "unlisted", "summary.unlisted", "summary.unlisted_probable")
     return _probable(diagnosis, "nothing", "summary.nothing", "summary.nothing_probable")
+
+
+def _fails_on_validation_data(diagnosis: Diagnosis) -> bool:
+    """Whether the model without any named effect has far more than noise on validation data alone."""
+    steps = diagnosis.confirmed_ladder or (diagnosis.baseline,)
+    return noise_on_validation_data(steps[-1].error, diagnosis.noise_floor) is not None
 
 
 def _contradicted(diagnosis: Diagnosis) -> Message:
@@ -76,11 +88,11 @@ def _missing_and_helping(diagnosis: Diagnosis, named: Sequence[Message]) -> Mess
         partly = diagnosis.verdict.standing == "stand_in" and remains
         return message("summary.missing_partly" if partly else "summary.missing", effects=missing)
     if not missing:
-        return message("summary.helping_by_chance" if _by_chance(diagnosis) else "summary.helping", helping=helping)
+        return message("summary.helping_by_chance" if _may_be_chance(diagnosis) else "summary.helping", helping=helping)
     return message("summary.missing_and_helping", effects=missing, helping=helping)
 
 
-def _by_chance(diagnosis: Diagnosis) -> bool:
+def _may_be_chance(diagnosis: Diagnosis) -> bool:
     """Whether all named effects are improbable, and most probably nothing is missing."""
     verdict, of_all = diagnosis.verdict, diagnosis.verdict.probabilities
     improbable = all(is_improbable(_probability(diagnosis, name), of_all) for name in verdict.effects)
@@ -175,7 +187,7 @@ def next_step(diagnosis: Diagnosis) -> Message:
         return message("next.time")
     if verdict.standing == "contradicted":
         return message("next.compare", effect=verdict.contradicted_by[0])
-    if _by_chance(diagnosis):
+    if _may_be_chance(diagnosis):
         return message("next.then", then=_then(diagnosis))
     if verdict.indistinguishable and diagnosis.next_experiment is not None:
         return message("next.distinguish", group=verdict.indistinguishable[0])
@@ -185,7 +197,9 @@ def next_step(diagnosis: Diagnosis) -> Message:
         return message("next.add_and", effects=verdict.effects, then=_then(diagnosis))
     if verdict.unexplained:
         return message("next.then", then=_then(diagnosis))
-    return message("next.add", effects=verdict.effects) if verdict.effects else message("next.use")
+    if verdict.effects:
+        return message("next.add", effects=verdict.effects)
+    return message("next.validation" if _fails_on_validation_data(diagnosis) else "next.use")
 
 
 def _correct(suspect: Suspect, effects: Sequence[str]) -> Message:

@@ -4,9 +4,10 @@ The findings come from the stages before: which effects were added from the sele
 :mod:`ident.diagnosis.evidence.rule`), their groups from :mod:`ident.diagnosis.ambiguity`, the others from
 :mod:`ident.diagnosis.challenges`.
 
-The *named* effects are the effects that the selection added, without two kinds. A *dispensable* effect is one without
+The *named* effects are the effects that the selection added, without three kinds. A *dispensable* effect is one without
 which the model does as well, given terms that were confirmed. An *unconfirmed* effect was added last, and validation
-data show nothing of it, although it would lower their error if it acted. The residual is *unexplained* unless it is
+data show nothing of it, although it would lower their error if it acted. Effects are *by chance* where it is more
+probable than not that nothing is missing. The residual is *unexplained* unless it is
 noise. A *group* are effects that the data cannot tell apart. The verdict stands in one of four ways:
 
 * *nothing*: no effect is named;
@@ -135,13 +136,15 @@ def contradiction(change: VerifyChange | None) -> Contradiction | None:
 def conclude(findings: Findings, criteria: Criteria = CRITERIA) -> Verdict:
     """The verdict that follows from the findings; its sentences are the report's."""
     unconfirmed = _unconfirmed(findings, criteria)
-    named = tuple(name for name in findings.added if name not in (*findings.dispensable, *unconfirmed))
+    of_sets = _probabilities(findings, criteria)
+    supported = tuple(name for name in findings.added if name not in (*findings.dispensable, *unconfirmed))
+    by_chance = supported if of_sets is not None and of_sets.nothing > 0.5 else ()
+    named = () if by_chance else supported
     contradicted = tuple(change.effect for change in findings.verify if contradicts(change, criteria))
-    against = tuple(name for name in contradicted if name not in findings.dispensable)
+    against = tuple(name for name in contradicted if name not in (*findings.dispensable, *by_chance))
     reasons = _reasons(findings, named, bool({*contradicted} & {*findings.dispensable}), criteria)
     standing = _standing(named, against, reasons)
-    groups = _groups(findings, unconfirmed)
-    of_sets = _probabilities(findings, criteria)
+    groups = _groups(findings, named)
     return Verdict(
         effects=named,
         standing=standing,
@@ -159,6 +162,7 @@ def conclude(findings: Findings, criteria: Criteria = CRITERIA) -> Verdict:
         elsewhere=tuple(findings.elsewhere),
         stood_in=findings.dispensable,
         unconfirmed=unconfirmed,
+        by_chance=by_chance,
         probability=None if of_sets is None else _probability(findings, of_sets, named, groups, criteria),
         probabilities={} if of_sets is None else of_sets.named,
         group_probabilities=() if of_sets is None else tuple(_of_group(group, of_sets, named) for group in groups),
@@ -229,11 +233,12 @@ def _unconfirmed(findings: Findings, criteria: Criteria) -> Names:
     return tuple(reversed([*takewhile(nothing.__contains__, reversed(asked))]))
 
 
-def _groups(findings: Findings, unconfirmed: Names) -> tuple[Names, ...]:
-    """Groups of effects that the data cannot tell apart, each with a named effect; the lags of a pair are one group."""
+def _groups(findings: Findings, named: Names) -> tuple[Names, ...]:
+    """Groups of effects that the data cannot tell apart, all of whose added effects are named; the lags of a pair are
+    one group."""
     alone = (group for group in findings.alternatives if len(group) > 1)
     groups = (
         *(group for group in alone if not any({*group} <= {*pair} for pair in findings.lag_pairs)),
         *findings.lag_pairs,
     )
-    return tuple(group for group in groups if not {*group} & {*findings.added} & {*findings.dispensable, *unconfirmed})
+    return tuple(group for group in groups if {*group} & {*findings.added} <= {*named})

@@ -6,7 +6,7 @@ catalogue does not have, or that behaves otherwise there.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Literal
 
@@ -193,6 +193,16 @@ def _unstable(runs: Sequence[Run], left: Sequence[Array]) -> tuple[str, ...]:
     with np.errstate(over="ignore", invalid="ignore"):
         errors = [float(np.sqrt(np.mean(r**2)) / np.std(run.measured)) for run, r in zip(runs, left, strict=True)]
     return tuple(run.id for run, error in zip(runs, errors, strict=True) if not error < UNSTABLE)
+
+
+def noise_on_validation_data(errors: Mapping[str, float | None], floors: Mapping[str, float | None]) -> float | None:
+    """The error that noise makes on validation data where the model has twice as much of it there as on estimation
+    data; None where it has not, or a floor is not known."""
+    fit, there, floor, floor_there = errors.get("fit"), errors.get("verify"), floors.get("fit"), floors.get("verify")
+    if fit is None or there is None or not floor or not floor_there:
+        return None
+    excess = there / (max(fit / floor, 1.0) * floor_there)
+    return floor_there if excess > CRITERIA.noise.colour else None
 
 
 def _rms(residual: Array) -> float:

@@ -29,6 +29,9 @@ SUMMARY: Mapping[str, str] = {
         "noise floor explains.",
     "summary.correlated":
         "Probably nothing is missing (probability {probability:probability}), though the residual is correlated.",
+    "summary.validation":
+        "No effect is confirmed, but the error on validation data is far above its noise floor: the model lacks "
+        "something there, or the machine was different in these runs.",
     "summary.nothing": "Nothing is missing.",
     "summary.nothing_probable": "Nothing is missing (probability {probability:probability}).",
     "summary.missing_input": "Missing: an input that is not in the record of {run:run}.",
@@ -67,6 +70,9 @@ SUMMARY: Mapping[str, str] = {
     "then.run": "record the proposed run",
     "then.search": "search for unknown terms",
     "next.add": "Next: add {effects:them} to the model, and compare the fits.",
+    "next.validation":
+        "Next: compare the conditions of the validation runs with those of the estimation runs, or fit the model to "
+        "some of them, too.",
     "next.use": "Next: use the model as it is.",
 }  # fmt: skip
 """The verdict of a diagnosis in three lines."""
@@ -103,6 +109,9 @@ VERDICT: Mapping[str, str] = {
     "verdict.lacks_one_of": "The model lacks {effects:all}: with {added:titles} the error falls {change}.",
     "verdict.may_lack":
         "The error falls {change} with {effects:all}. More probably this has another cause, or is chance.",
+    "verdict.by_chance":
+        "Probably nothing is missing (probability {probability:probability}). The error on estimation data falls "
+        "{change} with {effects:all}, but more probably this is chance.",
     "verdict.partly": "With {effects:all} the error on estimation data falls {change}.",
     "verdict.unconfirmed": "No effect was confirmed that lowers the error of {before:error}.",
     "verdict.shows_nothing":

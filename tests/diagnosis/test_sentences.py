@@ -12,9 +12,9 @@ from ident.diagnosis.candidate_models import CandidateModels
 from ident.diagnosis.discovery.proposal import Proposal
 from ident.diagnosis.evidence.blocks import BlockMean
 from ident.diagnosis.evidence.comparison import SPANS, Evidence
-from ident.diagnosis.report import better_with_fewer, noise_on_validation_data
+from ident.diagnosis.report import better_with_fewer
 from ident.diagnosis.sentences import proposed_text, verdict_text, why_of_evidence
-from ident.diagnosis.verification import Contradiction
+from ident.diagnosis.verification import Contradiction, noise_on_validation_data
 from ident.effects import EFFECTS
 from ident.fit.settings import Settings
 from ident.matrix import Actuator, Matrix
@@ -145,6 +145,23 @@ def test_nothing_is_missing_on_estimation_data_alone_where_validation_data_have_
     text = verdict_text((), (), (), False, errors, errors["fit"], floor=floors["fit"], noise_there=noise)
     assert text.startswith("Nothing is missing: the error of")
     assert ("On validation data the error is" in text) is (noise is not None)
+    for unlisted, said in ((0.3, noise is not None), (0.7, False)):
+        probable = {"nothing": 1.0 - unlisted, "unlisted": unlisted}
+        above = verdict_text(
+            (), (), (), True, errors, errors["fit"], floor=floors["fit"], noise_there=noise, probabilities=probable
+        )
+        assert ("On validation data the error is" in above) is said
+
+
+def test_what_is_by_chance_is_said_with_the_error_with_it():
+    text = verdict_text(
+        (), (), (), False, {"fit": 0.0123}, 0.0123, floor=0.012, probabilities={"nothing": 0.62},
+        by_chance=(("lag",), 0.0121),
+    )  # fmt: skip
+    assert text.startswith(
+        "Probably nothing is missing (probability 62 %). The error on estimation data falls from 1.23 % to 1.21 % with "
+    )
+    assert text.endswith("more probably this is chance.")
 
 
 @pytest.mark.parametrize("against", [True, False])

@@ -104,6 +104,32 @@ def test_nothing_something_unlisted_and_what_is_contradicted_are_said():
     assert against[2].startswith("Next: do not add dead zone yet. Compare the fit with it and the fit without it")
 
 
+def test_what_is_by_chance_is_said_and_the_model_without_it_is_recommended():
+    of_all = {"nothing": 0.7, "dead_zone": 0.2, "unlisted": 0.1}
+    verdict = Verdict(standing="nothing", by_chance=("dead_zone",), probabilities=of_all)
+    found = replace(FOUND, verdict=verdict)
+    assert found.summary == (
+        "Probably nothing is missing. The error falls with dead zone (probability 20 %), which may be chance.",
+        "The error on validation data is 11.0 %; the noise floor is 0.500 %.",
+        "Next: use the model as it is.",
+    )
+    assert [rung.added for rung in found.confirmed_ladder] == [None]
+
+
+def test_nothing_is_not_the_headline_of_a_model_that_fails_on_validation_data_alone():
+    verdict = Verdict(standing="nothing", probabilities={"nothing": 0.8, "unlisted": 0.1})
+    errors = {"fit": 0.006, "held_out": 0.006, "verify": 0.11}
+    found = replace(FOUND, ladder=(Rung(error=errors),), verdict=verdict)
+    assert found.summary[0].startswith(
+        "No effect is confirmed, but the error on validation data is far above its noise"
+    )
+    assert found.summary[2].startswith("Next: compare the conditions of the validation runs with those of the")
+    above = replace(found, verdict=replace(verdict, unexplained=True))
+    assert above.summary[0] == found.summary[0]
+    unlisted = replace(above, verdict=replace(above.verdict, probabilities={"unlisted": 0.9}))
+    assert unlisted.summary[0].startswith("Missing: something that no effect in the library explains")
+
+
 def test_a_wrong_label_and_a_search_that_was_stopped_come_first():
     assert lines(suspects=(Suspect("run-3"),))[2] == (
         "Next: correct the label of run-3 in matrix.yaml, then diagnose again: dead zone may still be missing."

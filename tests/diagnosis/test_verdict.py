@@ -84,6 +84,21 @@ def test_without_a_name_the_verdict_is_as_probable_as_that_no_listed_effect_acts
     assert above.probability == pytest.approx(1.0 - above.probabilities["lead"])
 
 
+@pytest.mark.parametrize("gain", [1.0, 60.0])
+@pytest.mark.parametrize("verify", [FALLS, RISES])
+def test_no_effect_is_named_where_it_is_more_probable_than_not_that_nothing_is_missing(gain, verify):
+    """A gain of a nat is worth less than an effect costs; validation data do not contradict what is not named."""
+    sets = SetGains({NOTHING: 0.0, frozenset({"lead"}): gain}, most=gain)
+    verdict = conclude(replace(LEAD, alternatives=(("lead", "lag"),), set_gains=sets, verify=(verify,)))
+    by_chance = verdict.probabilities["nothing"] > 0.5
+    assert by_chance is (gain == 1.0)
+    assert verdict.effects == (() if by_chance else ("lead",))
+    assert verdict.by_chance == verdict.unsupported == (("lead",) if by_chance else ())
+    assert verdict.indistinguishable == (() if by_chance else (("lead", "lag"),))
+    assert verdict.contradicted_by == (("lead",) if verify is RISES and not by_chance else ())
+    assert (verdict.standing == "nothing") is by_chance
+
+
 def test_what_only_a_dispensable_effect_was_contradicted_by_is_a_stand_in():
     """Two effects, and runs to verify that speak against one: beside confirmed terms that one is not needed."""
     two = replace(LEAD, added=("lead", "lag"), verify=(RISES,))
