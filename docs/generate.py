@@ -20,6 +20,7 @@ from app.cli.program import program
 from app.main import routed
 from ident.bench.criteria import BENCH_CRITERIA
 from ident.diagnosis.criteria import CRITERIA
+from ident.diagnosis.evidence import rule
 from ident.effects import CATALOGUE
 from ident.equations.equation import Equation
 from ident.fit.criteria import FIT_CRITERIA
@@ -236,11 +237,21 @@ def documented(file: Path, section: str) -> dict[str, tuple[str, str, str]]:
 
 
 def diagnosis() -> str:
-    """The page on the diagnosis, whose section on the verdict has its numbers from the criteria."""
+    """The page on the diagnosis: the section on the verdict has its numbers from the criteria, the rule by which an
+    effect is added its questions from the text of the rule."""
     text = (DOCS / "diagnosis.md").read_text(encoding="utf-8")
-    before, mark, after = text.partition(f"## Why this verdict\n\n{NOTE}\n")
-    _, heading, others = after.partition("\n## ")
-    return "".join([before, mark, "\n", "\n".join(why_this_verdict()), "\n", heading, others])
+    text = written_between(text, f"## Why this verdict\n\n{NOTE}\n", "\n## ", "\n".join(why_this_verdict()))
+    _, _, questions = (rule.__doc__ or "").partition("\n\n* ")
+    return written_between(
+        text, f"these questions are asked.\n\n{NOTE}\n", "\nOn validation data", f"* {questions.rstrip()}"
+    )
+
+
+def written_between(text: str, begin: str, end: str, written: str) -> str:
+    """The text with what stands between two marks written anew."""
+    before, mark, after = text.partition(begin)
+    _, heading, others = after.partition(end)
+    return "".join([before, mark, "\n", written, "\n", heading, others])
 
 
 def why_this_verdict() -> list[str]:

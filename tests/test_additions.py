@@ -153,7 +153,7 @@ print(json.dumps({
 
 
 _OF_EFFECTS = "tests/effects/test_contract.py tests/reference/test_nonlinear_reference.py"
-_OF_EVIDENCE = ("test_criteria_of_evidence", "test_evidence", "test_sentences")
+_OF_EVIDENCE = ("test_rule", "test_evidence", "test_sentences")
 EXAMPLES = {
     "An effect of the load": f"{_OF_EFFECTS} -k cubic_damping",
     "An effect of the valve": f"{_OF_EFFECTS} -k gain_growth",

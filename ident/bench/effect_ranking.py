@@ -22,9 +22,10 @@ from ident.bench.residual import Residual
 from ident.cached import cached_property
 from ident.diagnosis.criteria import CRITERIA
 from ident.diagnosis.cross_validation import fold_of_segments
-from ident.diagnosis.evidence.comparison import Evidence, Residuals, compare
+from ident.diagnosis.evidence.comparison import Residuals, compare
 from ident.diagnosis.evidence.energy_bands import EnergyBands
 from ident.diagnosis.evidence.energy_bands import Record as ComparedRecord
+from ident.diagnosis.evidence.evidence import Evidence
 from ident.effects import CATALOGUE
 from ident.effects.effect import Effect, off_values
 from ident.effects.second_lag import SECOND_LAG

@@ -10,8 +10,8 @@ from itertools import groupby
 from ident.diagnosis.candidate_models import CandidateModels
 from ident.diagnosis.criteria import CRITERIA
 from ident.diagnosis.evidence import rule
-from ident.diagnosis.evidence.comparison import Evidence
 from ident.diagnosis.evidence.criteria import EVIDENCE_CRITERIA, OF_SHOWN
+from ident.diagnosis.evidence.evidence import Evidence
 from ident.diagnosis.fitted_model import FittedModel
 from ident.diagnosis.model_comparison import bar, dominated, evidence, finite_everywhere, indistinguishable
 from ident.diagnosis.screening import Prediction

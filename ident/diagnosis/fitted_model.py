@@ -14,8 +14,8 @@ from ident.diagnosis.auxiliary_channels import auxiliary_channels
 from ident.diagnosis.compared_records import ComparedRecords
 from ident.diagnosis.criteria import CRITERIA
 from ident.diagnosis.cross_validation import OutOfFold, out_of_fold
-from ident.diagnosis.evidence.blocks import BlockMean
 from ident.diagnosis.evidence.comparison import Residuals
+from ident.diagnosis.evidence.evidence import BlockMean
 from ident.diagnosis.evidence.free_run import FreeRun, adds_up
 from ident.diagnosis.evidence.model_error import predicted_share
 from ident.diagnosis.parameter_estimate import ParameterEstimate

@@ -12,7 +12,8 @@ import numpy as np
 
 from ident.diagnosis.candidate_models import CandidateModels
 from ident.diagnosis.evidence import rule, separation
-from ident.diagnosis.evidence.comparison import Evidence, compare
+from ident.diagnosis.evidence.comparison import compare
+from ident.diagnosis.evidence.evidence import Evidence
 from ident.diagnosis.fitted_model import FittedModel
 from ident.diagnosis.screening import gain_by_chance
 from ident.diagnosis.verification import VerifyChange, verify_change, with_free_run

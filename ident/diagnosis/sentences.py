@@ -10,8 +10,8 @@ from typing import Any
 from ident.diagnosis.candidate import Candidate
 from ident.diagnosis.criteria import CRITERIA
 from ident.diagnosis.discovery.proposal import Proposal
-from ident.diagnosis.evidence.comparison import Evidence
 from ident.diagnosis.evidence.criteria import EVIDENCE_CRITERIA
+from ident.diagnosis.evidence.evidence import Evidence
 from ident.diagnosis.evidence.free_run import FreeRun, drifts
 from ident.diagnosis.evidence.probability import is_improbable, is_rather_noise
 from ident.diagnosis.evidence.rule import QUESTIONS, refusing
@@ -52,7 +52,7 @@ def _reasons(
     else:
         yield message("why.change", before=before, after=after)
     if refusal is not None:
-        yield refusal.refusal(evidence)
+        yield refusal.reason(evidence)
         if refusal.shows:
             yield message("why.would_show", looks=effect.looks)
     else:

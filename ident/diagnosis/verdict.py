@@ -30,7 +30,7 @@ from dataclasses import dataclass, field, replace
 from itertools import takewhile
 
 from ident.diagnosis.criteria import CRITERIA, Criteria
-from ident.diagnosis.evidence.blocks import BlockMean
+from ident.diagnosis.evidence.evidence import BlockMean
 from ident.diagnosis.evidence.probability import NOTHING, Probabilities, SetGains, probabilities
 from ident.diagnosis.result import Alternative, Explanation, NoiseTest, Suspect, Verdict
 from ident.diagnosis.verification import Contradiction, Reason, Standing, VerifyChange

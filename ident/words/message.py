@@ -26,14 +26,18 @@ from ident.words.uses import data
 
 @dataclass(frozen=True)
 class Message:
-    """What is said: the key of a text, and the values that it names; a value may be a message, or several."""
+    """What is said: the key of a text, and the values that it names; a value may be a message, or several.
+
+    A `text` that is stated stands where it is said; that of other keys stands in :mod:`ident.words.messages`.
+    """
 
     key: str
     values: Mapping[str, Any]
+    text: str = ""
 
     def __str__(self) -> str:
         """Its text, with the values in words."""
-        return str(_WORDS.vformat(MESSAGES[self.key], (), self.values))
+        return str(_WORDS.vformat(self.text or MESSAGES[self.key], (), self.values))
 
     def record(self) -> dict[str, Any]:
         """Its key and its values, messages within it likewise: plain data, as JSON has it."""

@@ -261,19 +261,6 @@ WHY: Mapping[str, str] = {
         "On held-out data the error goes from {before:error} to {after:error}, with the noise floor at "
         "{floor:percent}.",
     "why.best": "No other effect does better.",
-    "why.little":
-        "The effect explains {share:.2g} ± {error:.2g} % of the error above the noise floor. At least {least:.2g} % "
-        "is required, beyond the standard error.",
-    "why.span":
-        "The error rises on the {span} of the records. An effect that only part of the data support is not added.",
-    "why.condition":
-        "The error rises under one condition of the tests. An effect that only part of the data support is not "
-        "added.",
-    "why.free_run":
-        "The windows begin where the record was measured. The error of the free run rises from {before:error} to "
-        "{after:error}, where disturbances and errors of the parameters would add up to {expected:error}. An effect "
-        "that drives the free run away is not added.",
-    "why.chance": "That is no more than the best of all effects gains by chance.",
     "why.shows": "It shows as: {looks}.",
     "why.would_show": "It would show as: {looks}.",
 }  # fmt: skip

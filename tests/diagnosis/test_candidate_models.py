@@ -7,7 +7,7 @@ from types import SimpleNamespace
 import pytest
 
 from ident.diagnosis.candidate_models import CandidateModels
-from ident.diagnosis.evidence.blocks import BlockMean
+from ident.diagnosis.evidence.evidence import BlockMean
 from ident.diagnosis.verdict import is_noise
 from ident.fit.settings import Settings
 from ident.matrix import Actuator

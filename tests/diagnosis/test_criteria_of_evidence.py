@@ -8,50 +8,13 @@ import numpy as np
 import pytest
 
 from ident.diagnosis.evidence import blocks, chance
-from ident.diagnosis.evidence.blocks import BlockMean, correlation_time
-from ident.diagnosis.evidence.comparison import Evidence, Residuals, compare
+from ident.diagnosis.evidence.blocks import correlation_time
+from ident.diagnosis.evidence.comparison import Residuals, compare
 from ident.diagnosis.evidence.criteria import EVIDENCE_CRITERIA
 from ident.diagnosis.evidence.disturbance import Disturbance
 from ident.diagnosis.evidence.energy_bands import EnergyBands, Record, _edges, _harmonics
-from ident.diagnosis.evidence.rule import improves_on_the_whole, matters
 from ident.diagnosis.evidence.separation import both_probable, indistinguishable
-
-NOTHING = BlockMean(0.0, 0.0, 20)
-
-
-def evidence(**known: Any) -> Evidence:
-    """The evidence for a model that explains half of a power of one, with what is stated otherwise."""
-    usual: dict[str, Any] = {
-        "gain": 0.0, "without": 50.0, "most": 1e3, "distinct": 50.0, "before": 1.0, "after": 1.0, "noise": 0.0,
-        "difference": NOTHING, "share": NOTHING, "by_part": dict, "apart": 0.0, "resolved": 0.0,
-    }  # fmt: skip
-    return Evidence(**usual | known)
-
-
-def taking(share: float, **known: Any) -> Evidence:
-    """The evidence for a model that takes such a share of the power, without an error."""
-    return evidence(share=BlockMean(share, 0.0, 20), difference=BlockMean(share, 0.0, 20), **known)
-
-
-@pytest.mark.parametrize(("share", "is_enough"), [(0.0085, False), (0.0115, True)])
-def test_a_hundredth_of_the_power_matters(share, is_enough):
-    assert matters(taking(share)) is is_enough
-
-
-@pytest.mark.parametrize(("level", "is_enough"), [(2.5e-4, False), (3.5e-4, True)])
-def test_means_of_three_in_ten_thousand_of_the_deviation_matter(level, is_enough):
-    assert matters(evidence(level=level, level_share=BlockMean(0.5, 0.0, 20))) is is_enough
-
-
-@pytest.mark.parametrize(("gain", "most", "bar", "improves"), [
-    (2.9, 1e3, 0.0, False), (3.9, 1e3, 0.0, True),  # an effect has to gain 3.4 nats whatever the bar
-    (43.0, 100.0, 1e3, False), (57.0, 100.0, 1e3, True),  # and half of the largest gain, or more than the bar
-])  # fmt: skip
-def test_a_gain_improves_that_is_worth_a_parameter_and_passes_the_bar_or_half_of_what_can_be_gained(
-    gain, most, bar, improves
-):
-    found = taking(0.5, gain=gain, most=most) if gain < 50.0 else taking(0.5, gain=gain, without=gain, most=most)
-    assert improves_on_the_whole(found, lambda: bar) is improves
+from tests.diagnosis.test_rule import evidence
 
 
 @pytest.mark.parametrize(("gain", "probable"), [(11.6, True), (13.2, False)])

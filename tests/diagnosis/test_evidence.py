@@ -10,12 +10,12 @@ import pytest
 from numpy.typing import NDArray
 from scipy.signal import lfilter
 
-from ident.diagnosis.evidence.blocks import BlockMean
 from ident.diagnosis.evidence.chance import bar
-from ident.diagnosis.evidence.comparison import SPANS, Evidence, Residuals, common_disturbance, compare
+from ident.diagnosis.evidence.comparison import Residuals, common_disturbance, compare
 from ident.diagnosis.evidence.criteria import EVIDENCE_CRITERIA, OF_SHOWN, EvidenceCriteria
 from ident.diagnosis.evidence.disturbance import Disturbance
 from ident.diagnosis.evidence.energy_bands import EnergyBands, Record
+from ident.diagnosis.evidence.evidence import SPANS, BlockMean, Evidence
 from ident.diagnosis.evidence.probability import NOTHING, SetGains, probabilities, structure_probabilities
 from ident.diagnosis.evidence.rule import generalises, improves_on_the_whole, worth_adding
 from ident.diagnosis.evidence.separation import both_probable, dominated, indistinguishable

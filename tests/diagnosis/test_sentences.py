@@ -10,8 +10,7 @@ import pytest
 
 from ident.diagnosis.candidate_models import CandidateModels
 from ident.diagnosis.discovery.proposal import Proposal
-from ident.diagnosis.evidence.blocks import BlockMean
-from ident.diagnosis.evidence.comparison import SPANS, Evidence
+from ident.diagnosis.evidence.evidence import SPANS, BlockMean, Evidence
 from ident.diagnosis.report import better_with_fewer
 from ident.diagnosis.sentences import proposed_text, verdict_text, why_of_evidence
 from ident.diagnosis.verification import Contradiction, noise_on_validation_data

@@ -8,8 +8,8 @@ from dataclasses import replace
 import pytest
 
 from ident.diagnosis.criteria import Criteria
-from ident.diagnosis.evidence.blocks import BlockMean
 from ident.diagnosis.evidence.criteria import EVIDENCE_CRITERIA
+from ident.diagnosis.evidence.evidence import BlockMean
 from ident.diagnosis.evidence.probability import NOTHING, SetGains
 from ident.diagnosis.evidence.separation import Separation
 from ident.diagnosis.report import group_of

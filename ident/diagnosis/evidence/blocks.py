@@ -13,43 +13,14 @@ judged by it. The models may be nested or not, and both may be wrong (Vuong 1989
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.special import stdtrit  # the quantile of Student's t, without scipy.stats, which takes half a second to load
 
 from ident.diagnosis.evidence.criteria import EVIDENCE_CRITERIA, EvidenceCriteria
+from ident.diagnosis.evidence.evidence import BlockMean
 
 Array = NDArray[np.float64]
-
-
-@dataclass(frozen=True)
-class BlockMean:
-    """A mean, its standard error, and the number of blocks. The error of one block is infinite.
-
-    `parts` are the contributions of the blocks, which sum to the mean, for a rule that asks each block; a ratio has
-    none.
-    """
-
-    mean: float
-    error: float
-    blocks: int
-    parts: tuple[float, ...] = ()
-
-    def bound(self, criteria: EvidenceCriteria) -> float:
-        """How far chance may carry the mean to one side."""
-        if self.blocks < 2:
-            return float("inf")
-        return self.error * float(stdtrit(self.blocks - 1, 1.0 - criteria.chance))
-
-    def above(self, value: float, criteria: EvidenceCriteria) -> bool:
-        """Whether the mean is above a value beyond its error."""
-        return self.mean - self.bound(criteria) > value
-
-    def below(self, value: float, criteria: EvidenceCriteria) -> bool:
-        """Whether the mean is below a value beyond its error."""
-        return self.mean + self.bound(criteria) < value
 
 
 def block_mean(series: Sequence[Array], criteria: EvidenceCriteria) -> BlockMean:

@@ -23,7 +23,7 @@ shown. The error of ρ comes from blocks of ten correlation times of the differe
 
 from __future__ import annotations
 
-from collections.abc import Callable, Hashable, Mapping, Sequence
+from collections.abc import Hashable, Sequence
 from dataclasses import dataclass, field
 from functools import partial
 
@@ -32,72 +32,16 @@ from numpy.typing import NDArray
 from scipy.special import chdtri  # the quantile of χ², without scipy.stats, which takes half a second to load
 
 from ident.cached import cached_property
-from ident.diagnosis.evidence.blocks import BlockMean, block_mean, block_ratio
+from ident.diagnosis.evidence.blocks import block_mean, block_ratio
 from ident.diagnosis.evidence.criteria import EVIDENCE_CRITERIA, EvidenceCriteria
 from ident.diagnosis.evidence.disturbance import Disturbance
 from ident.diagnosis.evidence.energy_bands import EnergyBands, Record
-from ident.diagnosis.evidence.free_run import FreeRun
+from ident.diagnosis.evidence.evidence import SPANS, BlockMean, Evidence
 from ident.noise.autoregression import prediction_errors
 from ident.noise.effective_sample_size import independent_samples
 from ident.rounding import TINY
 
 Array = NDArray[np.float64]
-NO_DIFFERENCE = BlockMean(0.0, 0.0, 1)
-"""The difference of the means of two runs or one: their scatter is not known."""
-SPANS = {"first half": (0.0, 0.5), "second half": (0.5, 1.0)}
-"""The spans of the records, as shares of each, on none of which an effect may lose; a user reads their names."""
-
-
-@dataclass(frozen=True)
-class Evidence:
-    """The evidence for the model `after` against the model `before`, on data that neither was fitted to.
-
-    `gain` is G (nats), `without` is G without the run that gains most, `most` is the gain of a model whose residual is
-    the noise, `distinct` is ν. `before`, `after` and `noise` are powers of the error over the power of the output,
-    averaged over runs; `difference` is before − after and `share` ρ, with their errors; `by_part` works out `parts`,
-    the differences on each condition and each span. `apart` is the power of the difference of the two outputs,
-    `resolved` the power of the least difference that the noise does not hide.
-
-    The means of the runs, less their common mean, are judged by themselves. `level` is their root mean square before,
-    and `levels_apart` is the root mean square of the difference of the two models' means, both over the outputs'
-    deviations; `level_difference` and `level_share` are of their squares, a run a block.
-
-    `by_free_run` works out the free runs of both models for a machine that is fitted over windows; it is None for
-    others.
-    """
-
-    gain: float
-    without: float
-    most: float
-    distinct: float
-    before: float
-    after: float
-    noise: float
-    difference: BlockMean
-    share: BlockMean
-    by_part: Callable[[], Mapping[Hashable, BlockMean]]
-    apart: float
-    resolved: float
-    level: float = 0.0
-    levels_apart: float = 0.0
-    level_difference: BlockMean = NO_DIFFERENCE
-    level_share: BlockMean = NO_DIFFERENCE
-    by_free_run: Callable[[], tuple[FreeRun, FreeRun]] | None = None
-
-    @cached_property
-    def parts(self) -> Mapping[Hashable, BlockMean]:
-        """The differences on each condition and each span, worked out where they decide."""
-        return self.by_part()
-
-    @cached_property
-    def free_runs(self) -> tuple[FreeRun, FreeRun] | None:
-        """The free runs without and with the effect, worked out where they decide."""
-        return self.by_free_run() if self.by_free_run else None
-
-    @property
-    def explainable(self) -> float:
-        """The residual power of the first model above the noise."""
-        return max(self.before - self.noise, 0.0)
 
 
 @dataclass(frozen=True, eq=False)

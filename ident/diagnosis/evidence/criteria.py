@@ -93,16 +93,16 @@ class EvidenceCriteria:
     share: float = 0.01
     """[1] Share of the explainable power that matters: an effect takes more, no part of the data loses as much, the
     residual power of a dominated model is larger by as much. Why: less is not worth a parameter, however certain.
-    Test: test_criteria_of_evidence.py::test_a_hundredth_of_the_power_matters"""
+    Test: test_rule.py::test_a_hundredth_of_the_power_matters"""
     least_gain: float = 3.4
     """[nats] Gain that an effect has to make whatever the bar. Why: Jeffreys (1961) calls a likelihood thirty times as
     large very strong evidence; the probability of the effect follows from another number (learning_rate).
-    Test: test_criteria_of_evidence.py::
+    Test: test_rule.py::
     test_a_gain_improves_that_is_worth_a_parameter_and_passes_the_bar_or_half_of_what_can_be_gained"""
     level: float = 3e-4
     """[of the standard deviation] Root mean square of the means of the runs that matters; smaller ones count as that in
     a score. Why: a smaller mean is of no use to anyone.
-    Test: test_criteria_of_evidence.py::test_means_of_three_in_ten_thousand_of_the_deviation_matter"""
+    Test: test_rule.py::test_means_of_three_in_ten_thousand_of_the_deviation_matter"""
     separation: float = 0.05
     """[1] Power of the difference of two outputs over the residual power of the better one above the noise. Why: an
     effect that both lack may have turned the order of two outputs so near to each other.
@@ -129,7 +129,7 @@ class EvidenceCriteria:
     """[1] Share of the largest possible gain that passes whatever the bar. Why: where a residual has few harmonics some
     candidate often matches a random phase, and the bar comes near to the largest possible gain; after half of that
     gain, in the logarithm, any further effect gains little.
-    Test: test_criteria_of_evidence.py::
+    Test: test_rule.py::
     test_a_gain_improves_that_is_worth_a_parameter_and_passes_the_bar_or_half_of_what_can_be_gained"""
     model_error_samples: int = 20_000
     """[samples] Of all records together in the model of the error; longer ones are averaged, or cut into parts.

@@ -22,8 +22,9 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import minimize_scalar
 
-from ident.diagnosis.evidence.blocks import BlockMean, block_ratio
+from ident.diagnosis.evidence.blocks import block_ratio
 from ident.diagnosis.evidence.criteria import EVIDENCE_CRITERIA, EvidenceCriteria
+from ident.diagnosis.evidence.evidence import BlockMean
 from ident.linear_filter import linear_filter
 from ident.noise.autoregression import Autoregression
 from ident.residuals.decimation import averaged

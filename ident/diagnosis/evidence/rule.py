@@ -1,50 +1,65 @@
 """The rule by which an effect is added: the questions that are asked of the evidence for it.
 
 An effect is added where the answer to each question is yes. The selection, the trials with companions, the reason that
-a reader gets and the figures of the answer all follow from this list. To change the rule, change a question here,
-its number in :mod:`ident.diagnosis.evidence.criteria` and its text in :mod:`ident.words.verdict_messages`.
+a reader gets, the figures of the answer and `docs/diagnosis.md` all follow from this file. To change the rule, change a
+question here and its number in :mod:`ident.diagnosis.evidence.criteria`, whose reason gives the measurement.
 
-*Is it real?* The gain has to pass the bar, the 95 % point of the largest gain that any candidate makes of residuals
-with the same spectrum and random phases (:mod:`ident.diagnosis.evidence.chance`), or half of all that can be gained.
-The bar is the correction for the number of models compared. With four runs or more the gain has to pass without the run
-that gains most, too: an effect that one run alone asks for is a warning about that run.
-
-*Does it matter?* The share of the explainable power that the effect takes has to be above a hundredth beyond its error.
-
-*Does it hold everywhere?* No condition of the tests, and none of the spans of the records
-(:data:`ident.diagnosis.evidence.comparison.SPANS`), may lose beyond its error and by a hundredth of the explainable
-power.
-
-*Does it run freely?* The free run of a machine that is fitted over windows may not drift further beyond chance.
+* **Is it real?** The gain G = ν/2 ln(V before / V after) is in nats (`evidence.nats`). V is the energy of the residual
+  over bands, each over the energy of the disturbance there, which is the same for both models. So a drift that
+  neither explains decides nothing. ν counts distinct degrees of freedom, never samples: two for each harmonic of a
+  periodic test, at most 30 for a band, at most 100 in all. Five and a hundred periods of a sine say the same. The gain
+  has to pass a bar: the 95 % point of the largest gain of all effects on 200 residuals with the same spectrum and
+  random phases. The bar is the correction for the number of models compared. Half of the largest possible gain
+  (`evidence.most_nats`) passes, too. Of four runs or more that is asked without the run that gains most: an effect that
+  one run alone asks for is a warning about that run.
+* **Does it matter?** It explains a share of the power above the noise (`evidence.share`) that is beyond a hundredth by
+  its error, or by that of the difference. The error comes from the scatter between runs, or between blocks of ten
+  correlation times; those of a short record are shorter, but never below four.
+* **Does it hold everywhere?** No condition of the tests and neither half of the records may lose beyond its error and
+  by a hundredth of the explainable power (`evidence.carries_over`).
+* **Does it run freely?** This is asked of a machine that is fitted over windows. A window begins where the record was
+  measured, and forgives errors that add up slowly. So the power of the free run, with its mean, may not rise with the
+  effect by more than chance. Chance is the sum of disturbances like those at the ends of the windows, and of the
+  standard errors of the parameters (`ident/diagnosis/evidence/free_run.py`). If the effect is right that is exceeded in
+  one case of twenty at most. An effect that only the free run speaks against is tried with each other effect: friction
+  and a constant force may run freely together, and neither alone.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Hashable
+from collections.abc import Callable, Hashable, Mapping
 from dataclasses import dataclass
 from math import sqrt
+from typing import Any
 
-from ident.diagnosis.evidence.comparison import SPANS, Evidence
 from ident.diagnosis.evidence.criteria import EVIDENCE_CRITERIA, EvidenceCriteria
+from ident.diagnosis.evidence.evidence import SPANS, Evidence
 from ident.diagnosis.evidence.free_run import drives_away
-from ident.words.message import Message, message
+from ident.words.message import Message
 from ident.words.percent import PER_CENT
 
 
 @dataclass(frozen=True)
 class Question:
-    """A question of the rule; `yes` answers it by the evidence, `refusal` is the reason for a reader where it is no.
+    """A question of the rule: `yes` answers it by the evidence.
 
-    An effect that improves the model on the whole and fails a question that is `of_a_part` is tried with each other
-    effect: another may be missing there. `shows` is whether the reason also says how the effect would show;
-    `figure` is the name of the answer among the figures of the evidence, where it has one.
+    `refusal` is the reason for a reader where the answer is no, a text like those of :mod:`ident.words.messages`, and
+    `numbers` works out the values that the text names. An effect that improves the model on the whole and fails a
+    question that is `of_a_part` is tried with each other effect: another may be missing there. `shows` is whether the
+    reason also says how the effect would show; `figure` is the name of the answer among the figures of the evidence,
+    where it has one.
     """
 
     yes: Callable[[Evidence, EvidenceCriteria], bool]
-    refusal: Callable[[Evidence], Message]
+    refusal: str
+    numbers: Callable[[Evidence], Mapping[str, Any]] = lambda _: {}
     of_a_part: bool = False
     shows: bool = False
     figure: str = ""
+
+    def reason(self, evidence: Evidence) -> Message:
+        """The reason why an effect with this evidence is not added."""
+        return Message(f"why.{self.yes.__name__}", self.numbers(evidence), self.refusal)
 
 
 def matters(evidence: Evidence, criteria: EvidenceCriteria = EVIDENCE_CRITERIA) -> bool:
@@ -58,9 +73,9 @@ def matters(evidence: Evidence, criteria: EvidenceCriteria = EVIDENCE_CRITERIA) 
     return of_levels or of_difference or evidence.share.above(criteria.share, criteria)
 
 
-def _too_little(evidence: Evidence) -> Message:
-    share, error = PER_CENT * evidence.share.mean, PER_CENT * evidence.share.bound(EVIDENCE_CRITERIA)
-    return message("why.little", share=share, error=error, least=PER_CENT * EVIDENCE_CRITERIA.share)
+def _shares(evidence: Evidence) -> dict[str, float]:
+    share, error = evidence.share.mean, evidence.share.bound(EVIDENCE_CRITERIA)
+    return {"share": PER_CENT * share, "error": PER_CENT * error, "least": PER_CENT * EVIDENCE_CRITERIA.share}
 
 
 def generalises(evidence: Evidence, criteria: EvidenceCriteria = EVIDENCE_CRITERIA) -> bool:
@@ -74,9 +89,9 @@ def losing_part(evidence: Evidence, criteria: EvidenceCriteria = EVIDENCE_CRITER
     return next((name for name, part in evidence.parts.items() if part.below(least, each)), None)
 
 
-def _loses(evidence: Evidence) -> Message:
+def _where(evidence: Evidence) -> dict[str, str]:
     part = losing_part(evidence)
-    return message("why.span", span=part) if part in SPANS else message("why.condition")
+    return {"where": f"on the {part} of the records" if part in SPANS else "under one condition of the tests"}
 
 
 def runs_freely(evidence: Evidence, criteria: EvidenceCriteria = EVIDENCE_CRITERIA) -> bool:
@@ -84,17 +99,36 @@ def runs_freely(evidence: Evidence, criteria: EvidenceCriteria = EVIDENCE_CRITER
     return evidence.free_runs is None or not drives_away(*evidence.free_runs, criteria)
 
 
-def _drifts(evidence: Evidence) -> Message:
+def _errors(evidence: Evidence) -> dict[str, float]:
     assert evidence.free_runs is not None
     before, after = evidence.free_runs
-    return message("why.free_run", before=sqrt(before.power), after=sqrt(after.power), expected=sqrt(after.expected))
+    return {"before": sqrt(before.power), "after": sqrt(after.power), "expected": sqrt(after.expected)}
 
 
 QUESTIONS = (
-    Question(matters, _too_little, shows=True),
-    Question(generalises, _loses, of_a_part=True, figure="carries_over"),
-    Question(runs_freely, _drifts, of_a_part=True),
-)
+    Question(
+        matters,
+        "The effect explains {share:.2g} ± {error:.2g} % of the error above the noise floor. At least {least:.2g} % is "
+        "required, beyond the standard error.",
+        _shares,
+        shows=True,
+    ),
+    Question(
+        generalises,
+        "The error rises {where}. An effect that only part of the data support is not added.",
+        _where,
+        of_a_part=True,
+        figure="carries_over",
+    ),
+    Question(
+        runs_freely,
+        "The windows begin where the record was measured. The error of the free run rises from {before:error} to "
+        "{after:error}, where disturbances and errors of the parameters would add up to {expected:error}. An effect "
+        "that drives the free run away is not added.",
+        _errors,
+        of_a_part=True,
+    ),
+)  # the last question
 """The questions of the rule, in the order of their reasons for a reader; `is_real` is asked in addition."""
 
 
@@ -114,7 +148,7 @@ def may_be_real(evidence: Evidence, criteria: EvidenceCriteria = EVIDENCE_CRITER
     return min(evidence.gain, evidence.without) > criteria.least_gain
 
 
-_BY_CHANCE = Question(lambda *_: False, lambda _: message("why.chance"), shows=True)
+_IS_REAL = Question(may_be_real, "That is no more than the best of all effects gains by chance.", shows=True)
 """The reason for an effect that passes all others: the sentences do not know the bar."""
 
 
@@ -143,4 +177,4 @@ def refusing(evidence: Evidence, is_worth_adding: bool) -> Question | None:
     """The first question that an effect fails, by the rule's answer on it; None where it is worth adding."""
     if is_worth_adding:
         return None
-    return next((question for question in QUESTIONS if not question.yes(evidence, EVIDENCE_CRITERIA)), _BY_CHANCE)
+    return next((question for question in QUESTIONS if not question.yes(evidence, EVIDENCE_CRITERIA)), _IS_REAL)

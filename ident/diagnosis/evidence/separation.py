@@ -10,8 +10,8 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from ident.diagnosis.evidence.comparison import Evidence
 from ident.diagnosis.evidence.criteria import EVIDENCE_CRITERIA, EvidenceCriteria
+from ident.diagnosis.evidence.evidence import Evidence
 from ident.diagnosis.evidence.rule import runs_freely
 
 
