@@ -148,11 +148,31 @@ class AlternativeView(BaseModel):
     separation: SeparationView
 
 
+class RiseView(BaseModel):
+    """The error on runs to verify without an effect and with it, and by how many standard errors it rises.
+
+    The last two are null where the model is unstable on runs to verify with the effect: on those in `unstable`.
+    `instead_of` are effects that the model has which it rises from, and that are not in this one. Of a `free_run` the
+    errors are those with its mean, of a machine that is fitted over windows, and there are no standard errors.
+    Where the mean counts in the fit the errors `with_mean` are what rises, from the first to the second.
+    """
+
+    effect: str
+    before: float
+    after: float | None
+    deviations: float | None
+    unstable: list[str] = Field(default_factory=list)
+    instead_of: list[str] = Field(default_factory=list)
+    free_run: bool = False
+    with_mean: list[float] = Field(default_factory=list)
+
+
 class VerdictView(BaseModel):
     """What to add, what the data cannot tell apart, whose label is doubted, whether the residual is unexplained.
 
     `standing` is found where the error is at the noise floor, stand_in where it is above it or may be, contradicted
-    where the error rises with an effect (`contradicted_by`) on runs to verify, nothing where no effect helps.
+    where the error rises with an effect (`contradicted_by`, with numbers in `contradictions`) on runs to verify,
+    nothing where no effect helps.
     `because` has the reasons of a stand-in, `alternatives` the numbers that decide a group, `competing` those of
     effects that are as probable as a named one and in no group with it. `noise_test` has the numbers by which the
     residual is unexplained, null where it was not asked. `at_bound` are effects whose strength ended at a bound
@@ -167,6 +187,7 @@ class VerdictView(BaseModel):
     effects: list[str]
     standing: Literal["found", "stand_in", "contradicted", "nothing"] | None = None
     contradicted_by: list[str] = Field(default_factory=list)
+    contradictions: list[RiseView] = Field(default_factory=list)
     indistinguishable: list[list[str]]
     suspects: list[SuspectView]
     unexplained: bool
@@ -227,25 +248,6 @@ class ProposalView(BaseModel):
     text: str
     conditions: str
     run: dict[str, str | float | dict[str, str]]
-
-
-class RiseView(BaseModel):
-    """The error on runs to verify without an effect and with it, and by how many standard errors it rises.
-
-    The last two are null where the model is unstable on runs to verify with the effect: on those in `unstable`.
-    `instead_of` are effects that the model has which it rises from, and that are not in this one. Of a `free_run` the
-    errors are those with its mean, of a machine that is fitted over windows, and there are no standard errors.
-    Where the mean counts in the fit the errors `with_mean` are what rises, from the first to the second.
-    """
-
-    effect: str
-    before: float
-    after: float | None
-    deviations: float | None
-    unstable: list[str] = Field(default_factory=list)
-    instead_of: list[str] = Field(default_factory=list)
-    free_run: bool = False
-    with_mean: list[float] = Field(default_factory=list)
 
 
 class TermView(BaseModel):

@@ -17,7 +17,6 @@ from ident.custom.definition import preset_with
 from ident.diagnosis.budget import SearchBudget
 from ident.diagnosis.criteria import CRITERIA
 from ident.diagnosis.evidence.comparison import compare
-from ident.diagnosis.evidence.rule import worth_adding
 from ident.diagnosis.evidence.separation import indistinguishable, separation
 from ident.diagnosis.parameter_estimate import ParameterEstimate
 from ident.diagnosis.result import Alternative, Baseline, Diagnosis, Ranked, Rung
@@ -115,7 +114,7 @@ class BenchDiagnoser:
         """Fill the first ranking, and the refits from the fitted model to the last, each with one effect more."""
         first += self.refitter.rank(steps[0], self._names(steps[0]), self._progress)
         ranking = first
-        while len(steps) <= self.course.most and ranking and worth_adding(ranking[0].evidence):
+        while len(steps) <= self.course.most and ranking and ranking[0].worth_adding:
             steps.append(ranking[0].refit)
             self._heard(first, steps)
             names = self._names(steps[-1])
@@ -170,7 +169,7 @@ class BenchDiagnoser:
 
     def _ranked(self, candidate: Candidate, group: tuple[str, ...], base: Refit, best: bool) -> Ranked:
         refit, effect = candidate.refit, self.refitter.effects[candidate.effect]
-        helps, errors = worth_adding(candidate.evidence), (base.held_out_error, refit.held_out_error)
+        helps, errors = candidate.worth_adding, (base.held_out_error, refit.held_out_error)
         return Ranked(
             effect=candidate.effect, error=self._errors(refit), offset=self._offset(refit),
             predicted_error=candidate.predicted, parameters=self._parameters(refit), unstable=self._unstable(refit),
@@ -190,7 +189,7 @@ class BenchDiagnoser:
 
 def _alike(ranking: list[Candidate]) -> tuple[str, ...]:
     """The best and those that are worse by no more than chance, where the best helps."""
-    if not ranking or not worth_adding(ranking[0].evidence):
+    if not ranking or not ranking[0].worth_adding:
         return ()
     best = ranking[0].refit.held_out
     return tuple(c.effect for c in ranking if c is ranking[0] or indistinguishable(compare(c.refit.held_out, best)))

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,10 +23,12 @@ from ident.bench.residual import Residual
 from ident.cached import cached_property
 from ident.diagnosis.criteria import CRITERIA
 from ident.diagnosis.cross_validation import fold_of_segments
-from ident.diagnosis.evidence.comparison import Residuals, compare
+from ident.diagnosis.evidence.chance import bar
+from ident.diagnosis.evidence.comparison import Residuals, common_disturbance, compare
 from ident.diagnosis.evidence.energy_bands import EnergyBands
 from ident.diagnosis.evidence.energy_bands import Record as ComparedRecord
 from ident.diagnosis.evidence.evidence import Evidence
+from ident.diagnosis.evidence.rule import worth_adding
 from ident.effects import CATALOGUE
 from ident.effects.effect import Effect, off_values
 from ident.effects.second_lag import SECOND_LAG
@@ -65,12 +68,14 @@ class Refit:
 
 @dataclass(frozen=True, eq=False)
 class Candidate:
-    """An effect, the error of its first refit, to the constants only, its full refit and what that gains."""
+    """An effect, the error of its first refit, to the constants only, its full refit, the evidence for it, and whether
+    it is worth adding by the rule."""
 
     effect: str
     predicted: float
     refit: Refit
     evidence: Evidence
+    worth_adding: bool = False
 
 
 @dataclass(frozen=True, eq=False)
@@ -123,7 +128,9 @@ class Refitter:
         for name in names:
             found.append(self._candidate(base, name))
             done(len(found), len(names))
-        return sorted(found, key=lambda one: one.refit.held_out_error)
+        chance = cache(lambda: _bar(base, found))
+        judged = [replace(one, worth_adding=worth_adding(one.evidence, chance)) for one in found]
+        return sorted(judged, key=lambda one: one.refit.held_out_error)
 
     def _candidate(self, base: Refit, name: str) -> Candidate:
         effects = (*base.effects, name)
@@ -180,6 +187,17 @@ class Refitter:
         return tuple(
             _by_fold([one.residual(m) for m in models], of) for one, of in zip(self._shown, shown, strict=True)
         )
+
+
+def _bar(base: Refit, candidates: Sequence[Candidate]) -> float:
+    """The gain (nats) that the best of the candidates exceeds by chance in one case of twenty.
+
+    A candidate's response is the difference of its refit from the model without it, in which all parameters moved.
+    """
+    held_out = [one.refit.held_out for one in candidates]
+    before = base.held_out.series
+    responses = [np.column_stack([run - other.series[at] for other in held_out]) for at, run in enumerate(before)]
+    return bar(before, [np.empty((len(run), 0)) for run in before], responses, common_disturbance([base.held_out]))
 
 
 def _by_fold(residuals: Sequence[Array], folds: NDArray[np.intp]) -> Array:

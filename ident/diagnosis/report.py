@@ -18,7 +18,7 @@ from ident.diagnosis.model_comparison import evidence
 from ident.diagnosis.result import NO_ERRORS, Baseline, Diagnosis, EffectSet, Errors, Ranked, Rung, Verdict
 from ident.diagnosis.selection import Selection
 from ident.diagnosis.sentences import evidence_figures, verdict_text, why
-from ident.diagnosis.verdict import Findings, conclude, contradiction
+from ident.diagnosis.verdict import Findings, conclude
 from ident.diagnosis.verification import noise_on_validation_data
 from ident.errors import TimeIsUp
 from ident.fit.result import FitResult
@@ -99,17 +99,15 @@ def _held(selection: Selection) -> tuple[str, ...]:
 def _text(selection: Selection, steps: Rungs, findings: Findings, floor: Errors) -> str:
     """The verdict in sentences; `floor` has the noise floors by use."""
     models, verdict = selection.models, conclude(findings)
-    changes = (change for change in findings.verify if change.effect in verdict.contradicted_by)
-    against = tuple(filter(None, map(contradiction, changes)))
     in_band = in_time(lambda: models.floors.in_band)
     unconfirmed = {change.effect: change for change in findings.verify if change.effect in verdict.unconfirmed}
     after = steps[-1][1].errors["fit"]
     steps = [step for step in steps if step[0] not in verdict.unsupported]
-    fewer = None if against else better_with_fewer(steps)
+    fewer = None if verdict.contradictions else better_with_fewer(steps)
     return verdict_text(
         verdict.effects, verdict.indistinguishable, findings.suspects, verdict.unexplained, steps[-1][1].errors,
-        selection.base.error, in_band is not False, floor["fit"], against, selection.complete, models.described,
-        [name for name in findings.at_bound if name not in verdict.unsupported], fewer,
+        selection.base.error, in_band is not False, floor["fit"], verdict.contradictions, selection.complete,
+        models.described, [name for name in findings.at_bound if name not in verdict.unsupported], fewer,
         steps[-1][1].unstable.get("verify", ()), verdict.probabilities, verdict.group_probabilities, selection.limit,
         [unconfirmed[name] for name in verdict.unconfirmed],
         verdict.noise_test is not None and verdict.noise_test.predicted is not None,

@@ -9,7 +9,7 @@ from typing import Any
 from ident.diagnosis.discovery.proposal import Proposal, from_json
 from ident.diagnosis.evidence.separation import Separation
 from ident.diagnosis.parameter_estimate import ParameterEstimate
-from ident.diagnosis.verification import Reason, Standing
+from ident.diagnosis.verification import Contradiction, Reason, Standing
 from ident.errors import Unusable
 from ident.fit.result import TransducerOffset, large_offsets
 from ident.matrix import Matrix, StepOutcome
@@ -181,8 +181,8 @@ class Verdict:
 
     `standing` says how sure the effects are, see :data:`ident.diagnosis.verification.Standing`; None where it is not
     known; `because` has the reasons of a stand-in. `contradicted_by` are effects with which the error rises on
-    validation data, `at_bound` effects whose strength ended at a bound of the search, `elsewhere` explanations by
-    other machines that are as good. Three kinds of effects of the ladder are not named: `stood_in` are redundant with
+    validation data, `contradictions` the numbers of each. `at_bound` are effects whose strength ended at a bound of the
+    search, `elsewhere` explanations by other machines that are as good. Three kinds of effects of the ladder are not named: `stood_in` are redundant with
     proposed terms, validation data show nothing of `unconfirmed` ones, and for all of `by_chance` it is more probable
     than not that nothing is missing. `indistinguishable` are groups of
     effects one of which is named, or two lags or delays that two others replace as well; `alternatives` has the
@@ -196,6 +196,7 @@ class Verdict:
     effects: tuple[str, ...] = ()
     standing: Standing | None = None
     contradicted_by: tuple[str, ...] = ()
+    contradictions: tuple[Contradiction, ...] = field(default=(), metadata=WHERE_KNOWN)
     indistinguishable: tuple[tuple[str, ...], ...] = ()
     suspects: tuple[Suspect, ...] = ()
     unexplained: bool = False

@@ -140,16 +140,18 @@ def conclude(findings: Findings, criteria: Criteria = CRITERIA) -> Verdict:
     supported = tuple(name for name in findings.added if name not in (*findings.dispensable, *unconfirmed))
     by_chance = supported if of_sets is not None and of_sets.nothing > 0.5 else ()
     named = () if by_chance else supported
-    contradicted = tuple(change.effect for change in findings.verify if contradicts(change, criteria))
-    against = tuple(name for name in contradicted if name not in (*findings.dispensable, *by_chance))
-    reasons = _reasons(findings, named, bool({*contradicted} & {*findings.dispensable}), criteria)
-    standing = _standing(named, against, reasons)
+    contradicted = [change for change in findings.verify if contradicts(change, criteria)]
+    against = [change for change in contradicted if change.effect not in (*findings.dispensable, *by_chance)]
+    cleared = any(change.effect in findings.dispensable for change in contradicted)
+    reasons = _reasons(findings, named, cleared, criteria)
+    standing = _standing(named, bool(against), reasons)
     groups = _groups(findings, named)
     return Verdict(
         effects=named,
         standing=standing,
         because=reasons if standing == "stand_in" else (),
-        contradicted_by=against,
+        contradicted_by=tuple(change.effect for change in against),
+        contradictions=tuple(change.contradiction() for change in against),
         indistinguishable=groups,
         alternatives=tuple(
             compared for compared in findings.compared if any(compared.instead_of in group for group in groups)
@@ -214,7 +216,7 @@ def _reasons(
     return tuple(reason for reason, is_so in holds.items() if is_so)
 
 
-def _standing(named: Names, against: Names, reasons: Sequence[Reason]) -> Standing:
+def _standing(named: Names, against: bool, reasons: Sequence[Reason]) -> Standing:
     """How the named effects stand."""
     if not named:
         return "nothing"

@@ -41,13 +41,16 @@ _FARTHER = {Starts.RESONANCE: _RINGING, Starts.RELAXATION: _RELAXING}
 
 
 def _measured_by(unit: str) -> tuple[str, float | None]:
-    """The measure of a strength of this unit; a force for each power of the speed or the way by its power."""
+    """The measure of a strength of this unit; a force for each power of the speed or the way, and a flow for each power
+    of the pressure, by its power."""
     if unit in _SCALES:
         return _SCALES[unit]
     if of_speed := re.fullmatch(r"N\*s\^(\d)/m\^\1", unit):
         return f"F/V**{of_speed[1]}", 10.0
     if of_way := re.fullmatch(r"N/m\^(\d)", unit):
         return f"F/L**{of_way[1]}", 1.0
+    if of_pressure := re.fullmatch(r"m\^3/\(s\*Pa\^([\d.]+)\)", unit):
+        return f"A*V/(F/A)**{of_pressure[1]}", 1.0
     return _OWN
 
 

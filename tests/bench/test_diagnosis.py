@@ -20,7 +20,7 @@ from tests.bench.sets import as_matrix, true_model
 from tests.reference import kononykhin_reference as reference
 
 SEED = 66
-HIDDEN = {"delay": 0.004, "second_lag": 0.005, "stiction": 0.3, "load": 0.005}
+HIDDEN = {"delay": 0.004, "second_lag": 0.005, "stiction": 0.5, "load": 0.005}
 SI = {"delay": 1.0, "second_lag": 1.0, "stiction": 1e6, "load": 1e9}
 CALLED = {"delay": "command_delay", "load": "spring_load"}  # where the reference has another name
 

@@ -96,6 +96,7 @@ def test_no_effect_is_named_where_it_is_more_probable_than_not_that_nothing_is_m
     assert verdict.by_chance == verdict.unsupported == (("lead",) if by_chance else ())
     assert verdict.indistinguishable == (() if by_chance else (("lead", "lag"),))
     assert verdict.contradicted_by == (("lead",) if verify is RISES and not by_chance else ())
+    assert verdict.contradictions == ((RISES.contradiction(),) if verdict.contradicted_by else ())
     assert (verdict.standing == "nothing") is by_chance
 
 

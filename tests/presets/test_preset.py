@@ -156,9 +156,9 @@ def test_a_play_in_a_loop_may_be_wider_than_the_drive_signals_deviation():
 
 @pytest.mark.parametrize(("unit", "measured", "searched"), [
     ("N*s^2/m^2", "(1)/V**2", 10.0), ("N*s^3/m^3", "(1)/V**3", 10.0), ("N/m^2", "(1)/L**2", 1.0),
-    ("N/m^4", "(1)/L**4", 1.0),
+    ("N/m^4", "(1)/L**4", 1.0), ("m^3/(s*Pa^3)", "A*V/((1)/A)**3", 1.0),
 ])  # fmt: skip
-def test_a_force_for_a_power_of_the_speed_or_the_way_is_searched_by_their_size(unit, measured, searched):
+def test_a_force_or_a_flow_for_a_power_of_what_it_follows_is_searched_by_its_size(unit, measured, searched):
     """Whatever the power: a strength of a unit that no effect had before needs no line of a table."""
     strength = Parameter("coefficient", "c", unit, 0.0, 1.0, 0.0, "a force")
     damping = replace(effect("quadratic_damping"), strength=strength, texts=("R = R + c * v",))

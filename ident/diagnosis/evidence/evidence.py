@@ -22,8 +22,9 @@ SPANS = {"first half": (0.0, 0.5), "second half": (0.5, 1.0)}
 class BlockMean:
     """A mean, its standard error, and the number of blocks. The error of one block is infinite.
 
-    `parts` are the contributions of the blocks, which sum to the mean, for a rule that asks each block; a ratio has
-    none.
+    `parts` are the contributions of the blocks, which sum to the mean and may be negative, for a rule that asks each
+    block; a ratio has none. Of four runs or more a block is a run; of fewer, each has at least two blocks. Of the means
+    of the runs each block is a run, also of two.
     """
 
     mean: float
