@@ -179,13 +179,13 @@ class Verdict:
     """The named effects, the groups that the data cannot tell apart, the suspects, and whether the residual is
     explained.
 
-    `standing` says how sure the effects are, see :data:`ident.diagnosis.verification.Standing`; None where it is not
-    known; `because` has the reasons of a stand-in. `contradicted_by` are effects with which the error rises on
-    validation data, `contradictions` the numbers of each. `at_bound` are effects whose strength ended at a bound of the
-    search, `elsewhere` explanations by other machines that are as good. Three kinds of effects of the ladder are not named: `stood_in` are redundant with
-    proposed terms, validation data show nothing of `unconfirmed` ones, and for all of `by_chance` it is more probable
-    than not that nothing is missing. `indistinguishable` are groups of
-    effects one of which is named, or two lags or delays that two others replace as well; `alternatives` has the
+    `standing` says how sure the effects are, see :data:`ident.diagnosis.verification.Standing`; None where it is
+    not known; `because` has the reasons of a stand-in. `contradicted_by` are effects with which the error rises on
+    validation data, `contradictions` the numbers of each. `at_bound` are effects whose strength ended at a bound of
+    the search, `elsewhere` explanations by other machines that are as good. Three kinds of effects of the ladder
+    are not named: `stood_in` are redundant with proposed terms, validation data show nothing of `unconfirmed` ones,
+    and for all of `by_chance` it is more probable than not that nothing is missing. `indistinguishable` are groups
+    of effects one of which is named, or two lags or delays that two others replace as well; `alternatives` has the
     numbers that decide the groups of the first kind, `competing` those of effects that are as probable in the place
     of a named one and in no group with it. `probability` is the probability of the verdict, None where it is not
     known; `probabilities` has each effect that was refitted, "nothing" and something "unlisted",
