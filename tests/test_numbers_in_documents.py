@@ -118,7 +118,7 @@ def of_diagnosis() -> Iterator[Tie]:
     yield D, "at most {} for a band, at most {} in all", (plain(of.degrees_of_a_band), plain(of.degrees_in_all))
     yield D, "largest gain of all effects on {} residuals", (of.surrogates,)
     yield D, "Half of the largest possible gain", ({0.5: "half"}[of.reaches],)
-    yield D, "beyond a {} by its error", ({0.01: "hundredth"}[of.share],)
+    yield D, "explains more than a {} of the power above the noise", ({0.01: "hundredth"}[of.share],)
     yield D, "blocks of {} correlation times; those of a short record are shorter, but never below {}", (
         word(of.correlation_times), word(of.least_correlation_times),
     )  # fmt: skip

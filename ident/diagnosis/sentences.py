@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from math import sqrt
+from math import isfinite, sqrt
 from types import MappingProxyType
 from typing import Any
 
@@ -67,11 +67,16 @@ def evidence_figures(evidence: Evidence | None, effect: Effect, worth_adding: bo
         return {"confirmed": False, "looks": effect.looks}
     return {
         "confirmed": True, "nats": evidence.gain, "nats_without_best_run": evidence.without, "most_nats": evidence.most,
-        "share": evidence.share.mean, "share_error": evidence.share.error if evidence.share.blocks > 1 else None,
+        "share": evidence.share.mean, "share_error": _known(evidence.share.error),
+        "weighted_share": evidence.weighted_share.mean, "weighted_share_error": _known(evidence.weighted_share.error),
         "distinct": evidence.distinct, "beyond_chance": worth_adding,
         **{asked.figure: asked.yes(evidence, EVIDENCE_CRITERIA) for asked in QUESTIONS if asked.figure},
         "looks": effect.looks, "meaning": effect.meaning,
     }  # fmt: skip
+
+
+def _known(error: float) -> float | None:
+    return error if isfinite(error) else None
 
 
 def verdict_text(

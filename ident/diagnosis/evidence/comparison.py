@@ -125,6 +125,7 @@ def compare(
     between = [first - second for first, second in zip(before.scaled, after.scaled, strict=True)]
     noise = min(float(np.mean(disturbance.floors)), before.power, after.power)
     excess = [residual**2 - floor for residual, floor in zip(before.scaled, disturbance.floors, strict=True)]
+    first, second = (disturbance.weighted(side.scaled) for side in (before, after))
     squares = [side.level_squares[:, None] for side in (before, after)]
     best = before if before.power <= after.power else after
     return Evidence(
@@ -138,6 +139,11 @@ def compare(
         noise=noise,
         difference=block_mean(gained, criteria),
         share=block_ratio(gained, excess, criteria),
+        weighted_share=block_ratio(
+            [r**2 - s**2 for r, s in zip(first, second, strict=True)],
+            [r**2 - floor for r, floor in zip(first, disturbance.weighted_floors, strict=True)],
+            criteria,
+        ),
         by_part=partial(_parts, gained, before.bands.records, criteria),
         apart=float(np.mean([np.mean(d**2) for d in between])),
         resolved=criteria.resolution * noise / best.independent,

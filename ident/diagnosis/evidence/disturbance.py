@@ -15,6 +15,7 @@ sum over all bands, because the level of the disturbance is not known.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -64,10 +65,25 @@ class Disturbance:
         """Σ c_b."""
         return float(self.counted.sum())
 
+    @property
+    def weights(self) -> Array:
+        """c_b / S_b, the weight of the energy of each band in the loss, 0 of a band without energy, (bands,)."""
+        return self.counted / np.where(self.energy > 0, self.energy, 1.0)
+
     def loss(self, energies: Array) -> float:
         """V of a model by its energies (bands,): 1 or less where its residual is the disturbance."""
         shares = np.maximum(energies, self.noise) / np.where(self.energy > 0, self.energy, 1.0)
         return float(self.counted @ shares) / self._all
+
+    def weighted(self, scaled: Sequence[Array]) -> list[Array]:
+        """The residuals (n,) of the runs, each over the standard deviation of its output, weighted as in the loss."""
+        return [run.weighted(r, self.weights) for run, r in zip(self.bands.runs, scaled, strict=True)]
+
+    @property
+    def weighted_floors(self) -> Array:
+        """The variance of the noise of each run, weighted as in the loss, (runs,)."""
+        of_runs = [run.degrees(self.bands.size) @ self.weights / run.n for run in self.bands.runs]
+        return self.floors * np.array(of_runs)
 
     def gain(self, before: Array, after: Array) -> float:
         """G = ν/2 ln(V before / V after) of the energies (bands,) of two models, in nats; 0 where no band has

@@ -164,6 +164,10 @@ class _Bands:
         """Orthogonal parts of signals (n, k): complex numbers (m, k) whose squares sum to the energy."""
         raise NotImplementedError
 
+    def weighted(self, signal: Array, weights: Array) -> Array:
+        """A signal (n,) whose energy in each band of all conditions is multiplied by its weight (bands,)."""
+        raise NotImplementedError
+
     def degrees(self, count: int) -> Array:
         """Its degrees of freedom in each of the `count` bands of all conditions."""
         raise NotImplementedError
@@ -193,6 +197,9 @@ class _Broadband(_Bands):
 
     def coefficients(self, signals: Array) -> Complex:
         return _spectrum(signals)
+
+    def weighted(self, signal: Array, weights: Array) -> Array:
+        return np.asarray(np.fft.irfft(np.fft.rfft(signal) * np.sqrt(weights[self.band]), self.n))
 
     def degrees(self, count: int) -> Array:
         found = self._counted(self.band, count)
@@ -231,6 +238,11 @@ class _Periodic(_Bands):
         shares = self._basis.T @ signals
         remainder = signals - self._basis @ shares
         return np.concatenate([shares[:1], shares[1::2] + 1j * shares[2::2], _spectrum(remainder)])
+
+    def weighted(self, signal: Array, weights: Array) -> Array:
+        shares, own = self._basis.T @ signal, np.sqrt(weights[self.first : self.first + self.bands])
+        remainder = signal - self._basis @ shares
+        return np.asarray(self._basis @ (shares * np.repeat(own[:-1], 2)[1:]) + own[-1] * remainder)
 
     def degrees(self, count: int) -> Array:
         found = self._counted(self.band[: self.harmonics + 1], count)

@@ -57,8 +57,9 @@ class Evidence:
 
     `gain` is G (nats), `without` is G without the run that gains most, `most` is the gain of a model whose residual is
     the noise, `distinct` is ν. `before`, `after` and `noise` are powers of the error over the power of the output,
-    averaged over runs; `difference` is before − after and `share` ρ, with their errors; `by_part` works out `parts`,
-    the differences on each condition and each span. `apart` is the power of the difference of the two outputs,
+    averaged over runs; `difference` is before − after and `share` ρ, with their errors, and `weighted_share` is the
+    same share of the loss, in which each band is weighted by the disturbance there; `by_part` works out `parts`, the
+    differences on each condition and each span. `apart` is the power of the difference of the two outputs,
     `resolved` the power of the least difference that the noise does not hide.
 
     The means of the runs, less their common mean, are judged by themselves. `level` is their root mean square before,
@@ -83,6 +84,7 @@ class Evidence:
     resolved: float
     level: float = 0.0
     levels_apart: float = 0.0
+    weighted_share: BlockMean = NO_DIFFERENCE
     level_difference: BlockMean = NO_DIFFERENCE
     level_share: BlockMean = NO_DIFFERENCE
     by_free_run: Callable[[], tuple[FreeRun, FreeRun]] | None = None

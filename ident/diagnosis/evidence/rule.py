@@ -12,9 +12,10 @@ question here and its number in :mod:`ident.diagnosis.evidence.criteria`, whose 
   random phases. The bar is the correction for the number of models compared. Half of the largest possible gain
   (`evidence.most_nats`) passes, too. Of four runs or more that is asked without the run that gains most: an effect that
   one run alone asks for is a warning about that run.
-* **Does it matter?** It explains a share of the power above the noise (`evidence.share`) that is beyond a hundredth by
-  its error, or by that of the difference. The error comes from the scatter between runs, or between blocks of ten
-  correlation times; those of a short record are shorter, but never below four.
+* **Does it matter?** It explains more than a hundredth of the power above the noise (`evidence.share`). It does so
+  beyond the error of the share, of the difference, or of the share of the loss, in which each band counts by the
+  disturbance there (`evidence.weighted_share`): a drift scatters the first two. The error comes from the scatter
+  between runs, or between blocks of ten correlation times; those of a short record are shorter, but never below four.
 * **Does it hold everywhere?** No condition of the tests and neither half of the records may lose beyond its error and
   by a hundredth of the explainable power (`evidence.carries_over`).
 * **Does it run freely?** This is asked of a machine that is fitted over windows. A window begins where the record was
@@ -65,12 +66,14 @@ class Question:
 def matters(evidence: Evidence, criteria: EvidenceCriteria = EVIDENCE_CRITERIA) -> bool:
     """Whether the second model explains a share of the explainable power, or of the runs' means, that matters.
 
-    It does so beyond the error of the share, or beyond that of the difference. The first is small where every block
-    gains the same share, the second where some blocks, or some runs, gain more of it than others.
+    It does so beyond the error of the share, of the difference, or of the share of the loss, in which each band counts
+    by the disturbance there. The first is small where every block gains the same share, the second where some blocks,
+    or some runs, gain more of it than others, the third where a drift scatters both.
     """
     of_levels = evidence.level > criteria.level and evidence.level_share.above(criteria.share, criteria)
     of_difference = evidence.difference.above(criteria.share * evidence.explainable, criteria)
-    return of_levels or of_difference or evidence.share.above(criteria.share, criteria)
+    weighted = evidence.share.mean > criteria.share and evidence.weighted_share.above(criteria.share, criteria)
+    return of_levels or of_difference or weighted or evidence.share.above(criteria.share, criteria)
 
 
 def _shares(evidence: Evidence) -> dict[str, float]:
