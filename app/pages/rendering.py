@@ -55,9 +55,8 @@ def _environment() -> Environment:
     environment.filters["level"] = level
     environment.filters["unit"] = printed_unit
     environment.filters["use"] = DATA.__getitem__
-    environment.globals["static"] = static
-    environment.globals["conditions"] = conditions
-    environment.globals["has_manual"] = is_there
+    known: dict[str, Any] = {"static": static, "conditions": conditions, "has_manual": is_there}
+    environment.globals.update(known)
     return environment
 
 

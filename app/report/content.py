@@ -71,8 +71,8 @@ def content(
 
 def _signatures(sheet: Sheet, matrix: Matrix) -> Signatures:
     test, approval = sheet.test.over(matrix.test), sheet.approval
-    approved = ("", "") if approval is None else (approval.who, approval.since[:10])
-    return Signatures((("Tested", test.operator, test.date), ("Checked", "", ""), ("Approved", *approved)))
+    who, since = ("", "") if approval is None else (approval.who, approval.since[:10])
+    return Signatures((("Tested", test.operator, test.date), ("Checked", "", ""), ("Approved", who, since)))
 
 
 def _error(fit: FitResult, found: Survey) -> Iterator[Block]:

@@ -33,7 +33,7 @@ def typeset(report: Report) -> bytes:
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         blocks = [_piece(block, folder) for block in report.blocks]
-        told = {"title": report.title, "lead": report.lead, "blocks": blocks, "logo": None}
+        told: dict[str, object] = {"title": report.title, "lead": report.lead, "blocks": blocks, "logo": None}
         if report.logo:
             told["logo"] = f"logo.{report.logo.ending}"
             (folder / f"logo.{report.logo.ending}").write_bytes(report.logo.content)

@@ -177,10 +177,10 @@ def passed(lines: tuple[Line, ...]) -> bool:
 
 def judged(lines: Sequence[Line], by: Mapping[str, tuple[float | None, float | None, str]]) -> tuple[Line, ...]:
     """The lines against the limits of a production line, as it judged them: lower, upper and outcome by quantity."""
-    own = dict.fromkeys(("lower", "upper", "outcome"))
+    judgements = (by.get(line.quantity, (None, None, None)) for line in lines)
     return tuple(
-        replace(line, **(dict(zip(own, by[line.quantity], strict=True)) if line.quantity in by else own))
-        for line in lines
+        replace(line, lower=lower, upper=upper, outcome=outcome)
+        for line, (lower, upper, outcome) in zip(lines, judgements, strict=True)
     )
 
 

@@ -54,7 +54,7 @@ def bezier(current: Array, speed: Array, degree: int, zero_shift: float) -> tupl
     # P = N z spans every curve through the zero shift
     null = np.linalg.svd(held[None])[2][1:].T
     z = np.linalg.lstsq(bernstein(s, degree) @ null, speed, rcond=None)[0]
-    return np.asarray(null @ z), (low, high)
+    return np.asarray(null @ z, float), (low, high)
 
 
 def on_bezier(heights: Array, ends: tuple[float, float], current: Array) -> Array:

@@ -111,7 +111,9 @@ def _followed(y: Samples, frequency: float) -> tuple[float, float, float, float]
     The two straight lines take 4 of the 2 m numbers of m periods: m/(m − 2) makes up for that. Of three periods of
     noise the lines would leave a third, and of many periods all.
     """
-    turning = _averaged(y * np.exp(-2j * np.pi * frequency * np.arange(len(y))), max(1, round(1.0 / frequency)))
+    turning = _averaged(
+        np.asarray(y * np.exp(-2j * np.pi * frequency * np.arange(len(y))), complex), max(1, round(1.0 / frequency))
+    )
     at = np.arange(len(turning)) * max(1, round(1.0 / frequency))
     size = np.polyfit(at, np.log(np.abs(turning) + TINY), 1)
     phase = np.polyfit(at, np.unwrap(np.angle(turning)), 1)

@@ -140,7 +140,7 @@ class Levels:
         numbers = np.concatenate([middles[lowest], middles[highest], ends])
         values = np.concatenate([low[lowest], high[highest], self._level(run, channel, 0)[1][ends]])
         order = np.argsort(numbers, kind="stable")
-        return numbers[order], values[order]
+        return np.asarray(numbers[order], float), np.asarray(values[order], float)
 
     def _bins(self, run: str, channel: str, level: int, begin: int, end: int) -> tuple[Real, Real, Real]:
         """Middles, lowest and highest of bins; what is before the first whole one and behind the last is one each."""

@@ -195,7 +195,7 @@ def _lines(command: Array, rate: float) -> tuple[Array, NDArray[np.complex128], 
     power = np.cumsum((np.abs(lines) * frequency**2) ** 2)
     kept = min(int(np.searchsorted(power, (1 - _POWER) * power[-1])) + 2, len(lines))
     points = int(scipy.fft.next_fast_len(min(_OVERSAMPLED * kept, len(padded)), real=True))
-    return np.asarray(frequency[:kept]), lines[:kept], points
+    return np.asarray(frequency[:kept], float), lines[:kept], points
 
 
 def uncertain_machine(fit: FitResult, spread: Spread, like: Run, actuator: Actuator | None = None) -> UncertainMachine:

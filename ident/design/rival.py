@@ -31,7 +31,7 @@ def deviation_of_noise(runs: Sequence[Run], band: float, noise: float) -> Deviat
 
     `noise` is the mean relative floor, which stands where the records do not show theirs.
     """
-    sizes = np.array([np.std(run.measured) for run in runs])
+    sizes = np.array([np.std(run.measured) for run in runs], float)
     if like_transducer(sizes, by_spectrum(runs, band)):
         steady = float(np.exp(np.mean(np.log(noise * sizes))))
         return lambda _size: steady

@@ -232,7 +232,7 @@ def _unconfirmed(findings: Findings, criteria: Criteria) -> Names:
     """
     nothing = {change.effect for change in findings.verify if shows_nothing(change, criteria)}
     asked = [name for name in findings.added if name not in findings.dispensable]
-    return tuple(reversed([*takewhile(nothing.__contains__, reversed(asked))]))
+    return tuple(reversed([*takewhile(lambda name: name in nothing, reversed(asked))]))
 
 
 def _groups(findings: Findings, named: Names) -> tuple[Names, ...]:

@@ -99,10 +99,11 @@ def _pairs(u: Array, y: Array) -> list[Mode]:
     """Damping ratio and frequency, rad a sample, of each pair of poles with which y answers u."""
     samples = np.column_stack((_regressors(y, u), y[ORDER:]))
     triangle = np.asarray(np.linalg.qr(samples, mode="r"))  # of ten rows, as well conditioned as all samples
-    found, *_ = np.linalg.lstsq(triangle[:, :-1], triangle[:, -1], rcond=None)
+    found: Array = np.asarray(np.linalg.lstsq(triangle[:, :-1], triangle[:, -1], rcond=None)[0], float)
     for _ in range(REFINED):
         instruments = _regressors(_answer(found, u), u)
-        found, *_ = np.linalg.lstsq(instruments.T @ samples[:, :-1], instruments.T @ samples[:, -1], rcond=None)
+        fitted = np.linalg.lstsq(instruments.T @ samples[:, :-1], instruments.T @ samples[:, -1], rcond=None)
+        found = np.asarray(fitted[0], float)
     poles = np.log(_poles(found) + 1e-12)
     size = np.abs(poles)
     damped = (poles.real < 0) & (-poles.real < DAMPING * size)
@@ -125,4 +126,4 @@ def _answer(found: Array, u: Array) -> Array:
     poles = _poles(found)
     outside = np.abs(poles) > 1.0
     poles[outside] = 1.0 / np.conj(poles[outside])
-    return linear_filter(found[ORDER:], np.real(np.poly(poles)), u)
+    return linear_filter(found[ORDER:], np.asarray(np.real(np.poly(poles)), float), u)

@@ -50,7 +50,7 @@ def spline_slopes(h: Array, steepness: Array) -> Array:
         step, total = (1, width[0] + width[1]) if row == 0 else (-1, width[-1] + width[-2])
         A[row, row], A[row, row + step] = width[b], total
         rhs[row] = ((width[a] + 2.0 * total) * width[b] * first + width[a] ** 2 * second) / total
-    return np.asarray(np.linalg.solve(A, rhs.reshape(n, -1)).reshape(rhs.shape))
+    return np.asarray(np.linalg.solve(A, rhs.reshape(n, -1)).reshape(rhs.shape), float)
 
 
 def monotone_slopes(h: Array, steepness: Array) -> Array:

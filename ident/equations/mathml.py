@@ -13,8 +13,24 @@ _GREEK = {
     "tau": "τ", "omega": "ω", "zeta": "ζ", "xi": "ξ", "beta": "β", "kappa": "κ", "alpha": "α", "sigma": "σ", "mu": "μ",
 }  # fmt: skip
 _WORD = 4  # letters: fewer are a symbol and its index
-_BINARY = {ast.Add: "+", ast.Sub: "−", ast.Mult: "·", ast.Lt: "&lt;", ast.LtE: "≤", ast.Gt: "&gt;", ast.GtE: "≥"}
-_RANK = {ast.Add: 1, ast.Sub: 1, ast.Mult: 2, ast.Div: 2, ast.USub: 3, ast.UAdd: 3, ast.Pow: 4}
+_BINARY: dict[type[ast.AST], str] = {
+    ast.Add: "+",
+    ast.Sub: "−",
+    ast.Mult: "·",
+    ast.Lt: "&lt;",
+    ast.LtE: "≤",
+    ast.Gt: "&gt;",
+    ast.GtE: "≥",
+}
+_RANK: dict[type[ast.AST], int] = {
+    ast.Add: 1,
+    ast.Sub: 1,
+    ast.Mult: 2,
+    ast.Div: 2,
+    ast.USub: 3,
+    ast.UAdd: 3,
+    ast.Pow: 4,
+}
 
 
 def mathml(text: str, curves: Mapping[str, str] | None = None) -> str:

@@ -280,7 +280,9 @@ def _frequency(alike: _Alike, named: bool, field: str = "f") -> alt.X:
         scale = alt.Scale(type="log", domain=zoomed("lowest", "highest"), nice=False)
     else:
         scale = alt.Scale(domain=[0, {"expr": "highest"}], nice=True)
-    ticks = {"values": alt.ExprRef(f"{LOW} > 0 || {HIGH} > 0 ? near : far")} if alike.logarithmic else {"tickCount": 8}
+    ticks: dict[str, Any] = (
+        {"values": alt.ExprRef(f"{LOW} > 0 || {HIGH} > 0 ? near : far")} if alike.logarithmic else {"tickCount": 8}
+    )
     axis = alt.Axis(labels=named, title=f"Frequency ({alike.frequency})" if named else None, format="~r", **ticks)
     return alt.X(f"{field}:Q", scale=scale, axis=axis)
 

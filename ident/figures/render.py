@@ -14,7 +14,7 @@ from ident.figures.frame import Filled, unchecked
 from ident.words.nearest import did_you_mean
 
 Panel = alt.Chart | alt.LayerChart | alt.FacetChart
-Chart = alt.LayerChart | alt.HConcatChart | alt.VConcatChart | alt.ConcatChart | Filled
+Chart = alt.LayerChart | alt.FacetChart | alt.HConcatChart | alt.VConcatChart | alt.ConcatChart | Filled
 
 AltairChart = alt.LayerChart | alt.HConcatChart | alt.VConcatChart | alt.ConcatChart | alt.FacetChart | alt.Chart
 _KINDS: Mapping[str, type[AltairChart]] = {

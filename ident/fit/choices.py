@@ -50,7 +50,8 @@ def settings_of(choices: Choices, usual: Settings | None = None, candidates: boo
     if candidates:
         model = with_candidates(model, (*chosen["bounds"], *chosen["fixed"]), named.custom)
     bounds, fixed = bounds_in_si(chosen["bounds"], model), values_in_si(chosen["fixed"], model)
-    return Settings(**{
+    settings: dict[str, Any] = {
         **chosen, "effects": named.effects, "custom": named.custom, "bounds": bounds, "fixed": fixed,
         "preprocessing": off_steps(chosen["preprocessing"]),
-    })  # fmt: skip
+    }  # fmt: skip
+    return Settings(**settings)

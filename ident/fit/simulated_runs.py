@@ -413,7 +413,7 @@ class SimulatedRuns:
         for names, sizes in ((self.preset.core.states, self.sizes), (self._of_effects, self._sized())):
             known = [self.chain.begun.index(name) for name in names]
             reach[known] = np.where(sizes > 0, sizes, reach[known])
-        return np.asarray(_OF.reach * reach)
+        return np.asarray(_OF.reach * reach, float)
 
     # Shares ------------------------------------------------------------------------------------------------------
 

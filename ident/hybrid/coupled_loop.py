@@ -115,7 +115,7 @@ class CoupledLoop:
             most = max(one.shape[-1] for one in rows)
             found = np.concatenate([np.pad(one, ((0, 0), (0, most - one.shape[-1]))) for one in rows])
         size = np.maximum(np.abs(found), _LEAST)
-        return np.asarray((np.log(size) + 1j * np.angle(found)) * self.case.sample_rate)
+        return np.asarray((np.log(size) + 1j * np.angle(found)) * self.case.sample_rate, complex)
 
     def _poles(self, factors: Mapping[str, float], gains: Mapping[str, Array], count: int) -> Complex:
         """The poles z (count, n) of one loop at gains times (count,)."""

@@ -63,7 +63,8 @@ class CoupledResult(Shown):
         if not found:
             return None
         names = Scores.__dataclass_fields__
-        return Scores(**{name: max((getattr(one, name) for one in found), key=abs) for name in names})
+        largest: dict[str, Any] = {name: max((getattr(one, name) for one in found), key=abs) for name in names}
+        return Scores(**largest)
 
     def listings(self) -> Iterator[Listing | str]:
         """What is unstable or leaves the limits of a rig, the scores of each part, the verdict, the notes."""

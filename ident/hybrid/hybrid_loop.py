@@ -81,7 +81,7 @@ class HybridLoop:
             most = max(one.shape[-1] for one in found)
             z = np.concatenate([np.pad(one, ((0, 0), (0, most - one.shape[-1]))) for one in found])
         size = np.maximum(np.abs(z), _LEAST)
-        return np.asarray((np.log(size) + 1j * np.angle(z)) * self.case.sample_rate)
+        return np.asarray((np.log(size) + 1j * np.angle(z)) * self.case.sample_rate, complex)
 
     def _poles(self, factors: Mapping[str, float], gains: Mapping[str, Array]) -> Complex:
         """The poles z (b, n) of one loop at gains times (b,)."""

@@ -36,8 +36,7 @@ class StateSpace:
         """C (λI − A)⁻¹ B + D at the points λ (f,), s or z, shape (f, p, m)."""
         resolvent: Complex = at[:, None, None] * np.eye(self.order) - self.A
         inside = np.linalg.solve(resolvent, np.broadcast_to(self.B, (len(at), *self.B.shape)))
-        found: Complex = self.C.astype(complex) @ inside + self.D
-        return found
+        return np.asarray(self.C.astype(complex) @ inside + self.D, complex)
 
     def before(self, other: StateSpace) -> StateSpace:
         """The two in series, this one first."""

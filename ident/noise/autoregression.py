@@ -50,7 +50,7 @@ class Autoregression:
             past = _past(series, scaled, order, block)
             gram += past.T @ past
             cross += past.T @ steps[block]
-        return cls(np.asarray(np.linalg.lstsq(gram, cross, rcond=EPSILON)[0]) if order else cross, scale)
+        return cls(np.asarray(np.linalg.lstsq(gram, cross, rcond=EPSILON)[0], float) if order else cross, scale)
 
     @property
     def polynomial(self) -> Array:

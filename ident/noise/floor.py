@@ -127,7 +127,7 @@ def _of_one_output(runs: Sequence[Run], pairs: Sequence[Repeat], band: float) ->
     degrees_of_freedom = sum(independent_samples(difference) for difference in differences)
     powers = np.array([0.5 * np.var(difference) for difference in differences])
     shares = powers / [0.5 * (np.var(a.measured) + np.var(b.measured)) for a, b, _ in pairs]
-    sizes = np.array([np.std(run.measured) for run in runs])
+    sizes = np.array([np.std(run.measured) for run in runs], float)
     steady = like_transducer(np.sqrt(powers / shares), list(np.sqrt(shares)))
     if steady is None:
         steady = like_transducer(sizes, by_spectrum(runs, band))

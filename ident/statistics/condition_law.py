@@ -117,7 +117,10 @@ class ConditionLaw:
         if added <= 0 or left <= 0:
             return self
         residual = _level_of(self.values, self.relative) - self._curve(x)
-        before, after = _rss(known, residual), _rss(np.column_stack([known, extra[:, :added]]), residual)
+        before, after = (
+            _rss(known, residual),
+            _rss(np.asarray(np.column_stack([known, extra[:, :added]]), float), residual),
+        )
         ratio = (before - after) / added / max(after / left, 1e-300)
         exact = self.scatter <= _EXACT * max(1.0, float(np.max(np.abs(residual + self._curve(x)))))
         return replace(self, lack_of_fit=1.0 if exact else float(fdtrc(added, left, max(ratio, 0.0))))

@@ -25,7 +25,7 @@ Kind = Any
 _LONGEST = 40  # characters of a value that are shown
 _PLAIN = (str, int, float, list, tuple, dict, set)  # of these, where they are short
 _NUMBERS: Mapping[Any, type] = {int: Integral, float: Real}
-_CALLED = {
+_CALLED: dict[type, str] = {
     str: "a text", float: "a number", int: "a whole number", bool: "True or False", Path: "a path",
     NoneType: "None", list: "a list", tuple: "a tuple", dict: "a dict", set: "a set",
 }  # fmt: skip

@@ -83,7 +83,7 @@ class _Collection:
     of: tuple[Condition, ...]
 
     @cached_property
-    def query(self) -> Select[Any]:
+    def query(self) -> Select[*tuple[Any, ...]]:
         some = (one.hits.limit(_MOST).subquery(f"some_{at}") for at, one in enumerate(self.of))
         texts = (select(func.aggregate_strings(cast(each.c[0], String), ",")).scalar_subquery() for each in some)
         return select(*texts)

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 from ident.diagnosis.discovery.term import Term
 
-_INTERPRETATIONS = {
+_INTERPRETATIONS: dict[tuple[str, str, tuple[str, ...]], str] = {
     ("e", "integral", ("e",)): "the controller integrates its error, too",
     ("e", "rate", ("e",)): "the controller takes the rate of its error, too",
     ("dq", "beyond", ("dq",)): "the spool's speed is limited",

@@ -68,9 +68,11 @@ def run_data(refit: FittedModel, names: Sequence[str], instead_of: Sequence[str]
         coarse = np.array([averaged(row, count)[:most] for row in Z]).T
         shown = {name: averaged(inner[name][run.id], count)[:most] for name in names}
         n, rate = len(coarse), run.sample_rate / count
-        known = {name: np.full(n, value) for name, value in conditions(run, fitness.matrix.actuator).items()}
+        known: dict[str, Array] = {
+            name: np.full(n, value) for name, value in conditions(run, fitness.matrix.actuator).items()
+        }
         known |= {name: averaged(samples, count)[:most] for name, samples in channels_of(run).items()}
-        time = {"t": (np.arange(n) + 0.5) / rate}
+        time = {"t": np.asarray((np.arange(n) + 0.5) / rate, float)}
         p = len(point)
         residual = coarse[:, -1] + coarse[:, :p] @ put_back
         return RunData(

@@ -237,7 +237,8 @@ class _Periodic(_Bands):
     def coefficients(self, signals: Array) -> Complex:
         shares = self._basis.T @ signals
         remainder = signals - self._basis @ shares
-        return np.concatenate([shares[:1], shares[1::2] + 1j * shares[2::2], _spectrum(remainder)])
+        parts = [shares[:1], shares[1::2] + 1j * shares[2::2], _spectrum(remainder)]
+        return np.asarray(np.concatenate(parts), complex)
 
     def weighted(self, signal: Array, weights: Array) -> Array:
         shares, own = self._basis.T @ signal, np.sqrt(weights[self.first : self.first + self.bands])

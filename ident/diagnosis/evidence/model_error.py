@@ -140,4 +140,4 @@ def _most_likely(rows: Array, e: Array) -> tuple[Array, float]:
 
 def _coefficients(rows: Array, e: Array, penalty: float) -> Array:
     gram = rows @ rows.T
-    return np.asarray(np.linalg.solve(gram + penalty * np.eye(len(gram)), rows @ e))
+    return np.asarray(np.linalg.solve(gram + penalty * np.eye(len(gram)), rows @ e), float)

@@ -34,8 +34,15 @@ WIDE = 8
 """Lanes of one operation, two registers of AVX2 or one of AVX-512: fewer cost as much."""
 _VECTOR = f"<{WIDE} x double>"
 _FAST = "nnan ninf nsz contract"
-_SIGNS = {ast.Add: "fadd", ast.Sub: "fsub", ast.Mult: "fmul", ast.Div: "fdiv"}
-_RELATIONS = {ast.Lt: "olt", ast.LtE: "ole", ast.Gt: "ogt", ast.GtE: "oge", ast.Eq: "oeq", ast.NotEq: "une"}
+_SIGNS: dict[type[ast.AST], str] = {ast.Add: "fadd", ast.Sub: "fsub", ast.Mult: "fmul", ast.Div: "fdiv"}
+_RELATIONS: dict[type[ast.AST], str] = {
+    ast.Lt: "olt",
+    ast.LtE: "ole",
+    ast.Gt: "ogt",
+    ast.GtE: "oge",
+    ast.Eq: "oeq",
+    ast.NotEq: "une",
+}
 _CALLS = {"sqrt": 1, "pow": 2, "sin": 1, "cos": 1, "tanh": 1}
 Advance = Callable[..., None]
 Fed = tuple[int, str, int, int]

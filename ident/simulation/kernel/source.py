@@ -192,7 +192,7 @@ class Source:
         return {0.5: f"sqrt({base})", 0.25: f"sqrt(sqrt({base}))"}.get(value, f"pow({base}, {value!r})")
 
 
-_SIGNS = {
+_SIGNS: dict[type[ast.AST], str] = {
     ast.Add: "+", ast.Sub: "-", ast.Mult: "*", ast.Div: "/",
     ast.Lt: "<", ast.LtE: "<=", ast.Gt: ">", ast.GtE: ">=",
 }  # fmt: skip
