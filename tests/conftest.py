@@ -50,6 +50,11 @@ def pytest_collection_finish(session: pytest.Session) -> None:
         from tests.running import nursery
 
         nursery()  # one for all workers
+    if "hypothesis" in sys.modules and not asked_for_full(session.config):
+        from hypothesis.internal.conjecture import providers
+
+        # In the short form nothing is drawn of what stands in the program's own text: to read it takes seconds.
+        providers._get_local_constants = lambda: providers._local_constants
     gc.freeze()
     gc.set_threshold(50_000, 20, 50)
 
@@ -77,7 +82,7 @@ LONGEST = (
 )  # fmt: skip
 """Files that take longest, those that wait for a browser or a service before the others, the dearest first.
 
-The files of the browser stay together and go with their first; mypy takes a minute in a fresh clone. Of tests/app the
+The files of the browser stay together and go with their first. Of tests/app the
 backup comes first: what it compares is all that the shared service holds.
 """
 

@@ -115,6 +115,7 @@ def test_it_simulates_and_fits_without_the_repository(installed, tmp_path):
     assert json.loads((tmp_path / "fit.json").read_text())["error"]["fit"] < 0.01
 
 
+@pytest.mark.full
 def test_it_serves_with_its_own_migrations_pages_and_style(installed, tmp_path):
     with socket.create_server(("127.0.0.1", 0)) as free:
         port = free.getsockname()[1]

@@ -21,15 +21,6 @@ OTHERS, MORE_OTHERS = 1, 60  # by each of the other roles, and by nobody
 Headers = dict[str, str]
 
 
-@pytest.fixture(autouse=True)
-def _no_numbers_of_the_program(monkeypatch: pytest.MonkeyPatch, full: bool) -> None:
-    """In the short form requests are drawn without what stands in the program's own text, which takes three seconds."""
-    if not full:
-        from hypothesis.internal.conjecture import providers
-
-        monkeypatch.setattr(providers, "_get_local_constants", lambda: providers._local_constants)
-
-
 @pytest.fixture(scope="module")
 def operations(service: TestClient) -> list[APIOperation]:
     """What the document has; requests are drawn for all roles from what is made of each once."""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import shutil
+from typing import Any
 
 import pytest
 import yaml
@@ -136,14 +137,10 @@ def test_each_matrix_of_a_folder_is_fitted_and_what_cannot_be_used_is_said_in_it
     assert fits[1]["fit"]["model"] == "qian2014"
 
 
-def test_compare_writes_every_figure_in_every_format(servoident, few, fit_file, tmp_path, full, monkeypatch):
-    """Each figure is there as svg, png, pdf and json, and the table holds every run.
-
-    In the short form as json alone: the next test writes one in every format.
-    """
-    if not full:
-        monkeypatch.setattr(figure_files, "FORMATS", ("json",))
-    done = servoident("compare", few, "--fit", fit_file, "--out", tmp_path / "figures", "--json", tmp_path / "c.json")
+@pytest.mark.full
+def test_compare_writes_every_figure_in_every_format(servoident, few, fit_file, tmp_path):
+    """Each figure is there as svg, png, pdf and json."""
+    done = servoident("compare", few, "--fit", fit_file, "--out", tmp_path / "figures")
     assert done.returncode == 0, done.stderr
     starts = {"svg": b"<svg", "png": b"\x89PNG", "pdf": b"%PDF", "json": b"{"}
     for name in (
@@ -160,21 +157,28 @@ def test_compare_writes_every_figure_in_every_format(servoident, few, fit_file, 
     ):
         for kind in figure_files.FORMATS:
             assert (tmp_path / "figures" / f"{name}.{kind}").read_bytes().startswith(starts[kind])
-    compared = json.loads((tmp_path / "c.json").read_text())
+
+
+def the_table_holds_every_run(compared: dict[str, Any]) -> None:
+    """Its errors, their groups and the budget of a comparison."""
     assert len(compared["runs"]) == len(compared["bands"]["runs"]) == 12
     assert {run["unit"] for run in compared["runs"]} == {"m"}
     assert all(0 < run["mae"] <= run["rmse"] < 1e-3 for run in compared["runs"])
     assert {"amplitude", "gain", "specimen", "direction", "speed"} <= set(compared["groups"])
     assert {"noise", "linear", "nonlinear", "bounds", "notes"} <= set(compared["budget"])
-    assert "error budget" in done.stdout
-    assert "m087-k36-kp6-a05" in done.stdout
 
 
 def test_one_figure_with_options_as_a_page_draws_it(servoident, few, fit_file, tmp_path):
-    """Of all figures one, its axis linear; what no figure takes, or the fit has not, is refused by the nearest name."""
+    """Of all figures one, its axis linear, beside the table of every run.
+
+    What no figure takes, or the fit has not, is refused by the nearest name.
+    """
     asked = ("compare", few, "--fit", fit_file, "--out", tmp_path / "out", "--figure", "bode")
-    done = servoident(*asked, "--option", "axis=linear", "--option", "theme=dark")
+    done = servoident(*asked, "--option", "axis=linear", "--option", "theme=dark", "--json", tmp_path / "c.json")
     assert done.returncode == 0, done.stderr
+    the_table_holds_every_run(json.loads((tmp_path / "c.json").read_text()))
+    assert "error budget" in done.stdout
+    assert "m087-k36-kp6-a05" in done.stdout
     files = {path.name for path in (tmp_path / "out").iterdir()}
     assert files == {"bode.svg", "bode.png", "bode.pdf", "bode.json"}
     drawn = json.loads((tmp_path / "out" / "bode.json").read_text())

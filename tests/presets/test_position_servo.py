@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import cache
 
 import numpy as np
 import pytest
@@ -26,7 +27,8 @@ OF_OIL = {known.name for known in CATALOGUE if {"Q", "P"} & {e.target for e in k
 TURNING = {"command": "rad", "displacement": "rad"}
 
 
-def servo(seed: int, limit: float = np.inf, units: dict[str, str] = TURNING) -> Matrix:
+@cache
+def servo(seed: int, limit: float = np.inf) -> Matrix:
     """Held angles into θ'' + DAMPED θ' = STIFF clip(r − θ, ±limit), as SciPy integrates it; noise of 0.5 %."""
     runs = []
     for number, use in enumerate(("fit", "fit", "verify")):
@@ -40,7 +42,7 @@ def servo(seed: int, limit: float = np.inf, units: dict[str, str] = TURNING) -> 
         t = np.arange(COUNT) / RATE
         found = scipy.integrate.solve_ivp(rates, (0.0, t[-1]), [0.0, 0.0], t_eval=t, rtol=1e-7, max_step=1 / RATE)
         y = found.y[0] + 0.005 * found.y[0].std() * rng.standard_normal(COUNT)
-        runs.append(Run(f"r{number}", "", RATE, {"command": r, "displacement": y}, units, hold="zoh", use=use))
+        runs.append(Run(f"r{number}", "", RATE, {"command": r, "displacement": y}, TURNING, hold="zoh", use=use))
     return Matrix(Actuator("SERVO"), tuple(runs))
 
 
@@ -97,6 +99,7 @@ def test_a_part_of_an_electric_drive_has_no_name_of_a_hydraulic_one():
     assert cylinder.described("flow_saturation") == "flow saturation (a speed that saturates, at the spool)"
 
 
+@pytest.mark.full
 def test_a_servo_whose_speed_is_limited_has_a_limit_of_its_drive(full):
     """The speed of a servo ends where its bridge gives all its voltage; the limit is found within 3 %."""
     with of_few_effects(full, "command_limit", "flow_saturation"):
