@@ -61,7 +61,7 @@ def test_format():
 
 
 def test_types(full):
-    """Pyrefly finds nothing in the packages, and with --full nor does mypy in strict mode, which takes four times as long.
+    """Pyrefly finds nothing in the packages, and with --full nor does mypy in strict mode, which takes longer.
 
     What mypy knows of unchanged files, by their hash, is kept for every checkout of this user: all anew take a minute.
     """

@@ -11,7 +11,7 @@ from playwright.sync_api import Page, expect
 from app.database import connect, sessions
 from app.tables import FitRow, MatrixRow, before
 from tests.app.webhooks.world import set_of
-from tests.browser.looks import everywhere
+from tests.browser.looks import everywhere, on_a_phone
 from tests.running import Process
 
 OLD = before(timedelta(days=40))
@@ -100,6 +100,8 @@ def test_the_lines_pages_look_sound(page: Page, site: Process, old: str, screens
         site.client.post(f"/fits/{fit}/approve", json={"why": "as it is"})
     page.goto(site.address + path)
     expect(page.get_by_role("main")).to_contain_text(re.compile(shows, re.I))
-    everywhere(page, screenshots, re.sub(r"\W+", "-", path).strip("-"))
+    name = re.sub(r"\W+", "-", path).strip("-")
+    everywhere(page, screenshots, name)
+    on_a_phone(page, screenshots, name)
     for fit in SETS:  # others look for theirs
         site.client.post(f"/fits/{fit}/withdraw")

@@ -15,6 +15,7 @@ from tests.app.access.test_audit import RAW
 from tests.app.conftest import zipped
 from tests.browser.looks import WIDTHS, barriers, drawn, everywhere, on_a_phone
 from tests.running import Service
+from tests.short_form import short_form
 
 FIGURE = "#figure-residual-map"
 SHORT = {"generations": 4, "population": 20, "elite": 3}  # of a search whose result is only to be there
@@ -27,6 +28,12 @@ OF_A_DAY = {
     "/statistics", "/limits", "/regressions",
 }  # fmt: skip
 """Those looked at by all rules; the other tests do so with those that need more than is here."""
+ELSEWHERE = {
+    "/search", "/units", "/plan", "/matrices/{matrix}/signals", "/live", "/jobs/{job}", "/compare", "/tokens", "/audit",
+    "/regressions/{regression}", "/webhooks", "/retention", "/{path}", "/actuators/{serial}", "/workers", "/statistics",
+    "/limits", "/regressions",
+}  # fmt: skip
+"""Those that a story opens; `app/access/test_offers` has fields and tables of all."""
 DARK = {"/", "/upload"}
 """Of these a list and a form are looked at in the dark theme, too, with ``--full`` all."""
 
@@ -46,7 +53,9 @@ def addresses(site: Service, matrix: str, fitted: str) -> dict[str, str]:
     return {call.path: f"{call.path.format(**about)}?{call.query.format(**about)}" for call in SHOWN}
 
 
-@pytest.mark.parametrize("path", [call.path for call in SHOWN])
+@pytest.mark.parametrize(
+    "path", short_form([call.path for call in SHOWN], *(call.path for call in SHOWN if call.path not in ELSEWHERE))
+)
 def test_a_page_fits_desk_tablet_and_phone_and_shuts_nobody_out(path, page, watch, site, addresses, screenshots, full):
     """Every field has a label and every column of a table a heading."""
     page.goto(site.address + addresses[path])
@@ -69,8 +78,7 @@ def test_a_page_fits_desk_tablet_and_phone_and_shuts_nobody_out(path, page, watc
     watch.complaints[:] = [said for said in watch.complaints if "404" not in said or path != "/{path}"]
 
 
-def test_a_figure_and_the_ground_follow_the_system_theme(page, site, fitted):
-    page.goto(f"{site.address}/fits/{fitted}#residuals")
+def a_figure_and_the_ground_follow_the_system_theme(page):
     for theme in ("light", "dark"):
         page.emulate_media(color_scheme=theme)
         expect(page.locator(f"{FIGURE} .plot")).to_have_attribute("aria-busy", re.compile("true|false"))
@@ -79,6 +87,37 @@ def test_a_figure_and_the_ground_follow_the_system_theme(page, site, fitted):
         expect(page.locator(f"{FIGURE} canvas")).to_be_visible()
         ground = page.evaluate("getComputedStyle(document.body).backgroundColor")
         assert (sum(map(int, re.findall(r"\d+", ground))) < 200) == (theme == "dark")
+
+
+def the_run_table_sorts_by_number(page):
+    page.get_by_text("Table of the 12 runs").click()
+    page.get_by_role("button", name="Eq. (17)", exact=True).click()
+    texts = page.locator("table:has([data-pick]) tbody td:nth-child(4)").all_inner_texts()
+    errors = [float(text.split()[0]) for text in texts]
+    assert errors == sorted(errors)
+    assert len(errors) == 12
+
+
+def the_figures_are_reached_by_keyboard(page, full):
+    tabs = page.locator("[role=tablist] [role=tab]")
+    names = [tab.removeprefix("tab-") for tab in tabs.evaluate_all("tabs => tabs.map(tab => tab.id)")]
+    assert {"bode", "time", "evolution", "residual-curve", "sensitivity"} <= set(names)
+    tabs.first.focus()
+    for name in names[1:] if full else names[1:2]:
+        page.keyboard.press("ArrowRight")
+        expect(page.locator(f"#tab-{name}")).to_be_focused()
+        expect(page.locator(f"#figure-{name} canvas")).to_be_visible(timeout=60_000)
+        for width in WIDTHS if full else WIDTHS[-1:]:  # none stands out of its place
+            page.set_viewport_size({"width": width, "height": 900})
+            drawn, room = page.locator(f"#figure-{name} .plot").evaluate("plot => [plot.scrollWidth, plot.clientWidth]")
+            assert drawn <= room, f"{name} at {width} px"
+
+
+def test_residuals_follow_the_theme_are_sorted_by_number_and_reached_by_keyboard(page, site, fitted, full):
+    page.goto(f"{site.address}/fits/{fitted}#residuals")
+    a_figure_and_the_ground_follow_the_system_theme(page)
+    the_run_table_sorts_by_number(page)
+    the_figures_are_reached_by_keyboard(page, full)
 
 
 def test_what_is_pressed_before_the_scripts_have_come_is_heard(page, site, fitted):
@@ -165,9 +204,7 @@ def test_what_shuts_somebody_out_is_found(page, site):
     assert [barrier.split(":")[0] for barrier in barriers(page)] == ["label", "page-has-heading-one"]
 
 
-def test_the_fit_page_shows_the_stored_parameters_and_errors(page, site, fitted):
-    result = site.client.get(f"/fits/{fitted}").json()["result"]
-    page.goto(f"{site.address}/fits/{fitted}")
+def the_stored_parameters_and_errors_are_shown(page, result):
     for name, entry in result["parameters"].items():
         cells = page.locator(f"tr:has(th[title='{name}']) td").all_inner_texts()
         power = power_of(entry["value"])
@@ -180,10 +217,11 @@ def test_the_fit_page_shows_the_stored_parameters_and_errors(page, site, fitted)
         assert f"{100 * result['error'][use]:.3g}" in row
 
 
-def test_the_sections_of_a_fit_are_tabs_that_the_address_keeps_and_the_summary_fits_a_screen(page, site, fitted):
+def test_a_fit_has_its_stored_numbers_in_tabs_that_the_address_keeps_and_a_summary_of_a_screen(page, site, fitted):
     """By a link, by going back, by a place inside one; without scripts every section stands there."""
     page.set_viewport_size({"width": 1280, "height": 800})
     page.goto(f"{site.address}/fits/{fitted}")
+    the_stored_parameters_and_errors_are_shown(page, site.client.get(f"/fits/{fitted}").json()["result"])
     summary, model = page.locator("#summary"), page.locator("#model")
     expect(page.locator("[data-white]")).to_contain_text(re.compile("^(pass|fail) on estimation data"), timeout=60_000)
     expect(page.locator("#nrmse-verify")).to_contain_text("%")
@@ -205,16 +243,6 @@ def test_the_sections_of_a_fit_are_tabs_that_the_address_keeps_and_the_summary_f
     assert not re.search(r"data-section[^>]* hidden", shown)
 
 
-def test_the_run_table_sorts_by_number(page, site, fitted):
-    page.goto(f"{site.address}/fits/{fitted}#residuals")
-    page.get_by_text("Table of the 12 runs").click()
-    page.get_by_role("button", name="Eq. (17)", exact=True).click()
-    texts = page.locator("table:has([data-pick]) tbody td:nth-child(4)").all_inner_texts()
-    errors = [float(text.split()[0]) for text in texts]
-    assert errors == sorted(errors)
-    assert len(errors) == 12
-
-
 @pytest.mark.full
 def test_a_figure_follows_its_options_and_the_theme(page, site, fitted):
     page.emulate_media(color_scheme="light")
@@ -233,22 +261,6 @@ def test_a_figure_follows_its_options_and_the_theme(page, site, fitted):
     assert page.evaluate("document.documentElement.dataset.theme") == "dark"
 
 
-def test_the_figures_are_reached_by_keyboard(page, site, fitted, full):
-    page.goto(f"{site.address}/fits/{fitted}#residuals")
-    tabs = page.locator("[role=tablist] [role=tab]")
-    names = [tab.removeprefix("tab-") for tab in tabs.evaluate_all("tabs => tabs.map(tab => tab.id)")]
-    assert {"bode", "time", "evolution", "residual-curve", "sensitivity"} <= set(names)
-    tabs.first.focus()
-    for name in names[1:] if full else names[1:4]:
-        page.keyboard.press("ArrowRight")
-        expect(page.locator(f"#tab-{name}")).to_be_focused()
-        expect(page.locator(f"#figure-{name} canvas")).to_be_visible(timeout=60_000)
-        for width in WIDTHS if full else WIDTHS[-1:]:  # none stands out of its place
-            page.set_viewport_size({"width": width, "height": 900})
-            drawn, room = page.locator(f"#figure-{name} .plot").evaluate("plot => [plot.scrollWidth, plot.clientWidth]")
-            assert drawn <= room, f"{name} at {width} px"
-
-
 @pytest.mark.usefixtures("matrix")
 def test_a_serial_number_with_markup_is_text(page, site):
     page.goto(site.address)
@@ -263,7 +275,9 @@ def test_a_search_without_a_hit_says_so(page, site):
     expect(page.locator("main")).to_contain_text("No actuator has “nowhere”")
 
 
-@pytest.mark.parametrize("path", ["/nothing/here", "/fits/none", "/matrices/none", "/actuators/none"])
+@pytest.mark.parametrize(
+    "path", short_form(["/nothing/here", "/fits/none", "/matrices/none", "/actuators/none"], "/nothing/here")
+)
 def test_what_is_not_there_is_said_on_a_page_with_a_way_on(path, page, watch, site, screenshots):
     answer = page.goto(site.address + path)
     assert answer.status == 404

@@ -172,6 +172,7 @@ def packed(folder, target):
     return Path(shutil.make_archive(str(target / "measured"), "zip", folder))
 
 
+@pytest.mark.full
 def test_a_search_can_be_cancelled_and_says_so(page, site):
     stored = site.client.post("/matrices", files={"files": ("matrix.zip", zipped("DZ-STOP"))}).json()
     fit = site.fit(stored["id"])

@@ -32,6 +32,7 @@ ASKS = {
 """What a form or a button with this attribute asks for, where its address does not say it."""
 WITHIN = {"data-pick", "data-close", "data-more", "data-less", "role", "data-format", "data-clear"}
 """Attributes of buttons that change only what is seen."""
+FIELDS = {"input", "select", "textarea"}
 CALLS = {call.name: call for call in (*PAGES, *OF_API)}
 
 
@@ -71,6 +72,48 @@ class Offers(HTMLParser):
         asked = [ASKS[name] for name in here if name in ASKS]
         self.asked += asked
         return bool(asked)
+
+
+class Markup(HTMLParser):
+    """The fields of a page that no label names, and the rows of its tables by their width in columns."""
+
+    def __init__(self, text: str) -> None:
+        super().__init__()
+        self.fields: list[dict[str, str | None]] = []
+        self.named: set[str | None] = set()
+        self.widths: list[list[int]] = []
+        self.open: list[str] = []
+        self.feed(text)
+
+    def handle_starttag(self, tag: str, given: list[tuple[str, str | None]]) -> None:
+        here = dict(given)
+        if tag in {"label", "template"}:  # of a template scripts make fields, each with its label
+            self.open.append(tag)
+            self.named.add(here.get("for"))
+        elif (
+            tag in FIELDS and here.get("type") != "hidden" and not ({"hidden", "aria-label"} & here.keys() or self.open)
+        ):
+            self.fields.append(here)
+        elif tag == "table":
+            self.widths.append([])
+        elif tag == "tr" and self.widths:
+            self.widths[-1].append(0)
+        elif tag in {"td", "th"} and self.widths and self.widths[-1]:
+            self.widths[-1][-1] += int(here.get("colspan") or 1)
+
+    def handle_endtag(self, tag: str) -> None:
+        if tag in {"label", "template"} and self.open:
+            self.open.pop()
+
+    @property
+    def unlabelled(self) -> list[dict[str, str | None]]:
+        """Fields without a label, a name of their own or a label around them."""
+        return [one for one in self.fields if one.get("id") not in self.named - {None}]
+
+    @property
+    def ragged(self) -> list[list[int]]:
+        """The widths of the rows of each table whose rows differ."""
+        return [widths for widths in self.widths if len(set(widths)) > 1]
 
 
 def call_of(method: str, address: str) -> Call | None:
@@ -142,3 +185,20 @@ def test_what_a_search_found_is_offered_to_those_who_may_use_it() -> None:
     ]
     assert len(found) > 10
     assert all(found)
+
+
+def test_every_field_has_a_label_and_every_column_of_a_table_a_heading(service: TestClient, pages: dict[str, str]):
+    """As the service sends the page; what scripts add is looked at in the browser."""
+    for path, address in pages.items():
+        text = service.get(address).text
+        found = Markup(text)
+        assert len(re.findall("<h1[ >]", text)) == 1, path
+        assert found.unlabelled == [], path
+        assert found.ragged == [], path
+
+
+def test_a_field_without_a_label_and_a_short_row_are_found():
+    sound = "<label for=a>A</label><input id=a><label>B<select></select></label><table><tr><th>1<tr><td>2</table>"
+    assert (Markup(sound).unlabelled, Markup(sound).ragged) == ([], [])
+    assert Markup(sound.replace("for=a", "")).unlabelled == [{"id": "a"}]
+    assert Markup(sound.replace("<tr><td>2", "<tr><td>2<td>3")).ragged == [[1, 2]]
