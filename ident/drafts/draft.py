@@ -347,7 +347,8 @@ def _columns(file: RawFile, column: str | int, where: str) -> list[Column]:
     if len(found) < len(numbers):
         why = "; ".join(filter(None, (file.flaw(number) for number in numbers)))
         what = f"column {shown(column)!r} does not hold numbers throughout"
-        raise Unusable("not-numeric", f"{what}: {why}" if why else what, file.name, "name another column")
+        remedy = "repair it, or cut the file before or behind it" if why else "name another column"
+        raise Unusable("not-numeric", f"{what}: {why}" if why else what, file.name, remedy)
     return found
 
 

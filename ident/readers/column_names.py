@@ -1,4 +1,4 @@
-"""What the name of a column says: the words of benches in four languages, the channel that each means, and units.
+"""What the name of a column says: the words of benches in five languages, the channel that each means, and units.
 
 A name is a suggestion: what is taken from one is shown to the user, who may answer otherwise.
 """
@@ -27,6 +27,7 @@ WORDS = {
         "lagesollwert", "positionssollwert", "sollwert position", "sollwert weg", "fuehrungsgroesse",
         "fuhrungsgrosse", "vorgabe", "consigne", "consigne position", "position consigne", "consigne de position",
         "commande", "comando", "riferimento", "posizione comandata", "riferimento posizione", "consigna",
+        "指令", "命令", "给定", "给定值", "设定值", "目标值", "目标位移", "指令位移", "位移指令", "命令位移",
     ),
     "displacement": (
         "displacement", "disp", "position", "pos", "lvdt", "stroke", "travel", "measured displacement",
@@ -40,17 +41,20 @@ WORDS = {
         "verschiebung", "deplacement", "position mesuree", "deplacement mesure", "course", "position reelle",
         "posizione", "spostamento", "corsa", "posizione misurata", "posizione reale", "posicion", "desplazamiento",
         "damper displacement", "lateral displacement",
+        "位移", "位置", "行程", "实际位移", "测量位移", "位移反馈", "活塞位移", "作动器位移",
     ),
     "velocity": (
         "velocity", "vel", "speed", "rpm", "actual velocity", "actual speed", "measured velocity", "measured speed",
         "geschwindigkeit", "drehzahl", "kolbengeschwindigkeit", "istgeschwindigkeit", "istdrehzahl", "vitesse",
         "velocita", "velocidad",
+        "速度", "转速",
     ),
     "force": (
         "force", "load", "load cell", "measured force", "actual force", "force feedback", "torque", "axial force",
         "kraft", "istkraft", "zylinderkraft", "kolbenkraft", "kraftmessdose", "drehmoment", "effort", "couple",
         "force mesuree", "forza", "cella di carico", "coppia", "fuerza", "actuator force", "actuator load",
         "damper force", "lateral force", "lateral load", "base shear",
+        "力", "力值", "载荷", "荷载", "试验力", "负荷", "作动力", "阻尼力", "扭矩", "转矩",
     ),
     "load_pressure": (
         "load pressure", "differential pressure", "delta p", "dp", "pl", "lastdruck", "differenzdruck",
@@ -69,6 +73,7 @@ WORDS = {
     "current": ("current", "valve current", "strom", "ventilstrom", "courant", "corrente"),
     "temperature": (
         "temperature", "temp", "oil temperature", "temperatur", "oltemperatur", "oeltemperatur", "temperatura",
+        "温度", "油温",
     ),
 }  # fmt: skip
 """Names of columns, in small letters without accents, with the channel of matrix.yaml that they are."""
@@ -85,15 +90,17 @@ PAIRS = (("u", "y"), ("u1", "y1"), ("input", "output"), ("inputdata", "outputdat
 TIMES = (
     "time", "t", "x value", "timestamp", "elapsed time", "elapsed", "time stamp", "running time", "run time",
     "date time", "datetime", "tout", "zeit", "messzeit", "laufzeit", "zeitstempel", "temps", "tempo", "tiempo",
+    "时间",
 )  # fmt: skip
 """Names of a column of times."""
 UNITS_BY_NAME = ("rpm",)
 """Names that are a unit: what is called so is measured in it."""
 _BY_UNIT = ("displacement", "velocity", "force")
-_IN_NAME = re.compile(r"^(.*\S)\s*[\[(<{]\s*([^\[\](){}<>]+?)\s*[\])>}]$")
+_IN_NAME = re.compile(r"^(.*\S)\s*[\[(<{\uff08]\s*([^\[\](){}<>\uff08\uff09]+?)\s*[\])>}\uff09]$")  # wide brackets, too
 _LETTERS = "mstAKlLhgNVWJ"
 """Units of one letter that may as well be an index: x_m is measured, p_s a supply, p_A a side, F_N normal."""
 _BETWEEN_WORDS = r"[_\s.:-]+"
+_NO_LETTERS = r"[^0-9a-z\u4e00-\u9fff]+"  # nor digits; Latin, and Chinese (Unicode's unified ideographs)
 _KEPT = 4096  # names whose meaning is kept: the files of a matrix have the same columns
 _SPEEDS = ("m/s", "rad/s", "m^3/s")
 
@@ -182,9 +189,7 @@ def may_measure(channel: str, unit: str) -> bool:
 def said(name: str) -> str:
     """A column's name as it would be said: small letters without accents, spaces, no unit in brackets, no group."""
     plain = unicodedata.normalize("NFKD", bare(name).replace("ß", "ss"))
-    return " ".join(
-        re.sub(r"[^0-9a-z]+", " ", "".join(s for s in plain if not unicodedata.combining(s)).lower()).split()
-    )
+    return " ".join(re.sub(_NO_LETTERS, " ", "".join(s for s in plain if not unicodedata.combining(s)).lower()).split())
 
 
 def _ways(name: str) -> tuple[str, ...]:

@@ -26,6 +26,10 @@ from ident.units.quantity import shown
 
 _HEAD = 1 << 20  # bytes by which an encoding is told
 _HALF = 0.4  # of the bytes of the head: the zeros of a text of two bytes a sign
+_BEYOND_ASCII = re.compile(rb"[\x80-\xff]+")
+_CHINESE = re.compile(rb"(?:[\xa1-\xa9\xb0-\xd7][\xa1-\xfe])+")
+"""Punctuation and the usual characters of GB 2312 (1980), rows 1 to 9 and 16 to 55, each of two bytes."""
+_LETTERS = 0xC0  # of Windows-1252; below stand its signs, such as the ² and · of a unit
 
 
 def read_text(data: bytes, where: str, limits: Limits, stated: Dialect = FOUND) -> Table:
@@ -84,7 +88,8 @@ def as_utf8(data: bytes, encoding: str = "") -> bytes:
 def encoding_of(data: bytes) -> str:
     """The encoding of a text by its mark or its bytes, as ENCODINGS calls it.
 
-    What is no UTF-8 is taken for Windows-1252, which has the µ, ° and ² of benches where Latin-1 has them.
+    What is no UTF-8 is taken for Chinese where all of it beyond ASCII is made of the usual Chinese characters, else for
+    Windows-1252, which has the µ, ° and ² of benches where Latin-1 has them.
     """
     for mark, encoding in ((codecs.BOM_UTF16_LE, "utf-16-le"), (codecs.BOM_UTF16_BE, "utf-16-be")):
         if data.startswith(mark):
@@ -95,8 +100,14 @@ def encoding_of(data: bytes) -> str:
     try:
         codecs.getincrementaldecoder("utf-8")().decode(head)
     except UnicodeDecodeError:
-        return "windows-1252"
+        return "gb18030" if _is_chinese(head) else "windows-1252"
     return "utf-8"
+
+
+def _is_chinese(head: bytes) -> bool:
+    """Whether all that is beyond ASCII in whole lines is Chinese; signs of units alone, as in W/m²·K, are none."""
+    found = _BEYOND_ASCII.findall(head[: head.rfind(b"\n") + 1] or head)
+    return all(map(_CHINESE.fullmatch, found)) and any(max(one) >= _LETTERS for one in found)
 
 
 def _of_two_bytes(head: bytes) -> str:

@@ -27,7 +27,8 @@ CHANNELS = {
     "Position feedback": "displacement", "ActualPosition": "displacement", "Istwert [kN]": "force",
     "mesure [mm/s]": "velocity", "Force_kN": "force", "Kraft": "force", "Drehzahl": "velocity", "vitesse": "velocity",
     "Druckdifferenz": "load_pressure", "p_A": "pressure_a", "yout [m]": "displacement", "y_m": "displacement",
-    "Ventilstrom": "current", "Öltemperatur": "temperature",
+    "Ventilstrom": "current", "Öltemperatur": "temperature", "位移": "displacement", "力值(kN)": "force",
+    "指令_mm": "command", "阻尼力\uff08N\uff09": "force",
 }  # fmt: skip
 NONE = (
     "u",
@@ -62,7 +63,9 @@ def test_a_name_that_could_be_another_thing_is_no_channel(name):
     assert channel_of(name) == ""
 
 
-@pytest.mark.parametrize("name", ["Time_ms", "t_s", "Zeit [s]", "temps", "tempo", "tout", "X_Value", "Elapsed Time"])
+@pytest.mark.parametrize(
+    "name", ["Time_ms", "t_s", "Zeit [s]", "temps", "tempo", "tout", "X_Value", "Elapsed Time", "时间 (s)"]
+)
 def test_a_time_is_known_in_any_of_these_languages(name):
     assert is_time(name)
     assert channel_of(name) == ""

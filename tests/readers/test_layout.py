@@ -148,6 +148,19 @@ def test_windows_1252_and_two_bytes_a_sign_without_a_mark_keep_the_units():
         assert read(text.encode(encoding)).names == ("Zeit [s]", "Weg [µm]")
 
 
+@pytest.mark.parametrize("heading", ["时间(s),位移(mm)", "\n时间,力值\n(s),(N)"])
+def test_chinese_without_a_mark_is_read_as_it_was_written(heading):
+    rows = "\n".join([heading, *(f"{n},{n % 7}" for n in range(20))])
+    assert read(rows.encode("gb18030")).names == read(rows.encode()).names
+    assert read(rows.encode()).names[0].startswith("时间")
+
+
+@pytest.mark.parametrize("heading", ["t,h (W/m²·K)", "t,Größe (µm)", "t,VERZÖGERUNG_ÜBER_ÄHNLICH", "été,forcé"])
+def test_signs_of_units_and_accents_are_no_chinese(heading):
+    """Signs of units and two accents in a row are bytes that are a Chinese character, too."""
+    assert read("\n".join([heading, *(f"{n},{n % 7}" for n in range(20))]).encode("cp1252")).names[1] in heading
+
+
 @pytest.mark.parametrize(
     ("above", "rate"),
     [("Abtastrate;1000 Hz", 1000.0), ("Sampling period,1.0 ms,", 1000.0), ("Abtastintervall: 0,5 ms", 2000.0),
