@@ -111,10 +111,16 @@ def _compared(
     compared = [best, *(with_effects.get(one.machine, one) for one in tried if one.machine != best.machine)]
     probable = _probabilities(compared)
     said = (
-        model.structure(over, None if number else why, probable.get(model.machine))
+        model.structure(over, _rather(model, best, probable) if number else why, probable.get(model.machine))
         for number, model in enumerate(compared)
     )
     return tuple(said), fitted[best.machine].fit
+
+
+def _rather(model: _JudgedStructure, first: _JudgedStructure, probable: Mapping[str, float]) -> Message | None:
+    """What is said of a model that is more probable than the first one, which comes first for another reason."""
+    more = probable.get(model.machine, 0.0) > probable.get(first.machine, 1.0)
+    return message("structure.rather", machine=model.machine) if more else None
 
 
 def _probabilities(compared: Sequence[_JudgedStructure]) -> dict[str, float]:

@@ -282,6 +282,7 @@ STRUCTURES: Mapping[str, str] = {
     "structure.within": "the error is smaller with one effect, and no parameter is at its bound",
     "structure.simpler": "the error is as small with one effect, and the model is simpler",
     "structure.simplest": "the simplest whose error is not larger",
+    "structure.rather": "more probable than the first: if the machine is one, name it by --model {machine}",
     "structure.described": "the data set describes the machine",
     "structure.loop":
         "{machine} is used, a position loop, because the recorded output follows the command",

@@ -320,6 +320,16 @@ def test_an_improbable_machine_gives_way_to_the_most_probable(probabilities, tak
     assert _preferred(first, [first, lag, motor], set(), probable)[0].machine == taken
 
 
+@pytest.mark.parametrize(("probability", "said"), [(0.28, True), (0.72, False)])
+def test_a_machine_that_is_more_probable_than_the_first_is_said_with_how_to_name_it(probability, said):
+    """As a motor on a way beside a valve that has the smaller error: only the user knows which of them it is."""
+    first, motor = SimpleNamespace(machine="open_valve"), SimpleNamespace(machine="motor")
+    probable = {"open_valve": probability, "motor": 1.0 - probability}
+    rather = structure_selection._rather(motor, first, probable)  # type: ignore[arg-type]
+    assert ("--model motor" in str(rather)) is said
+    assert structure_selection._rather(motor, first, {}) is None  # type: ignore[arg-type]
+
+
 @pytest.mark.parametrize(("probabilities", "taken"), [((0.3, 0.3, 0.4), "first_order"), ((0.3, 0.1, 0.6), "motor")])
 def test_of_models_that_are_as_simple_a_much_more_probable_one_is_taken(probabilities, taken):
     """A motor and a lag leave as little as a mass on a spring, each with an effect: the more probable one is no worse
