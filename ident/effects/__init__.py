@@ -79,6 +79,7 @@ OF_RECORDS = _of_files(
     "friction_behind_play",
     "degrading_hysteresis",
     "relaxation",
+    "bilinear_stiffness",
     "elastic_coupling",
     "elastic_load",
     "sensor_curve",

@@ -139,6 +139,12 @@ def degraded(force: float, way: float = 0.3, loss: float = 0.2, pinched: float =
     return STIFFNESS * x + DAMPING * SPEED + force * z
 
 
+def kinked(stiffness: float, beyond: float) -> np.ndarray:
+    """The force of a spring and a damper with another stiffness beyond a way to both sides, moved at a speed."""
+    way = scipy.integrate.cumulative_trapezoid(SPEED, dx=1.0 / RATE, initial=0.0)
+    return moved() + stiffness * np.sign(way) * np.maximum(np.abs(way) - beyond, 0.0)
+
+
 def relaxed(stiffness: float, time: float = 0.2) -> np.ndarray:
     """The force of a spring and a damper with a spring and a damper in series (Maxwell) that relaxes, moved at a
     speed."""
@@ -211,6 +217,9 @@ CASES = {
     "relaxation": Case(
         "specimen", {"relaxation.stiffness": 60.0, "relaxation.time": 0.2},
         lambda k: relaxed(60.0 * k), {"velocity": SPEED}, output="force"),
+    "bilinear_stiffness": Case(
+        "specimen", {"bilinear_stiffness.stiffness": -25.0, "bilinear_stiffness.displacement": 0.4},
+        lambda k: kinked(-25.0 * k, 0.4), {"velocity": SPEED}, output="force"),
     "arm_gravity": Case(
         "drive", {"arm_gravity.torque": 30.0, "arm_gravity.hanging": 0.5},
         lambda k: mass(lambda _t, x, _v: 30.0 * k * np.sin(x - 0.5)), {}),
@@ -301,7 +310,8 @@ def test_an_effect_is_looked_for_only_where_the_record_could_show_it():
     assert of_records & found - springs == {"normal_force_friction", "pressure_friction"}
     answers = Run("r", "", RATE, {"velocity": SPEED, "force": FORCE, "load_pressure": SQUEEZE}, {}, output="force")
     moves = CandidateModels.of(Matrix(Actuator("A"), (answers,)), Settings(model="specimen")).effects
-    assert {"pressure_friction", "pressure_force", "degrading_hysteresis", "relaxation"} <= set(moves)
+    shown = {"pressure_friction", "pressure_force", "degrading_hysteresis", "relaxation", "bilinear_stiffness"}
+    assert shown <= set(moves)
     several = Matrix(Actuator("A"), (answers, replace(answers, id="s")))
     assert "degrading_hysteresis" not in CandidateModels.of(several, Settings(model="specimen")).effects
     speed, volts = np.cos(T), {"command": "V", "velocity": "rad/s"}
