@@ -9,7 +9,7 @@ from ident.checks.band import band
 from ident.checks.clipping import clipping
 from ident.checks.copied import copied
 from ident.checks.delay import delays
-from ident.checks.feedback import feedback
+from ident.checks.feedback import CODE, feedback
 from ident.checks.finding import Finding, Findings
 from ident.checks.flat import flat
 from ident.checks.gain import force_sign, gain
@@ -23,7 +23,7 @@ from ident.checks.response import Response, respond
 from ident.checks.rig import BEYOND, beyond_rig
 from ident.checks.scale import scale
 from ident.checks.self_oscillation import self_oscillating
-from ident.checks.statements import statements
+from ident.checks.statements import specimen_is_moved, statements
 from ident.checks.summary import RunSummary, Summary, describe
 from ident.checks.timing import timing
 from ident.checks.unit_factor import unit_factor
@@ -43,6 +43,8 @@ def check(matrix: Matrix) -> Findings:
     matrix = screen(matrix)
     measured = [(run, respond(run)) for run in matrix.runs]
     found = [finding for run, response in measured for finding in one_run(run, response, matrix.actuator)]
+    if specimen_is_moved(matrix):  # whoever moves it, its force answers the motion
+        found = [finding for finding in found if finding.code != CODE]
     found += [
         *delays(measured),
         *(scaled := list(scale(measured))),

@@ -17,6 +17,7 @@ from ident.run import Run, Samples
 from ident.statistics.robust import robust_deviation
 from ident.words.message import message
 
+CODE = "closed-loop"
 OWN, OTHER = 40, 12  # lags of the command's past, and of the output's beside as many more of the command's
 LONGEST = 8192  # samples that are looked at, from the middle of the record
 LEAST = 6  # samples a regressor
@@ -34,7 +35,7 @@ def feedback(run: Run) -> Iterator[Finding]:
     found = shares(run) if run.closed_loop is None else None
     if found and _fed_back(*found):
         text = message("check.closed_loop", run=run.id, share=max(found))
-        yield Finding.of(run.id, "doubt", "closed-loop", text)
+        yield Finding.of(run.id, "doubt", CODE, text)
 
 
 def closed_loop(run: Run) -> bool:

@@ -8,7 +8,7 @@ from ident.checks.finding import Finding
 from ident.errors import Unusable
 from ident.matrix import Matrix
 from ident.presets import Preset
-from ident.presets.suited import in_question
+from ident.presets.suited import in_question, moved_by_command
 from ident.run import BENCH
 from ident.words.message import Message, message
 
@@ -29,7 +29,9 @@ def statements(matrix: Matrix) -> Iterator[Finding]:
         and run.units.get(run.output) not in _TURNING
     ]
     hydraulic = [run for run in runs if "drive_force" not in run.channels]
-    models = _in_question(matrix) if runs else ()
+    if not runs or specimen_is_moved(matrix):
+        return
+    models = _in_question(matrix)
     ratios = next((model.without_area for model in models if model.without_area), {})
     if hydraulic and ratios and matrix.actuator.piston_area is None:
         yield note("no-piston-area", message("check.no_piston_area", ratios=[ratio for ratio, _ in ratios.values()]))
@@ -41,6 +43,12 @@ def statements(matrix: Matrix) -> Iterator[Finding]:
     conditions = {(run.specimen, run.gain) for run in matrix.of_use("fit")}
     if len(conditions) == 1 and hydraulic:
         yield note("one-condition", message("check.one_condition"))
+
+
+def specimen_is_moved(matrix: Matrix) -> bool:
+    """Whether the command of every record is the motion of a specimen: nothing drives a machine there."""
+    runs = [run for run in matrix.runs if "command" in run.channels]
+    return len(runs) == len(matrix.runs) and any(moved_by_command(model, runs) for model in _in_question(matrix))
 
 
 def _in_question(matrix: Matrix) -> tuple[Preset, ...]:

@@ -251,6 +251,23 @@ def test_a_machine_that_turns_is_asked_for_nothing_of_a_cylinder(faulty):
         assert ("repeat" in codes) is (of is moved)
 
 
+def test_a_motion_called_command_that_a_force_answers_is_neither_a_controllers_nor_asked_for_a_specimen():
+    """A specimen under load control: its motion follows the force, as a controller's command does."""
+    rng = np.random.default_rng(3)
+    force, motion = np.zeros(3000), np.zeros(3000)
+    for k in range(2, 3000):
+        motion[k] = 1.6 * motion[k - 1] - 0.64 * motion[k - 2] + 0.1 * rng.standard_normal() - 0.3 * force[k - 1]
+        force[k] = 0.5 * motion[k] + 0.3 * motion[k - 1] + 0.02 * rng.standard_normal()
+    codes = {}
+    for unit in ("m", "V"):
+        units = {"command": unit, "force": "N"}
+        run = Run("r", "", 100.0, {"command": motion, "force": force}, units, output="force")
+        codes[unit] = {finding.code for finding in check(Matrix(Actuator("A"), (run,)))}
+    asked = {"closed-loop", "no-specimen", "one-condition"}
+    assert asked <= codes["V"]
+    assert not asked & codes["m"]
+
+
 @pytest.mark.parametrize(("unit", "ratio"), [("Pa", "m0/Ap, c0/Ap and k0/Ap"), ("rad/s", "Z0/A^3")])
 def test_a_command_that_no_loop_compares_is_asked_for_no_loop_gain(faulty, unit, ratio):
     """A pressure that drives a mass, and the speed of a pump: the ratios are those of the machine in question."""
