@@ -24,7 +24,7 @@ BILINEAR_STIFFNESS = Effect(
             searched=True,
             of_motion=True,
         ),
-    ),  # fmt: skip
+    ),
     looks="force over displacement of two straight parts to each side, the same at every cycle",
     source="piecewise linear restoring force, as of a wall that rocks on its base",
     of_specimen=True,

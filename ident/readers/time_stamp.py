@@ -18,7 +18,7 @@ _STAMP = re.compile(
     r"(?P<slashed>\d{1,4}/\d{1,2}/\d{1,4})[ ,]\s*)?"
     r"(?P<h>\d{1,2}):(?P<m>\d{2}):(?P<s>\d{2}(?:[.,]\d+)?)(?:\s?(?P<half>[AaPp][Mm]))?(?P<zone>Z|[+-]\d{2}:?\d{2})?"
 )
-_DAY = 86_400.0  # s
+_DAY, _HALF_A_DAY = 86_400.0, 43_200.0  # s
 
 
 def is_stamp(field: str) -> bool:
@@ -27,7 +27,8 @@ def is_stamp(field: str) -> bool:
 
 
 def seconds(fields: Sequence[str], first_line: int, where: str) -> Array:
-    """Seconds since the first stamp, (n,), exact to a microsecond over days.
+    """Seconds since the first stamp, (n,), exact to a microsecond over days. Times of day without a date go on beyond
+    midnight.
 
     Raises Unusable: ``bad-time-stamp`` for a field that is none, and for days that cannot be told from months;
     ``mixed-time-zones``.
@@ -44,9 +45,15 @@ def seconds(fields: Sequence[str], first_line: int, where: str) -> Array:
         what = "the date changes, and day and month are ambiguous in 1/2/2026"
         raise Unusable("bad-time-stamp", what, where, "write dates as 2026-02-01, or give the sample rate")
     begin = _day(matches[0]) if matches else 0
-    return np.array([_DAY * (_day(match) - begin) + _of_day(match) for match in matches]) - (
-        _of_day(matches[0]) if matches else 0.0
-    )
+    passed = np.array([_DAY * (_day(match) - begin) + _of_day(match) for match in matches])
+    if not any(match["iso"] or match["dotted"] or match["slashed"] for match in matches):
+        passed += _DAY * _midnights(passed)
+    return passed - passed[:1].sum()
+
+
+def _midnights(of_day: Array) -> Array:
+    """How many midnights have passed at each time of day: it falls by more than half a day there."""
+    return np.cumsum(np.diff(of_day, prepend=of_day[:1]) < -_HALF_A_DAY)
 
 
 def _day(match: re.Match[str]) -> int:

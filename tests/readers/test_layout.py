@@ -142,6 +142,13 @@ def test_days_that_cannot_be_told_from_months_and_zones_that_change_are_refused(
             seconds(stamps, 2, "run.csv")
 
 
+def test_times_of_day_without_a_date_go_on_beyond_midnight():
+    """As of a test that ran two nights; a time that falls by less is out of order, and stays so."""
+    hours = ["22:00:00", "23:59:59.5", "00:00:00.5", "12:00:00", "23:00:00", "01:00:00"]
+    assert seconds(hours, 2, "").tolist() == [0.0, 7199.5, 7200.5, 50400.0, 90000.0, 97200.0]
+    assert seconds(["10:00:00", "09:59:59"], 2, "").tolist() == [0.0, -1.0]
+
+
 def test_windows_1252_and_two_bytes_a_sign_without_a_mark_keep_the_units():
     text = "\n".join(["Zeit [s];Weg [µm]", *(f"{n};{n % 7}" for n in range(20))])
     for encoding in ("cp1252", "utf-8", "utf-16", "utf-16-le", "utf-16-be"):
