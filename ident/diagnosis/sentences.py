@@ -148,11 +148,15 @@ def _nothing(
 
 
 def _shows_nothing(named: str, change: VerifyChange) -> Message:
-    """The message that validation data show nothing of an effect, by the errors that decide."""
+    """The message that validation data show nothing of an effect, by the errors that decide.
+
+    An effect that changes the output by more than the error foretells no error there.
+    """
     first = change.with_mean[0] if change.with_mean else change.before
-    return message(
-        "verdict.shows_nothing", named=named, before=first, after=first + change.rise, due=first - change.due
-    )
+    last = first + change.rise
+    if change.shown >= first:
+        return message("verdict.changes_more", named=named, before=first, after=last, shown=change.shown)
+    return message("verdict.shows_nothing", named=named, before=first, after=last, due=first - change.due)
 
 
 def _falls(

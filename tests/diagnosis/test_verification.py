@@ -10,8 +10,9 @@ from scipy.signal import lfilter
 
 from ident.diagnosis.recommended import recommended
 from ident.diagnosis.result import Diagnosis
+from ident.diagnosis.sentences import _shows_nothing
 from ident.diagnosis.verdict import contradiction, shows_nothing
-from ident.diagnosis.verification import Contradiction, verify_change
+from ident.diagnosis.verification import Contradiction, VerifyChange, verify_change
 from ident.errors import Unusable
 from ident.fit.settings import Settings
 from ident.run import Run
@@ -84,6 +85,15 @@ def test_what_acts_in_runs_to_verify_lowers_their_error_as_is_due_and_what_does_
     assert acts.due == pytest.approx(-acts.rise, rel=0.2)
     assert [shows_nothing(one) for one in (acts, not_there, half)] == [False, False, True]
     assert contradiction(not_there) is not None
+
+
+@pytest.mark.parametrize(
+    ("shown", "said"), [(0.4, "would be 30.0 % if it acted"), (0.6, "changes the output by 60.0 %")]
+)
+def test_no_error_is_foretold_by_an_effect_that_changes_the_output_by_more_than_the_error(shown, said):
+    """It was said to be 0.00 % if the effect acted."""
+    change = VerifyChange("lead", 0.5, 0.52, 0.05, shown=shown)
+    assert said in str(_shows_nothing("lead", change))
 
 
 def test_what_acts_seldom_shows_nothing():
