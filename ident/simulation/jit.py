@@ -24,7 +24,6 @@ from numba.core.compiler import CompileResult
 from numba.core.compiler_lock import global_compiler_lock
 from numba.core.dispatcher import Dispatcher
 from numba.core.extending import _Intrinsic
-from numba.core.targetconfig import TargetConfig
 
 from ident.cached import cached_property
 from ident.simulation.kept import found, in_turn, keep
@@ -33,19 +32,6 @@ Function = TypeVar("Function", bound=Callable[..., Any])
 _bytes_of: Callable[[Any], bytes] = serialize.dumps
 _code_of = attrgetter("library")  # numba's name for the machine code of what it compiled
 VERSIONS = (numba.__version__, llvmlite.__version__, np.__version__, sys.version)
-_equal_by_value = TargetConfig.__eq__
-
-
-def _equal(first: Any, second: Any) -> Any:
-    """Whether two sets of options are equal: those where the same were set are, without a look at some thirty values.
-
-    Numba compares them for each call in a function that it compiles: a tenth of its time.
-    """
-    return (type(first) is type(second) and first._values == second._values) or _equal_by_value(first, second)
-
-
-TargetConfig.__eq__ = _equal
-TargetConfig.__hash__ = lambda options: hash(type(options))  # numba's own is of the names alone, which a class has
 
 
 def jit(**options: Any) -> Callable[[Function], Function]:
