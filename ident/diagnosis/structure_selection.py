@@ -118,7 +118,7 @@ def _compared(
 
 
 def _rather(model: _JudgedStructure, first: _JudgedStructure, probable: Mapping[str, float]) -> Message | None:
-    """What is said of a model that is more probable than the first one, which comes first for another reason."""
+    """The remark on a model that is more probable than the first one, which comes first for another reason."""
     more = probable.get(model.machine, 0.0) > probable.get(first.machine, 1.0)
     return message("structure.rather", machine=model.machine) if more else None
 

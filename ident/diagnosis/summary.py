@@ -47,6 +47,8 @@ def _missing(diagnosis: Diagnosis) -> Message:
     if verdict.by_chance:
         helping = [_named(diagnosis, name) for name in verdict.by_chance]
         return message("summary.helping_by_chance", helping=helping)
+    if verdict.unconfirmed:
+        return message("summary.unconfirmed", effects=[_strong(diagnosis, name) for name in verdict.unconfirmed])
     if verdict.unexplained and not is_rather_noise(verdict.probabilities):
         return _probable(diagnosis, "unlisted", "summary.unlisted", "summary.unlisted_probable")
     if _fails_on_validation_data(diagnosis):
@@ -199,7 +201,8 @@ def next_step(diagnosis: Diagnosis) -> Message:
         return message("next.then", then=_then(diagnosis))
     if verdict.effects:
         return message("next.add", effects=verdict.effects)
-    return message("next.validation" if _fails_on_validation_data(diagnosis) else "next.use")
+    doubted = verdict.unconfirmed or _fails_on_validation_data(diagnosis)
+    return message("next.validation" if doubted else "next.use")
 
 
 def _correct(suspect: Suspect, effects: Sequence[str]) -> Message:

@@ -18,6 +18,9 @@ SUMMARY: Mapping[str, str] = {
     "summary.contradicted_after":
         "The error falls with {before:all}. Not confirmed: {effects:all}. Estimation data support {effects:them}, but "
         "validation data contradict {effects:them}.",
+    "summary.unconfirmed":
+        "Not confirmed: {effects:all}. Estimation data support {effects:them}, but validation data show nothing of "
+        "{effects:them}.",
     "summary.label": "The label of {run:run} looks wrong: correct it before you conclude what is missing.",
     "summary.stopped": "Nothing was found yet: the search was stopped early.",
     "summary.unexamined": "Nothing was examined: there was no time for it.",
