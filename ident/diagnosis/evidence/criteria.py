@@ -40,7 +40,7 @@ class EvidenceCriteria:
     Test: test_criteria_of_evidence.py::test_a_tenth_of_the_explainable_energy_is_added_to_the_disturbance"""
     floor_margin: float = 1.02
     """[1] Ratio of the error to its noise floor up to which it may be noise alone. Why: neither repeats nor spectra
-    give a floor to better than 2 % (docs/diagnosis.md, step 7).
+    give a floor to better than 2 % (docs/diagnosis.md, Conclusion).
     Test: test_criteria_of_evidence.py::test_nothing_can_be_gained_within_two_per_cent_of_the_floor"""
     surrogates: int = 200
     """[residuals] Residuals with random phases, of which the largest gains give the bar. Why: the 95 % point of so many
