@@ -3,8 +3,8 @@
 Forward: the best effect of the ranking is added while it improves the model beyond chance; backward: effects that
 became redundant are taken out. Then each added effect is compared with all others in its place: a better one is
 exchanged for it, and effects that are indistinguishable from it are its alternatives. Where all of this ends above the
-noise, the search continues from all promising effects at once, from the next best sets, from strong
-effects, and from pairs of effects in the place of one; then it begins again with an effect whose widths are free. At
+noise, the search continues from all promising effects at once, with strong effects, from the next best sets, and from
+pairs of effects in the place of one; then it begins again with an effect whose widths are free. At
 the end the most probable of the sets with as many effects is taken.
 """
 
@@ -27,7 +27,7 @@ def select(moves: Moves, selection: Selection) -> Selection:
     with suppress(TimeIsUp):
         selection = add_and_exchange(moves, selection)
         for look_farther in (
-            moves.exchange_pass, moves.joint_refit, moves.runner_up, moves.strong_starts, moves.pair_search,
+            moves.exchange_pass, moves.joint_refit, moves.strong_starts, moves.runner_up, moves.pair_search,
         ):  # fmt: skip
             if moves.above_floor(selection):
                 farther = look_farther(selection) or selection
