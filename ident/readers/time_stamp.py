@@ -53,7 +53,8 @@ def seconds(fields: Sequence[str], first_line: int, where: str) -> Array:
 
 def _midnights(of_day: Array) -> Array:
     """How many midnights have passed at each time of day: it falls by more than half a day there."""
-    return np.cumsum(np.diff(of_day, prepend=of_day[:1]) < -_HALF_A_DAY)
+    passed: Array = np.cumsum(np.diff(of_day, prepend=of_day[:1]) < -_HALF_A_DAY)
+    return passed
 
 
 def _day(match: re.Match[str]) -> int:
