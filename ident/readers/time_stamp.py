@@ -45,10 +45,11 @@ def seconds(fields: Sequence[str], first_line: int, where: str) -> Array:
         what = "the date changes, and day and month are ambiguous in 1/2/2026"
         raise Unusable("bad-time-stamp", what, where, "write dates as 2026-02-01, or give the sample rate")
     begin = _day(matches[0]) if matches else 0
-    passed = np.array([_DAY * (_day(match) - begin) + _of_day(match) for match in matches])
+    passed: Array = np.array([_DAY * (_day(match) - begin) + _of_day(match) for match in matches])
     if not any(match["iso"] or match["dotted"] or match["slashed"] for match in matches):
         passed += _DAY * _midnights(passed)
-    return passed - passed[:1].sum()
+    passed -= passed[:1].sum()
+    return passed
 
 
 def _midnights(of_day: Array) -> Array:
