@@ -17,6 +17,9 @@ PLATEAUS = 3  # peaks that end at the very same value
 STEP = 0.2  # of the usual step: a cut signal arrives at speed, one that comes to rest arrives slowly
 RESOLUTIONS = 3.0  # a rounded peak is left by one step of the resolution, a cut one by more
 NEAR = 2e-3  # of the range; in noise the fifth highest peak lies ten times deeper
+ON_ITS_WAY = (
+    3  # steps before a plateau in which what is cut off moved; a jump takes two where an uneven clock was evened
+)
 BETWEEN = 0.05  # of the range
 PEAKS = 5
 AT_REST = 0.4  # of the samples: a signal of levels, not a cut one
@@ -64,18 +67,23 @@ def _visits(signal: Samples) -> NDArray[np.intp]:
 
 
 def plateaus_at_the_top(signal: Samples) -> int:
-    """Number of separate plateaus of equal samples at the top that are entered at speed; 0 below PLATEAUS."""
+    """Number of separate plateaus of equal samples at the top that are entered at speed; 0 below PLATEAUS.
+
+    A signal that jumps there from rest, between two samples or three, is one of levels: what is cut off was on its way
+    before.
+    """
     top = signal == signal.max()
     if top.mean() > AT_REST:
         return 0
     edges = np.flatnonzero(np.diff(np.concatenate([[False], top, [False]]).astype(np.int8)))
     starts, ends = edges[::2], edges[1::2]
-    long = (ends - starts >= PLATEAU) & (starts > 0)
+    long = (ends - starts >= PLATEAU) & (starts >= ON_ITS_WAY)
     steps = np.abs(np.diff(signal))
     moving = steps[steps > 0]
     if not long.any() or not len(moving):
         return 0
     least = max(STEP * float(np.sqrt(np.mean(moving**2))), RESOLUTIONS * float(moving.min()))
-    entered = steps[starts[long] - 1] > least
+    before = steps[starts[long][:, None] - np.arange(1, ON_ITS_WAY + 1)]
+    entered = (before[:, 0] > least) & (before > 0).all(axis=1)
     count = len(np.unique(_visits(signal)[starts[long][entered]]))
     return count if count >= PLATEAUS else 0

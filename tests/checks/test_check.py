@@ -43,6 +43,15 @@ def test_a_clipped_sine_is_found_and_a_whole_one_is_not_even_when_rounded(faulty
         assert (("run-0", "clipping") in found) is expected
 
 
+def test_a_command_that_jumps_between_levels_is_not_clipped(faulty):
+    """A random binary sequence about a middle level, which is reached by a ramp."""
+    levels = np.minimum(0.5 * np.arange(8192.0), 50.0)
+    levels[2000:5000] = np.where(np.random.default_rng(2).random(30) < 0.5, 40.0, 60.0).repeat(100)
+    evened = np.concatenate([levels[:1], (levels[1:] + levels[:-1]) / 2])  # a jump between two samples of a clock
+    for command in (levels, evened):
+        assert ("run-0", "clipping") not in faulty.channel(0, "command", command).run(0, kind="other").found()
+
+
 def test_what_flickers_by_a_digit_at_rest_is_not_clipped_though_rest_is_its_lowest_value(faulty):
     """A speed in whole numbers that goes from rest to many of them; one that is cut at rest again and again is."""
     rng = np.random.default_rng(4)
