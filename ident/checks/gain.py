@@ -30,8 +30,9 @@ def gain(run: Run, measured: Response | None) -> Iterator[Finding]:
     if not same or measured is None or run.kind in NARROW:
         return
     lowest = measured.between(*BAND)
-    if measured.coherence[measured.between(0.01, 0.9)].mean() < RELATED:
-        yield unrelated(run, float(measured.coherence[measured.between(0.01, 0.9)].mean()))
+    if (coherence := float(measured.coherence[measured.between(0.01, 0.9)].mean())) < RELATED:
+        if measured.is_average:
+            yield unrelated(run, coherence)
         return
     value = complex(measured.uy[lowest].sum() / measured.uu[lowest].sum())
     turn = degrees(abs(np.angle(value)))

@@ -28,6 +28,8 @@ class Response:
     """Averages over Hann frames of half overlap, each frame without its mean (Welch 1967).
 
     `frequency` (F,) in Hz (or 1/sample) without 0; power of command `uu` and output `yy`, cross power `uy`, each (F,).
+    `excited` is the number of frames over which the command's power P is spread, (Σ P)²/Σ P²: of one step it is about
+    two, however many `frames` there are.
     Good enough to see a sign, a factor or a whole sample; the fit uses the exact spectra of :mod:`ident.fit.reduction`.
     """
 
@@ -36,11 +38,18 @@ class Response:
     yy: Samples
     uy: NDArray[np.complex128]
     frames: int
+    excited: float
 
     @cached_property
     def gain(self) -> NDArray[np.complex128]:
         """H = uy / uu, (F,)."""
         return self.uy / self.uu
+
+    @property
+    def is_average(self) -> bool:
+        """Whether the command moves in half of the least number of frames: else the output goes on while it rests, and
+        a small coherence says nothing."""
+        return self.excited >= FRAMES / 2
 
     @cached_property
     def coherence(self) -> Samples:
@@ -102,7 +111,9 @@ def response(u: Samples, y: Samples, sample_rate: float) -> Response | None:
     one, two = (_spectra(signal, hann(length)) for signal in (u, y))
     uy = (one.conj() * two).mean(axis=0)
     frequency = np.asarray(np.fft.rfftfreq(length, 1 / sample_rate)[1:], np.float64)
-    return Response(frequency, _power(one), _power(two), uy, len(one))
+    power = (np.abs(one) ** 2).sum(axis=1)
+    excited = float(power.sum() ** 2 / max((power**2).sum(), np.finfo(float).tiny))
+    return Response(frequency, _power(one), _power(two), uy, len(one), excited)
 
 
 def _spectra(signal: Samples, window: Samples) -> NDArray[np.complex128]:

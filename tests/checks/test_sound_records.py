@@ -111,6 +111,24 @@ def test_a_white_command_is_no_rest_where_the_output_follows_or_is_of_its_size(u
     assert (("other", "unrelated") in doubts(other)) is (unit == "m")
 
 
+def test_one_step_that_is_answered_slowly_is_not_called_unrelated() -> None:
+    """Two lags of 0.35 s in a record of 4 s; the same record turned round has nothing to do with its command."""
+    rng, t = np.random.default_rng(3), np.arange(1000) / 250.0
+    step = np.where(t >= 1.0, 0.2, 0.0)
+    answer = lag(lag(step, 250.0, 0.35), 250.0, 0.35)
+    run = Run(
+        "slow",
+        "",
+        250.0,
+        {"command": step, "displacement": answer},
+        dict.fromkeys(("command", "displacement"), "m"),
+    )
+    assert ("slow", "unrelated") not in doubts(run)
+    moved = band(rng, 1000, 250.0, 20.0)
+    other = replace(run, channels={"command": moved, "displacement": band(rng, 1000, 250.0, 20.0)})
+    assert ("slow", "unrelated") in doubts(other)
+
+
 def test_a_response_is_told_only_where_the_command_has_power() -> None:
     rng, t = np.random.default_rng(9), np.arange(4000) / 100.0
     y = rng.standard_normal(4000)
