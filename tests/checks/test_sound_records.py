@@ -172,5 +172,18 @@ def test_an_output_on_its_way_to_a_command_at_rest_has_no_offset(noise: float) -
     x = 0.1 + np.exp(-np.arange(2000) / 1000.0) + 1e-3 * rng.standard_normal(2000)
     run = Run("r", "", 100.0, {"command": u, "displacement": x}, {"command": "m", "displacement": "m"})
     assert ("r", "offset") not in doubts(run)
-    moving = replace(run, channels={"command": u + 0.1 * np.sin(np.arange(2000) / 50.0), "displacement": x})
-    assert ("r", "offset") in doubts(moving)
+    moving = u + 0.1 * np.sin(np.arange(2000) / 50.0)
+    assert ("r", "offset") not in doubts(replace(run, channels={"command": moving, "displacement": x}))
+    stands_off = replace(run, channels={"command": moving, "displacement": moving + 0.43})
+    assert ("r", "offset") in doubts(stands_off)
+
+
+def test_a_loop_that_is_behind_its_steps_has_no_offset_and_one_that_stands_off_them_has() -> None:
+    """A lag of 0.4 s after a step in 4 s is behind by a tenth of the step in the mean."""
+    step = np.where(np.arange(1000) >= 250, 0.2, 0.0)
+    answer = lag(step, 250.0, 0.4)
+    units = dict.fromkeys(("command", "displacement"), "m")
+    run = Run("r", "", 250.0, {"command": step, "displacement": answer}, units)
+    for zero, expected in ((0.0, False), (0.02, True)):
+        off = replace(run, channels={"command": step, "displacement": answer + zero})
+        assert any(one.code == "offset" for one in check(Matrix(Actuator("X"), (off,)))) is expected
