@@ -6,7 +6,7 @@ Of the moving mass m₀ a share μ hangs behind a spring with a damper, ω its f
 
 With ζ = 0.35 it overshoots by 31 % after a step of the drive, exp(−π ζ/√(1 − ζ²)). Couplings of steel have 0.01 to 0.05
 and those of rubber up to 0.16 (DIN 740-2, relative damping ψ = 4 π ζ up to 2). What hardly swings is no mass behind a
-spring but a slow part: of a heater, of friction that wears in, of two lags side by side.
+spring but a slow part, as of two lags side by side.
 
 Its own quantities are xj = x − x₁ and vj = x₁'.
 """
