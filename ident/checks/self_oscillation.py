@@ -1,7 +1,4 @@
-"""An oscillation that a machine or its loop makes by itself, grown to a limit cycle or growing.
-
-It is looked for while every input rests, where few periods show it, and then in what the command does not explain.
-"""
+"""An oscillation that a machine or its loop makes by itself, grown to a limit cycle or growing, in words."""
 
 from __future__ import annotations
 
@@ -10,8 +7,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from ident.checks.finding import Finding
-from ident.checks.oscillation_at_rest import AtRest, oscillation_at_rest
-from ident.checks.unexplained_oscillation import Unexplained, unexplained_oscillation
+from ident.checks.sustained_oscillation import sustained_oscillation
 from ident.run import Run
 from ident.words.message import Message, message
 
@@ -20,7 +16,7 @@ from ident.words.message import Message, message
 class SelfOscillation:
     """An oscillation of a run that its inputs do not make: `frequency` in Hz (or 1/sample), `growth` σ in 1/s.
 
-    σ is 0 where it has settled. `evidence` is what the run shows of it, `cause` what may make it, with the remedy.
+    σ is 0 where the oscillation is steady. `evidence` is what the run shows of it, `cause` what may make it, with the remedy.
     `of_loop`: no source outside the loop can be meant.
     """
 
@@ -49,30 +45,23 @@ def self_oscillating(run: Run) -> Iterator[Finding]:
 
 def self_oscillation(run: Run) -> SelfOscillation | None:
     """The oscillation of a run's output that its inputs do not make; None where there is none."""
-    if at_rest := oscillation_at_rest(run):
-        return _at_rest(run, at_rest)
-    unexplained = unexplained_oscillation(run)
-    return None if unexplained is None else _unexplained(run, unexplained)
-
-
-def _at_rest(run: Run, found: AtRest) -> SelfOscillation:
-    seconds, closed = run.time_unit == "s", run.gain is not None or bool(run.closed_loop)
-    evidence = message(
-        "oscillation.at_rest", run=run.id, output=run.output, start=found.start, end=found.end, unit=run.time_unit,
-        frequency=(found.frequency, "Hz" if seconds else "1/sample"),
-        growth=(found.growth, "1/s" if seconds else "1/sample"),
-    )  # fmt: skip
-    cause = message("oscillation.loop" if closed else "oscillation.open")
-    return SelfOscillation(run.id, found.frequency, found.growth, evidence, cause, closed)
-
-
-def _unexplained(run: Run, found: Unexplained) -> SelfOscillation:
-    frequency, amplitude = (found.frequency, "Hz"), (found.amplitude, run.units[run.output])
-    if found.growth:
-        evidence = message(
-            "oscillation.growing", run=run.id, frequency=frequency, time=(math.log(2) / found.growth, "s")
-        )
+    found = sustained_oscillation(run)
+    if found is None:
+        return None
+    seconds, growth = run.time_unit == "s", found.growth * run.sample_rate
+    said = {
+        "run": run.id, "output": run.output,
+        "frequency": (frequency := found.frequency * run.sample_rate, "Hz" if seconds else "1/sample"),
+    }  # fmt: skip
+    if growth:
+        evidence = message("oscillation.growing", **said, time=(math.log(2) / growth, run.time_unit))
     else:
-        evidence = message("oscillation.unexplained", run=run.id, frequency=frequency, amplitude=amplitude)
-    cause = message("oscillation.unstable" if found.growth else "oscillation.limit_cycle")
-    return SelfOscillation(run.id, found.frequency, found.growth, evidence, cause, True)
+        evidence = message("oscillation.steady", **said, amplitude=(found.amplitude, run.units.get(run.output, "1")))
+    cause = message("oscillation.loop" if _is_closed(run) else "oscillation.open")
+    return SelfOscillation(run.id, frequency, growth, evidence, cause, _is_closed(run))
+
+
+def _is_closed(run: Run) -> bool:
+    """Whether a loop is closed: it is stated, or the command is what the output should be."""
+    unit = run.units.get("command", "1")
+    return run.gain is not None or bool(run.closed_loop) or (unit != "1" and unit == run.units.get(run.output))

@@ -84,10 +84,15 @@ CHECKS: Mapping[str, str] = {
         "{speed:quantity}, half the speed of the slowest of these starts",
     "check.missing_input":
         "{evidence}. An input is not recorded: add its channel, or keep only the rows in which it rests",
-    "oscillation.at_rest":
-        "in {run:run} the {output} swings by itself at {frequency:quantity}, with a growth of {growth:quantity}, from "
-        "{start:.4g} to {end:.4g} {unit}, while every input rests",
-    "oscillation.loop": "Reduce the gain of the loop, or its delay: at this gain it is at its stability limit",
+    "oscillation.steady":
+        "in {run:run} the {output} swings by itself at {frequency:quantity} with an amplitude of {amplitude:quantity}, "
+        "which no recorded input explains",
+    "oscillation.growing":
+        "in {run:run} the {output} swings by itself at {frequency:quantity}, and the amplitude doubles in "
+        "{time:quantity}",
+    "oscillation.loop":
+        "The loop is at its stability limit, or something periodic disturbs it. Reduce the gain of the loop, or its "
+        "delay, or leave the run out of the fit: no linear model has a limit cycle",
     "oscillation.open":
         "State the gain if a loop is closed, and reduce it; else look for a source that is not recorded",
     "check.self_oscillation": "{evidence}. {cause}",
@@ -95,15 +100,6 @@ CHECKS: Mapping[str, str] = {
         "the command of {run:run} depends on the measured output, so a controller made it: the output predicts "
         "{share:percent} of the innovations of the command. Use the reference of the controller as the command and "
         "state controller or gain, or set closed_loop: false if there is no feedback",
-    "oscillation.unexplained":
-        "{run:run} oscillates at {frequency:quantity} with an amplitude of {amplitude:quantity}, which the command "
-        "does not explain",
-    "oscillation.growing":
-        "{run:run} oscillates at {frequency:quantity}, and the amplitude doubles in {time:quantity}",
-    "oscillation.limit_cycle":
-        "The loop is unstable and has settled in a limit cycle, or something periodic disturbs it. Lower the gain, or "
-        "leave the run out of the fit: no linear model has a limit cycle",
-    "oscillation.unstable": "The loop is unstable. Lower the gain, and leave the run out of the fit",
     "check.amplitude":
         "the command of {run:run} has an RMS of {rms:.4g} {unit}, but the stated amplitude is {stated:.4g} {unit} "
         "({ratio:.3g} times). Correct amplitude, or the unit or scale of the command",

@@ -20,6 +20,8 @@ Array = NDArray[np.float64]
 KINDS = ("lag", "dead time", "negative damper")
 COMMANDS = ("rest", "steps", "sine", "noise")
 NEAR = 0.02  # of its frequency, within which an oscillation is said right
+FEWEST = 10  # periods of an oscillation that a record shows
+APART = 0.05  # of the output's deviation, by which two records that began differently still differ at the end
 _PARTS = 8  # steps of a sample
 
 
@@ -88,6 +90,20 @@ class Loop:
     def periods(self) -> float:
         """Of the oscillation in the record."""
         return self.count * self.frequencies[0] / self.rate
+
+    @cached_property
+    def oscillates(self) -> bool:
+        """Whether the record shows it: ten periods, of an oscillation that a command of noise does not put out.
+
+        Beside a large command that moves all the time an oscillation may go out (Oldenburger 1957): the loop then
+        forgets how it began, and two records of one command that begin differently end alike.
+        """
+        if self.periods < FEWEST or self.command != "noise":
+            return self.periods >= FEWEST
+        own = round(2 * pi / self.omega)
+        ahead = np.where(np.arange(27 * own // 2) < own, 1.0, 0.0)
+        other = self._moved(np.concatenate([ahead, self._command()]))[len(ahead) :]
+        return bool(np.std((other - self.clean)[3 * self.count // 4 :]) > APART * self.clean.std())
 
     def run(self, use: str) -> Run:
         """The record."""

@@ -78,7 +78,7 @@ def _oscillating(of: Loop, dry: bool) -> Row:
         "kind": of.kind,
         "hidden": "self-oscillation",
         "frequency": of.frequencies[0],
-        "shown": of.periods >= 10,
+        "shown": of.oscillates,
     }
     if dry or not row["shown"]:
         return row
@@ -134,7 +134,7 @@ def checked(seed: int) -> Counter[str]:
     for stable in (False, True):
         loop, word = Loop.drawn(seed, stable), "stable" if stable else "oscillates"
         word += " under noise" if loop.command == "noise" else ""
-        if stable or loop.periods >= 10:
+        if stable or loop.oscillates:
             found = self_oscillation(loop.run("fit"))
             near = found is not None and loop.near(found.frequency, found.growth)
             counts += Counter({word: 1, f"{word}, said": found is not None})

@@ -1,0 +1,158 @@
+"""An oscillation that neither the inputs nor a disturbance of a stable machine makes: it does not die, and is steady.
+
+Two facts part it from all else. Its mode has no damping: a linear equation that fits a limit cycle has a pair of poles
+on the stability limit (Gelb and Vander Velde 1968, section 2.3), with a decay of zero by its standard error; what is
+stable forgets how it began, under any command. And its amplitude A(t) is constant or grows, where that of a mode
+which noise drives fluctuates by std(A)/mean(A) = 0.52 (Rice 1944).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import scipy.fft  # not scipy.signal, which takes a second of every diagnosis to load
+from numpy.typing import NDArray
+
+from ident.checks.at_rest import acting, rests
+from ident.checks.driven import is_multiple
+from ident.checks.modes import FASTEST, Mode, modes
+from ident.rounding import ROUNDING
+from ident.run import BENCH, Run, Samples
+from ident.statistics.robust import NORMAL
+
+Spectrum = NDArray[np.complex128]
+LONGEST = 131_072
+"""Largest number of samples that are looked at, the last ones of a record. No answer depends on it, but of a record
+that changes."""
+PERIODS = 10
+"""Least number of periods of an oscillation: fewer tell no decay."""
+DAMPING = 0.03
+"""Largest damping ratio α/ω of an oscillation that does not die: a loop 3 dB from its stability limit has 0.04 or
+more, an oil column 0.05 (Merritt 1967, section 6.1)."""
+ERRORS = 3.0
+"""Standard errors of its decay beyond which an oscillation dies, and beyond which it grows."""
+WINDOW = 4
+"""Periods over which an amplitude is a mean: a mode of the machine beside it is left out, and a step is soon over."""
+STEADY = 0.2
+"""Deviation of an amplitude over its median, up to which it is constant; noise has 0.5."""
+GROWS = 0.5
+"""Logarithm of the ratio by which an amplitude grows over the record at least, where it is not constant."""
+EXPLAINED = 0.5
+"""Largest share of an oscillation that the inputs explain."""
+FEWEST = 8
+"""Least number of samples of an amplitude that a piece of a record gives."""
+SIZE = 0.01
+"""Least amplitude of an oscillation, over the range of the output: less at rest is of the reading."""
+LITTLE = 0.2
+"""Least amplitude of an oscillation, over √2 deviations of the output: less is a ripple."""
+MAINS, NEAR = (50.0, 60.0), 0.003
+"""Frequencies (Hz) of the mains, and the relative distance within which an oscillation may be picked up from them."""
+_QUARTILES = (0.25, 0.5, 0.75)
+
+
+@dataclass(frozen=True)
+class Oscillation:
+    """Its `frequency` in turns a sample, `growth` per sample, 0 where it is steady, and `amplitude` at the end.
+
+    The amplitude is in the output's unit.
+    """
+
+    frequency: float
+    growth: float
+    amplitude: float
+
+
+def sustained_oscillation(run: Run) -> Oscillation | None:
+    """The strongest oscillation of a run's output that sustains itself; None where there is none.
+
+    It is looked for in the rests of the inputs, where nothing drives the machine, and then in the whole record.
+    """
+    inputs = acting(run)
+    if run.kind in BENCH or not inputs:
+        return None
+    signals = np.stack([signal[-LONGEST:] for signal in (run.measured, *inputs)])
+    at_rest = [signals[:1, rest] for rest in rests(signals[1:], round(WINDOW * 2.0 * np.pi / FASTEST))]
+    for pieces in (at_rest, [signals]):
+        level = max((abs(float(piece[0].mean())) for piece in pieces), default=0.0)
+        found = [one for one in _sustained(pieces, signals) if not _is_driven(run, one, level)]
+        if found:
+            return max(found, key=lambda one: one.amplitude)
+    return None
+
+
+def _is_driven(run: Run, found: Oscillation, level: float) -> bool:
+    """Whether the mains, a periodic command, or what turns at a mean speed `level` may drive an oscillation."""
+    hertz = found.frequency * run.sample_rate
+    if run.time_unit == "s" and any(abs(hertz - mains) <= NEAR * mains for mains in MAINS):
+        return True
+    if run.output == "velocity" and found.amplitude <= level:
+        return True
+    return "command" in run.channels and is_multiple(_detrended(run.command[-LONGEST:]), found.frequency)
+
+
+def _sustained(pieces: Sequence[Samples], signals: Samples) -> Iterator[Oscillation]:
+    """The oscillations of the output, the first row of pieces of these signals, that do not die, and are steady or
+    grow."""
+    flat = [_detrended(piece) for piece in pieces]
+    sizes = np.std(np.hstack(flat), axis=1, keepdims=True) if flat else np.zeros((1, 1))
+    varying = sizes[:, 0] > ROUNDING * np.ptp(signals[: len(sizes)], axis=1)
+    if not varying[0] or not np.isfinite(sizes).all():
+        return
+    scaled = [piece[varying] / sizes[varying] for piece in flat]
+    least = max(LITTLE * np.sqrt(2.0), SIZE * np.ptp(signals[0]) / sizes[0, 0])
+    for mode in modes(scaled):
+        if mode.decay <= min(DAMPING * mode.frequency, ERRORS * mode.error):
+            found = _followed(scaled, mode)
+            if found is not None and found.amplitude >= least:
+                yield Oscillation(found.frequency, found.growth, found.amplitude * sizes[0, 0])
+
+
+def _followed(pieces: Sequence[Samples], mode: Mode) -> Oscillation | None:
+    """What turns at about the frequency of a mode, where its amplitude is constant or grows.
+
+    What has grown may be constant in the last half. The frequency is the median of the steps of its phase: a step of
+    the command turns it, and soon is over.
+    """
+    period = 2.0 * np.pi / mode.frequency
+    turning = [_demodulated(piece, mode.frequency) for piece in pieces if piece.shape[1] > WINDOW * period + FEWEST]
+    output, *inputs = np.hstack(turning) if turning else np.zeros((1, 0), np.complex128)
+    if len(output) + WINDOW * period * len(turning) < PERIODS * period or _explained(output, inputs) > EXPLAINED:
+        return None
+    last = len(output) // 2 if mode.decay < 0.0 else 0
+    low, middle, high = np.quantile(np.abs(output[last:]), _QUARTILES)
+    steady = 0.5 * NORMAL * (high - low) <= STEADY * middle
+    if not steady and -mode.decay < max(ERRORS * mode.error, GROWS / len(output)):
+        return None
+    steps = np.hstack([np.angle(of[0, 1:] * of[0, :-1].conj()) for of in turning])
+    turn = mode.frequency + float(np.median(steps[len(steps) // 2 if mode.decay < 0.0 else 0 :]))
+    amplitude = float(middle if steady else abs(output[-1]))
+    return Oscillation(turn / (2.0 * np.pi), 0.0 if steady else -mode.decay, amplitude)
+
+
+def _explained(output: Spectrum, inputs: Sequence[Spectrum]) -> float:
+    """The share of what turns with one frequency in an output that is proportional to what does so in the inputs."""
+    if not inputs:
+        return 0.0
+    table = np.stack(inputs, axis=1)
+    rest = output - table @ np.linalg.lstsq(table, output, rcond=None)[0]
+    return 1.0 - float(np.sum(np.abs(rest) ** 2) / np.sum(np.abs(output) ** 2))
+
+
+def _demodulated(signals: Samples, frequency: float) -> Spectrum:
+    """2 y exp(−jωk) averaged by Hann's window over some periods: its modulus is the amplitude of what turns with ω."""
+    n = signals.shape[1]
+    window = np.hanning(round(WINDOW * 2.0 * np.pi / frequency) + 2)
+    size = scipy.fft.next_fast_len(n + len(window) - 1)
+    turned = scipy.fft.fft(2.0 * signals * np.exp(-1j * frequency * np.arange(n)), size)
+    averaged = scipy.fft.ifft(turned * scipy.fft.fft(window / window.sum(), size))
+    return np.asarray(averaged[:, len(window) - 1 : n])
+
+
+def _detrended(signals: Samples) -> Samples:
+    """Signals, one (n,) or several (m, n), without their straight lines."""
+    n = np.linspace(-1.0, 1.0, signals.shape[-1])
+    return np.asarray(
+        signals - signals.mean(axis=-1, keepdims=True) - (signals @ n / (n @ n))[..., None] * n
+    )
