@@ -6,7 +6,7 @@ Of an output y and of the inputs u_j, means over q samples, the difference equat
 
 is solved by least squares (Ljung 1999, section 7.3). A pair of its poles z = exp(−α ± jω) is a mode that decays with α
 and turns with ω. The covariance C of the a_i gives the standard error of α by ∂ ln z/∂a_i = z^(p−i)/(z A'(z)) with
-A(z) = z^p − Σ a_i z^(p−i) (section 9.4).
+A(z) = z^p − Σ a_i z^(p−i) (section 9.4). Noise of the reading adds damping to a mode, and takes none away.
 """
 
 from __future__ import annotations
@@ -43,8 +43,8 @@ def modes(pieces: Sequence[Array]) -> Iterator[Mode]:
 
     Each is an array (1 + inputs, n) of the output and of its inputs, without means, all of about one size.
     """
-    q = 1
-    while (table := _table([_means(piece, q) for piece in pieces])) is not None:
+    q = 1 if pieces else 0
+    while q and (table := _table([_means(piece, q) for piece in pieces])) is not None:
         yield from (Mode(one.decay / q, one.frequency / q, one.error / q) for one in _pairs(table))
         q *= 2
 

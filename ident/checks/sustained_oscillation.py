@@ -37,6 +37,8 @@ WINDOW = 4
 """Periods over which an amplitude is a mean: a mode of the machine beside it is left out, and a step is soon over."""
 STEADY = 0.2
 """Deviation of an amplitude over its median, up to which it is constant; noise has 0.5."""
+STAYS = 0.85
+"""Least amplitude in the last quarter of an oscillation over that in the first: what noise hides of a decay shows."""
 GROWS = 0.5
 """Logarithm of the ratio by which an amplitude grows over the record at least, where it is not constant."""
 EXPLAINED = 0.5
@@ -120,15 +122,23 @@ def _followed(pieces: Sequence[Samples], mode: Mode) -> Oscillation | None:
     output, *inputs = np.hstack(turning) if turning else np.zeros((1, 0), np.complex128)
     if len(output) + WINDOW * period * len(turning) < PERIODS * period or _explained(output, inputs) > EXPLAINED:
         return None
-    last = len(output) // 2 if mode.decay < 0.0 else 0
-    low, middle, high = np.quantile(np.abs(output[last:]), _QUARTILES)
-    steady = 0.5 * NORMAL * (high - low) <= STEADY * middle
+    first = len(output) // 2 if mode.decay < 0.0 else 0
+    amplitude = np.abs(output[first:])
+    steady = _is_steady(amplitude)
     if not steady and -mode.decay < max(ERRORS * mode.error, GROWS / len(output)):
         return None
     steps = np.hstack([np.angle(of[0, 1:] * of[0, :-1].conj()) for of in turning])
-    turn = mode.frequency + float(np.median(steps[len(steps) // 2 if mode.decay < 0.0 else 0 :]))
-    amplitude = float(middle if steady else abs(output[-1]))
-    return Oscillation(turn / (2.0 * np.pi), 0.0 if steady else -mode.decay, amplitude)
+    turn = mode.frequency + float(np.median(steps[-len(amplitude) :]))
+    if steady:
+        return Oscillation(turn / (2.0 * np.pi), 0.0, float(np.median(amplitude)))
+    return Oscillation(turn / (2.0 * np.pi), -mode.decay, float(amplitude[-1]))
+
+
+def _is_steady(amplitude: Samples) -> bool:
+    low, middle, high = np.quantile(amplitude, _QUARTILES)
+    quarter = -(-len(amplitude) // 4)
+    begun, ended = (float(np.median(part)) for part in (amplitude[:quarter], amplitude[-quarter:]))
+    return bool(0.5 * NORMAL * (high - low) <= STEADY * middle and ended >= STAYS * begun)
 
 
 def _explained(output: Spectrum, inputs: Sequence[Spectrum]) -> float:
@@ -153,6 +163,4 @@ def _demodulated(signals: Samples, frequency: float) -> Spectrum:
 def _detrended(signals: Samples) -> Samples:
     """Signals, one (n,) or several (m, n), without their straight lines."""
     n = np.linspace(-1.0, 1.0, signals.shape[-1])
-    return np.asarray(
-        signals - signals.mean(axis=-1, keepdims=True) - (signals @ n / (n @ n))[..., None] * n
-    )
+    return np.asarray(signals - signals.mean(axis=-1, keepdims=True) - (signals @ n / (n @ n))[..., None] * n)
