@@ -296,7 +296,7 @@ class MissingInputView(BaseModel):
 
 
 class OscillationView(BaseModel):
-    """A run that swings by itself while every input rests: Hz and 1/s, or 1/sample."""
+    """A run that swings by itself: Hz and 1/s, or 1/sample."""
 
     run: str
     frequency: float

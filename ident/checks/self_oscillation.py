@@ -16,7 +16,8 @@ from ident.words.message import Message, message
 class SelfOscillation:
     """An oscillation of a run that its inputs do not make: `frequency` in Hz (or 1/sample), `growth` σ in 1/s.
 
-    σ is 0 where the oscillation is steady. `evidence` is what the run shows of it, `cause` what may make it, with the remedy.
+    σ is 0 where the oscillation is steady. `evidence` is what the run shows of it, `cause` what may make it, with the
+    remedy.
     `of_loop`: no source outside the loop can be meant.
     """
 

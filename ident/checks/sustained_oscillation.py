@@ -1,9 +1,12 @@
-"""An oscillation that neither the inputs nor a disturbance of a stable machine makes: it does not die, and is steady.
+"""An oscillation that sustains itself: no input makes it, and no disturbance of a stable machine.
 
-Two facts part it from all else. Its mode has no damping: a linear equation that fits a limit cycle has a pair of poles
-on the stability limit (Gelb and Vander Velde 1968, section 2.3), with a decay of zero by its standard error; what is
-stable forgets how it began, under any command. And its amplitude A(t) is constant or grows, where that of a mode
-which noise drives fluctuates by std(A)/mean(A) = 0.52 (Rice 1944).
+Two facts tell it from all others.
+
+* Its mode has no damping. The linear equation that fits a limit cycle has a pair of poles on the stability limit (Gelb
+  and Vander Velde 1968, section 2.3): its decay is zero within its standard error. A stable machine forgets how it
+  began, whatever its command.
+* Its amplitude A(t) is constant, or grows. That of a mode which noise drives fluctuates: std(A)/mean(A) = 0.52 (Rice
+  1944).
 """
 
 from __future__ import annotations
@@ -24,33 +27,37 @@ from ident.statistics.robust import NORMAL
 
 Spectrum = NDArray[np.complex128]
 LONGEST = 131_072
-"""Largest number of samples that are looked at, the last ones of a record. No answer depends on it, but of a record
-that changes."""
+"""Largest number of samples that are looked at, the last ones of a record: a matter of time alone."""
 PERIODS = 10
-"""Least number of periods of an oscillation: fewer tell no decay."""
+"""Least number of periods of an oscillation: fewer tell no decay. Test: tests/checks/test_sustained_oscillation.py"""
 DAMPING = 0.03
 """Largest damping ratio α/ω of an oscillation that does not die: a loop 3 dB from its stability limit has 0.04 or
-more, an oil column 0.05 (Merritt 1967, section 6.1)."""
+more, an oil column 0.05 (Merritt 1967, section 6.1). Test: as above"""
 ERRORS = 3.0
-"""Standard errors of its decay beyond which an oscillation dies, and beyond which it grows."""
+"""Standard errors of its decay beyond which an oscillation dies, and beyond which it grows. Test: as above"""
 WINDOW = 4
-"""Periods over which an amplitude is a mean: a mode of the machine beside it is left out, and a step is soon over."""
+"""Periods over which an amplitude is a mean: motions of other frequencies are left out, and a step is soon over.
+Test: tests/checks/test_oscillation_at_rest.py"""
 STEADY = 0.2
-"""Deviation of an amplitude over its median, up to which it is constant; noise has 0.5."""
+"""Deviation of an amplitude, by its quartiles, over its median, up to which it is constant: noise has 0.5.
+Test: tests/checks/test_sustained_oscillation.py"""
 STAYS = 0.85
-"""Least amplitude in the last quarter of an oscillation over that in the first: what noise hides of a decay shows."""
+"""Least amplitude in the last quarter of an oscillation over that in the first. Test: as above"""
 GROWS = 0.5
-"""Logarithm of the ratio by which an amplitude grows over the record at least, where it is not constant."""
+"""Logarithm of the ratio by which an amplitude that is not constant grows over the record at least.
+Test: tests/checks/test_oscillation_at_rest.py"""
 EXPLAINED = 0.5
-"""Largest share of an oscillation that the inputs explain."""
+"""Largest share of an oscillation that is proportional to the inputs. Test: tests/checks/test_sustained_oscillation.py"""
 FEWEST = 8
-"""Least number of samples of an amplitude that a piece of a record gives."""
+"""Least number of amplitudes that a piece of a record gives: fewer tell no change. Test: as above"""
 SIZE = 0.01
-"""Least amplitude of an oscillation, over the range of the output: less at rest is of the reading."""
+"""Least amplitude of an oscillation, over the range of the output: less may be the reading's. Test: as above"""
 LITTLE = 0.2
-"""Least amplitude of an oscillation, over √2 deviations of the output: less is a ripple."""
+"""Least amplitude of an oscillation, over √2 deviations of the output: less is a ripple.
+Test: tests/checks/test_self_oscillation.py"""
 MAINS, NEAR = (50.0, 60.0), 0.003
-"""Frequencies (Hz) of the mains, and the relative distance within which an oscillation may be picked up from them."""
+"""Frequencies (Hz) of the mains, and the relative distance within which an oscillation may be picked up from them.
+Test: tests/checks/test_oscillation_at_rest.py"""
 _QUARTILES = (0.25, 0.5, 0.75)
 
 
@@ -108,7 +115,7 @@ def _sustained(pieces: Sequence[Samples], signals: Samples) -> Iterator[Oscillat
         if mode.decay <= min(DAMPING * mode.frequency, ERRORS * mode.error):
             found = _followed(scaled, mode)
             if found is not None and found.amplitude >= least:
-                yield Oscillation(found.frequency, found.growth, found.amplitude * sizes[0, 0])
+                yield Oscillation(found.frequency, found.growth, found.amplitude * float(sizes[0, 0]))
 
 
 def _followed(pieces: Sequence[Samples], mode: Mode) -> Oscillation | None:

@@ -29,7 +29,7 @@ from ident.matrix import Actuator, Matrix
 from ident.workflows import diagnose, identify
 from tests.blind.campaign import add, rows
 from tests.blind.levers import Levers
-from tests.blind.loops import Loop
+from tests.blind.loops import FEWEST, Loop
 from tests.blind.sure import sure
 from tests.blind.various import KINDS, Various, sound
 from tests.blind.various_table import ROWS, rates
@@ -134,6 +134,8 @@ def checked(seed: int) -> Counter[str]:
     for stable in (False, True):
         loop, word = Loop.drawn(seed, stable), "stable" if stable else "oscillates"
         word += " under noise" if loop.command == "noise" else ""
+        if not stable and not loop.oscillates and loop.periods >= FEWEST:
+            counts += Counter({"is put out": 1, "is put out, said": self_oscillation(loop.run("fit")) is not None})
         if stable or loop.oscillates:
             found = self_oscillation(loop.run("fit"))
             near = found is not None and loop.near(found.frequency, found.growth)
