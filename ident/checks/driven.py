@@ -8,15 +8,21 @@ from ident.noise.periodic import line_frequency
 from ident.run import Samples
 
 REPEATED = 0.9
-"""Least correlation of a periodic command with itself a period later."""
-DRIFT = 0.25
+"""Least correlation of a periodic command with itself a period later. Test: as below"""
+NEAR, STEPS = 0.2, 1000
+"""Cycles about a first value within which a line of a command lies, and the parts of that to which it is found.
+Test: as below"""
+HARMONICS = 5
+"""Multiples of a line by which its frequency is found. Test: as below"""
+DRIFT = 0.05
 """Turns by which an oscillation and the nearest multiple of a periodic command part over the record: one that parts by
-less is driven."""
+less is driven. Of 117 sines of orders 2 to 39 the largest was 0.005. Test: tests/checks/test_self_oscillation.py"""
 
 
-def is_multiple(u: Samples, frequency: float) -> bool:
+def is_multiple(command: Samples, frequency: float) -> bool:
     """Whether a command repeats itself and an oscillation (1/sample) is a multiple of its own frequency."""
-    n = len(u)
+    n = len(command)
+    u = command - np.polyval(np.polyfit(np.arange(n), command, 1), np.arange(n))
     products = np.fft.irfft(np.abs(np.fft.rfft(u, 2 * n)) ** 2)[: n // 2] / np.arange(n, n - n // 2, -1)
     if not products[0] > 0:
         return False
@@ -30,8 +36,27 @@ def is_multiple(u: Samples, frequency: float) -> bool:
     period = _summit(alike, int(peaks[-1])) / max(1, round(peaks[-1] / period))  # of many, whose error is less
     highest = 1 + int(np.argmax(np.abs(np.fft.rfft(u * np.hanning(n)))[1:]))
     order = max(1, round(highest * period / n))  # of the strongest line of the command
-    cycles = line_frequency(u, order * n / period) / order
+    cycles = _refined(command, line_frequency(u, order * n / period)) / order
     return bool(abs(frequency * n - round(frequency * n / cycles) * cycles) < DRIFT)
+
+
+def _refined(command: Samples, line: float) -> float:
+    """The frequency of a line of a command, in cycles a record, near to a first value: by least squares."""
+    from scipy.optimize import minimize_scalar  # noqa: PLC0415 - few records need it
+
+    found = minimize_scalar(
+        lambda tried: _left(command, tried), bounds=(line - NEAR, line + NEAR), method="bounded",
+        options={"xatol": NEAR / STEPS},
+    )  # fmt: skip
+    return float(found.x)
+
+
+def _left(command: Samples, line: float) -> float:
+    """The power of a command that a constant, a line and its harmonics leave."""
+    turn = 2.0 * np.pi * line * np.arange(len(command)) / len(command)
+    angles = np.outer(turn, np.arange(1, HARMONICS + 1))
+    table = np.column_stack([np.ones(len(command)), np.cos(angles), np.sin(angles)])
+    return float(np.sum((command - table @ np.linalg.lstsq(table, command, rcond=None)[0]) ** 2))
 
 
 def _summit(of: Samples, at: int) -> float:

@@ -12,7 +12,7 @@ Two facts tell it from all others.
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import scipy.fft  # not scipy.signal, which takes a second of every diagnosis to load
@@ -65,10 +65,12 @@ _QUARTILES = (0.25, 0.5, 0.75)
 class Oscillation:
     """Its `frequency` in turns a sample, `growth` per sample, 0 where it is steady, and `amplitude` at the end.
 
-    The amplitude is in the output's unit.
+    The frequency is the median of the steps of its phase: a step of the command turns it, and soon is over. Their
+    `mean` is more exact where nothing turns it. The amplitude is in the output's unit.
     """
 
     frequency: float
+    mean: float
     growth: float
     amplitude: float
 
@@ -98,7 +100,7 @@ def _is_driven(run: Run, found: Oscillation, level: float) -> bool:
         return True
     if run.output == "velocity" and found.amplitude <= level:
         return True
-    return "command" in run.channels and is_multiple(_detrended(run.command[-LONGEST:]), found.frequency)
+    return "command" in run.channels and is_multiple(run.command[-LONGEST:], found.mean)
 
 
 def _sustained(pieces: Sequence[Samples], signals: Samples) -> Iterator[Oscillation]:
@@ -112,40 +114,47 @@ def _sustained(pieces: Sequence[Samples], signals: Samples) -> Iterator[Oscillat
     scaled = [piece[varying] / sizes[varying] for piece in flat]
     least = max(LITTLE * np.sqrt(2.0), SIZE * np.ptp(signals[0]) / sizes[0, 0])
     for mode in modes(scaled):
-        if mode.decay <= min(DAMPING * mode.frequency, ERRORS * mode.error):
+        if mode.decay <= DAMPING * mode.frequency:
             found = _followed(scaled, mode)
             if found is not None and found.amplitude >= least:
-                yield Oscillation(found.frequency, found.growth, found.amplitude * float(sizes[0, 0]))
+                yield replace(found, amplitude=found.amplitude * float(sizes[0, 0]))
 
 
 def _followed(pieces: Sequence[Samples], mode: Mode) -> Oscillation | None:
     """What turns at about the frequency of a mode, where its amplitude is constant or grows.
 
-    What has grown may be constant in the last half. The frequency is the median of the steps of its phase: a step of
-    the command turns it, and soon is over.
+    What has grown may be constant in the last half.
     """
     period = 2.0 * np.pi / mode.frequency
     turning = [_demodulated(piece, mode.frequency) for piece in pieces if piece.shape[1] > WINDOW * period + FEWEST]
     output, *inputs = np.hstack(turning) if turning else np.zeros((1, 0), np.complex128)
     if len(output) + WINDOW * period * len(turning) < PERIODS * period or _explained(output, inputs) > EXPLAINED:
         return None
+    amplitudes = [np.abs(of[0]) for of in turning]
+    if _dies(amplitudes, mode):
+        return None
     first = len(output) // 2 if mode.decay < 0.0 else 0
-    amplitude = np.abs(output[first:])
-    steady = _is_steady(amplitude)
+    amplitude = np.hstack(amplitudes)[first:]
+    low, middle, high = np.quantile(amplitude, _QUARTILES)
+    steady = 0.5 * NORMAL * (high - low) <= STEADY * middle
     if not steady and -mode.decay < max(ERRORS * mode.error, GROWS / len(output)):
         return None
-    steps = np.hstack([np.angle(of[0, 1:] * of[0, :-1].conj()) for of in turning])
-    turn = mode.frequency + float(np.median(steps[-len(amplitude) :]))
+    steps = np.hstack([np.angle(of[0, 1:] * of[0, :-1].conj()) for of in turning])[-len(amplitude) :]
+    median, mean = ((mode.frequency + float(step)) / (2.0 * np.pi) for step in (np.median(steps), steps.mean()))
     if steady:
-        return Oscillation(turn / (2.0 * np.pi), 0.0, float(np.median(amplitude)))
-    return Oscillation(turn / (2.0 * np.pi), -mode.decay, float(amplitude[-1]))
+        return Oscillation(median, mean, 0.0, float(middle))
+    return Oscillation(median, mean, -mode.decay, float(amplitude[-1]))
 
 
-def _is_steady(amplitude: Samples) -> bool:
-    low, middle, high = np.quantile(amplitude, _QUARTILES)
-    quarter = -(-len(amplitude) // 4)
-    begun, ended = (float(np.median(part)) for part in (amplitude[:quarter], amplitude[-quarter:]))
-    return bool(0.5 * NORMAL * (high - low) <= STEADY * middle and ended >= STAYS * begun)
+def _dies(amplitudes: Sequence[Samples], mode: Mode) -> bool:
+    """Whether an oscillation dies: its amplitudes in pieces of a record fall, or they are too short to show it.
+
+    Noise adds damping to a mode. A decay that would show in the amplitudes, and does not, is of the noise.
+    """
+    quarters = [(of[: -(-len(of) // 4)], of[-(len(of) // 4) - 1 :]) for of in amplitudes]
+    begun, ended = (float(np.median(np.hstack(parts))) for parts in zip(*quarters, strict=True))
+    shows = mode.decay * max(map(len, amplitudes)) > -2.0 * np.log(STAYS)
+    return ended < STAYS * begun or (mode.decay > ERRORS * mode.error and not shows)
 
 
 def _explained(output: Spectrum, inputs: Sequence[Spectrum]) -> float:
