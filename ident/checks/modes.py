@@ -80,7 +80,7 @@ def _pairs(table: Array) -> Iterator[Mode]:
 
 def _solved(table: Array) -> tuple[Array, Array]:
     """The a_i (p,) and their covariance (p, p)."""
-    triangle = np.linalg.qr(table, mode="r")  # of a few rows, as well conditioned as all samples
+    triangle = np.asarray(np.linalg.qr(table, mode="r"))  # of a few rows, as well conditioned as all samples
     left, sizes, right = np.linalg.svd(triangle[:-1, :-1])
     kept = sizes > EPSILON * sizes[0]
     inverse = right.T[:, kept] / sizes[kept]

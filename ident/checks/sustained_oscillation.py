@@ -47,7 +47,8 @@ GROWS = 0.5
 """Logarithm of the ratio by which an amplitude that is not constant grows over the record at least.
 Test: tests/checks/test_oscillation_at_rest.py"""
 EXPLAINED = 0.5
-"""Largest share of an oscillation that is proportional to the inputs. Test: tests/checks/test_sustained_oscillation.py"""
+"""Largest share of an oscillation that is proportional to the inputs.
+Test: tests/checks/test_sustained_oscillation.py"""
 FEWEST = 8
 """Least number of amplitudes that a piece of a record gives: fewer tell no change. Test: as above"""
 SIZE = 0.01
@@ -84,7 +85,7 @@ def sustained_oscillation(run: Run) -> Oscillation | None:
     if run.kind in BENCH or not inputs:
         return None
     signals = np.stack([signal[-LONGEST:] for signal in (run.measured, *inputs)])
-    at_rest = [signals[:1, rest] for rest in rests(signals[1:], round(WINDOW * 2.0 * np.pi / FASTEST))]
+    at_rest = [signals[:1, rest] for rest in rests(list(signals[1:]), round(WINDOW * 2.0 * np.pi / FASTEST))]
     for pieces in (at_rest, [signals]):
         level = max((abs(float(piece[0].mean())) for piece in pieces), default=0.0)
         found = [one for one in _sustained(pieces, signals) if not _is_driven(run, one, level)]
