@@ -132,8 +132,10 @@ def checked(seed: int) -> Counter[str]:
             if said != lacks:
                 print(f"WRONG {word}: {levers}", flush=True)
     for stable in (False, True):
-        loop, word = Loop.drawn(seed, stable), "stable" if stable else "oscillates"
-        word += " under noise" if loop.command == "noise" else ""
+        loop = Loop.drawn(seed, stable)
+        word = "stable" if stable else "oscillates"
+        if loop.command == "noise":
+            word = "stable under noise" if stable else "lasts under noise"
         if not stable and not loop.oscillates and loop.periods >= FEWEST:
             counts += Counter({"is put out": 1, "is put out, said": self_oscillation(loop.run("fit")) is not None})
         if stable or loop.oscillates:
