@@ -10,6 +10,7 @@ import re
 import sys
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import fields
+from functools import cache
 from itertools import pairwise, product
 from pathlib import Path
 from typing import Any
@@ -32,6 +33,7 @@ from ident.presets.signal_table import signal_table
 
 DOCS = Path(__file__).resolve().parent
 SOURCES = ("ident", "app", "schemas")
+REFUSES = re.compile(r"\b(Unusable|Removed|Failure|problem)\(")
 PASSED_ON = {("`…`", "422", "…", "…")}  # what a client says in the words of the service
 NOTE = "<!-- written by docs/generate.py -->"
 
@@ -44,9 +46,15 @@ def pages() -> dict[str, str]:
     }  # fmt: skip
 
 
+@cache
+def openapi() -> dict[str, Any]:
+    """The OpenAPI document of the service, of which two pages are written."""
+    return routed().openapi()
+
+
 def document() -> str:
-    """The OpenAPI document of the service."""
-    return json.dumps(routed().openapi(), indent=1, ensure_ascii=False) + "\n"
+    """The OpenAPI document of the service as text."""
+    return json.dumps(openapi(), indent=1, ensure_ascii=False) + "\n"
 
 
 HTTP_HEAD = (
@@ -59,7 +67,7 @@ HTTP_HEAD = (
 
 def over_http() -> str:
     """Every operation of the service, with what it takes beside its path."""
-    found = routed().openapi()
+    found = openapi()
     lines = ["# The service over HTTP", NOTE, "", *HTTP_HEAD, ""]
     rows: dict[str, list[tuple[str, str, str]]] = {}
     for path, operations in found["paths"].items():
@@ -350,7 +358,10 @@ def source_files(folder: str) -> Iterator[Path]:
 
 def codes(file: Path) -> Iterator[tuple[str, str, str, str]]:
     """Code, HTTP status, what and remedy of every refusal in a file."""
-    tree = ast.parse(file.read_text(encoding="utf-8"))
+    source = file.read_text(encoding="utf-8")
+    if not REFUSES.search(source):
+        return
+    tree = ast.parse(source)
     for node, assigned in calls(tree, {}):
         match node:
             case ast.Call(ast.Name("Unusable"), [code, what, _, remedy]):

@@ -14,7 +14,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.running import command, free_port, nursery
+from tests.running import LITTLE, command, free_port, nursery
 
 ROOT = Path(__file__).resolve().parents[1]
 SLOW = {"compare", "diagnose", "report"}
@@ -54,7 +54,7 @@ STAND_IN = """servoident() {
 
 @contextmanager
 def standing_in(folder: Path, environment: dict[str, str]) -> Iterator[dict[str, str]]:
-    """The environment of a shell in which the function above is answered."""
+    """The environment of a shell in which the function above is answered, by fits that search shortly."""
     asked, ended = folder / "asked", folder / "ended"
     for pipe in (asked, ended):
         os.mkfifo(pipe)
@@ -64,7 +64,9 @@ def standing_in(folder: Path, environment: dict[str, str]) -> Iterator[dict[str,
             said, errors = folder / "said", folder / "errors"
             for text in (said, errors):
                 text.write_text("")
-            number = nursery().start(said, *given.split("\0")[:-1], stderr=errors, environment=environment)
+            name, *arguments = given.split("\0")[:-1]
+            first = LITTLE if name == "fit" else ""
+            number = nursery().start(said, name, *arguments, first=first, stderr=errors, environment=environment)
             ended.write_text(f"{nursery().ended(number)}\n")
 
     answering = threading.Thread(target=answer, daemon=True)
@@ -79,7 +81,7 @@ def test_the_lines_run_as_they_stand_in_one_terminal(
 ) -> None:
     """In their order, in one shell that stops at the first failure; the last ones reach the demo by themselves.
 
-    In the short form no line starts an interpreter.
+    In the short form no line starts an interpreter, and a fit searches shortly.
     """
     (tmp_path / ".venv").symlink_to(sys.prefix)
     (tmp_path / "pipes").mkdir()

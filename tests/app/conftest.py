@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+import hashlib
 import io
+import pickle
 import sqlite3
 import zipfile
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import closing
+from dataclasses import fields
 from functools import lru_cache
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -20,6 +24,12 @@ from sqlalchemy import make_url
 from app import database
 from app.main import create_app
 from app.settings import Settings
+from ident.checks import check as checks
+from ident.checks.check import one_run
+from ident.checks.delay import delay
+from ident.checks.response import Response
+from ident.matrix import Actuator
+from ident.run import Run
 from tests.conftest import short_searches
 from tests.reference import qian_reference as reference
 from tests.running import TOKEN
@@ -110,6 +120,27 @@ def _empty_databases(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]
 
     with pytest.MonkeyPatch.context() as own:
         own.setattr(command, "upgrade", copied)
+        yield
+
+
+@pytest.fixture(scope="package", autouse=True)
+def _checked_once() -> Iterator[None]:
+    """What the check says of one run is worked out once: many services are sent the same runs."""
+    known: dict[str, Any] = {}
+
+    def once(function: Callable[..., Any]) -> Callable[..., Any]:
+        def answered(run: Run, response: Response | None, *of: Actuator) -> Any:
+            values = [getattr(run, field.name) for field in fields(run)]
+            key = hashlib.sha256(pickle.dumps((function.__name__, values, of))).hexdigest()
+            if key not in known:
+                known[key] = function(run, response, *of)
+            return known[key]
+
+        return answered
+
+    with pytest.MonkeyPatch.context() as own:
+        own.setattr(checks, "one_run", once(lambda *given: tuple(one_run(*given))))
+        own.setattr("ident.checks.delay.delay", once(delay))
         yield
 
 

@@ -64,6 +64,15 @@ def test_nobody_changes_the_audit(servoident, database, tmp_path, change):
     assert "new_token" in servoident("audit", *named).stdout
 
 
+def beside(database: str, name: str) -> str:
+    """The URL of a new database of the same server."""
+    engine = connect(database)
+    with engine.connect().execution_options(isolation_level="AUTOCOMMIT") as connection:
+        connection.exec_driver_sql(f"CREATE DATABASE {name}")
+    engine.dispose()
+    return f"{database.rpartition('/')[0]}/{name}"
+
+
 def nothing_left(database: str) -> bool:
     """Whether the queue has, a moment after the last job, removed what it kept of each."""
     engine, deadline = connect(database), time.monotonic() + 30
@@ -109,11 +118,10 @@ def test_a_service_and_a_worker_share_the_queue(servoident, database, few, tmp_p
         moved = servoident(*moving)
         assert moved.returncode == 0, moved.stderr
     assert records(again) == records(tmp_path / "all")
-    with postgresql() as other:
-        back = ("--database", other.url, "--data", tmp_path / "back")
-        assert servoident("restore", again, *back).returncode == 0
-        assert servoident("backup", tmp_path / "third", *back).returncode == 0
-        assert records(tmp_path / "third") == records(again)
+    back = ("--database", beside(database, "back"), "--data", tmp_path / "back")
+    assert servoident("restore", again, *back).returncode == 0
+    assert servoident("backup", tmp_path / "third", *back).returncode == 0
+    assert records(tmp_path / "third") == records(again)
     done = servoident("regress", *place)
     assert done.returncode == 0, done.stdout + done.stderr
 
