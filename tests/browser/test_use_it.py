@@ -12,19 +12,26 @@ from playwright.sync_api import Page, expect
 from tests.app.conftest import zipped
 from tests.browser import story
 from tests.browser.looks import PHONE, barriers, everywhere, on_a_phone
+from tests.short_form import short_form
 
 SERIAL = "SW-USE"
 
 
-def test_the_story_from_upload_to_the_files_of_a_rig(page, site, tmp_path, screenshots, full):
-    """A record of one second is simulated under the controller that was designed, and follows its reference."""
-    archive = tmp_path / "matrix.zip"
-    archive.write_bytes(zipped(SERIAL))
-    page.goto(f"{site.address}/?token={site.token}")
-    story.upload(page, site, archive)
-    story.fit(page)
+def test_the_story_from_upload_to_the_files_of_a_rig(page, site, fitted, tmp_path, screenshots, full):
+    """A record of one second is simulated under the controller that was designed, and follows its reference.
+
+    In the short form it begins with a fit that is there.
+    """
+    if full:
+        archive = tmp_path / "matrix.zip"
+        archive.write_bytes(zipped(SERIAL))
+        page.goto(f"{site.address}/?token={site.token}")
+        story.upload(page, site, archive)
+        story.fit(page)
+    else:
+        page.goto(f"{site.address}/fits/{fitted}")
     page.get_by_role("link", name="Use it").click()
-    expect(page.locator("h1")).to_contain_text(f"Use {SERIAL}: ")
+    expect(page.locator("h1")).to_contain_text(f"Use {SERIAL if full else 'SW/1 <b>'}: ")
     a_controller_is_designed(page)
     its_files_are_downloaded(page, tmp_path)
     a_record_is_simulated_under_it(page, tmp_path)
@@ -75,11 +82,11 @@ def a_record_is_simulated_under_it(page: Page, folder: Path) -> None:
 
 
 def every_figure_is_downloaded(page: Page, full: bool) -> None:
-    """As SVG, in the full form as PNG and PDF too, by the first bytes of each; in the theme of the page."""
+    """In the theme of the page, by its first bytes; in the short form one as SVG, else all, as PNG and PDF too."""
     begin = {"svg": b"<svg", "png": b"\x89PNG", "pdf": b"%PDF"}
     figures = page.locator(".figure")
     assert figures.count() == 3
-    for place in range(figures.count()):
+    for place in range(figures.count() if full else 1):
         for kind, first in begin.items() if full else [("svg", begin["svg"])]:
             link = figures.nth(place).locator(f"a[data-format={kind}]")
             answer = page.request.get(f"{page.url.split('/fits')[0]}{link.get_attribute('href')}")
@@ -118,11 +125,14 @@ def test_a_run_is_followed(page, site, fitted):
 
 @pytest.mark.parametrize(
     ("query", "said"),
-    [
+    short_form(
+        [
+            ("ask=what-if&area=239", "unit"),
+            ("ask=what-if&stroke=4%20in", "stroke"),
+            ("ask=tracking&run=none", "no run"),
+        ],
         ("ask=what-if&area=239", "unit"),
-        ("ask=what-if&stroke=4%20in", "stroke"),
-        ("ask=tracking&run=none", "no run"),
-    ],
+    ),
 )
 def test_what_cannot_be_answered_is_said_in_its_section(query, said, page, site, watch, fitted):
     """With the field still as it was written."""
