@@ -26,11 +26,6 @@ def test_the_face_says_what_it_has():
     assert dir(ident) == sorted(ident.__all__)
 
 
-def test_nothing_is_imported_before_it_is_used():
-    code = "import ident, sys; assert 'numpy' not in sys.modules; ident.identify; assert 'numpy' in sys.modules"
-    subprocess.run([sys.executable, "-c", code], check=True, cwd=ROOT)
-
-
 def test_a_notebook_may_still_call_the_makers_of_a_matrix_by_the_class():
     """As earlier versions had it; the class itself knows no reader, the face puts both together."""
     t = np.arange(64.0)
@@ -43,6 +38,7 @@ def test_a_notebook_may_still_call_the_makers_of_a_matrix_by_the_class():
 
 READ = """
 import sys, ident
+assert "numpy" not in sys.modules  # nothing is imported before it is used
 matrix = ident.read_matrix("run.csv", units={"command": "mm", "force": "kN"}, sample_rate="1 kHz", output="force")
 assert matrix.runs[0].units == {"command": "m", "force": "N"}
 heavy = {"altair", "h5py", "pint", "fastapi", "sqlalchemy", "scipy", "numba", "pandas"} & set(sys.modules)
@@ -52,7 +48,7 @@ assert "altair" not in sys.modules
 """
 
 
-def test_a_record_is_read_without_what_only_figures_and_the_service_need(tmp_path):
+def test_nothing_is_imported_before_it_is_used_and_a_record_is_read_without_figures_and_service(tmp_path):
     """Also not the library of units: a notebook has its data before its user looks up."""
     (tmp_path / "run.csv").write_text("command,force\n" + "".join(f"{n % 7},{n % 5}\n" for n in range(64)))
     subprocess.run([sys.executable, "-c", READ], check=True, cwd=tmp_path, env={**os.environ, "PYTHONPATH": str(ROOT)})

@@ -86,6 +86,7 @@ def test_three_files_of_three_kinds_become_a_fit_in_twelve_actions(page, site, f
     }
 
 
+@pytest.mark.full
 def test_another_dialect_is_previewed_and_what_was_said_of_other_files_stays(page, site, files):
     """A menu changes what the service reads; a delimiter that no line has shows the lines and the problem."""
     page.goto(f"{site.address}/upload")

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import os
 import signal
-import subprocess
-import sys
+import time
 
 import pytest
+
+from tests.nursery import WAIT
+from tests.running import Forked
 
 ONE_LINE = [
     (["fit"], "missing argument 'MATRIX'; type servoident fit MATRIX"),
@@ -62,18 +65,22 @@ def test_unusable_input_is_one_line_and_exit_2(servoident, matrix, arguments, na
 
 def test_ctrl_c_is_one_line_and_130(few, tmp_path):
     """An interrupted fit says so and writes nothing."""
-    command = [sys.executable, "-m", "app.cli", "fit", str(few), "--json", str(tmp_path / "fit.json"), "--method"]
-    process = subprocess.Popen([*command, "differential-evolution"], stderr=subprocess.PIPE, text=True)
-    assert process.stderr is not None
-    heard = process.stderr.readline()
-    while "compiling" in heard:  # once on a machine; behind the first line of progress the work is under way
-        heard = process.stderr.readline()
+    errors, fit = tmp_path / "errors", tmp_path / "fit.json"
+    asked = ("fit", few, "--json", fit, "--method", "differential-evolution")
+    process = Forked(asked, os.environ, errors)
+
+    def heard() -> list[str]:
+        return [line for line in errors.read_text(encoding="utf-8").splitlines() if "compiling" not in line]
+
+    deadline = time.monotonic() + WAIT
+    while not heard() and time.monotonic() < deadline:  # behind the first line of progress the work is under way
+        time.sleep(0.02)
     process.send_signal(signal.SIGINT)
-    rest = process.stderr.read()
-    assert process.wait() == 130, heard + rest
-    assert rest.splitlines()[-1] == "servoident: interrupted; nothing was written"
-    assert "Traceback" not in rest
-    assert not (tmp_path / "fit.json").exists()
+    assert process.wait() == 130, heard()
+    assert heard()[-1] == "servoident: interrupted; nothing was written"
+    assert "Traceback" not in errors.read_text(encoding="utf-8")
+    assert not fit.exists()
+    process.kill()
 
 
 def test_a_defect_is_one_line_that_says_where_the_details_are(monkeypatch, capsys, tmp_path):
