@@ -61,7 +61,7 @@ def _kernel(pattern: Pattern) -> Callable[..., Any]:
 
 _SOURCE = """from numba import njit
 
-@njit(cache=True, fastmath=True, nogil=True, no_cfunc_wrapper=True)
+@njit(cache=True, fastmath=True, nogil=True)
 def transfer(x, w, unit, p, out, first, batch, stride):
     for v in range(batch):
         {recursion}

@@ -35,10 +35,10 @@ VERSIONS = (numba.__version__, llvmlite.__version__, np.__version__, sys.version
 
 
 def jit(**options: Any) -> Callable[[Function], Function]:
-    """As ``numba.njit(**options)``; compiled once for all processes of this user, and not a second time for C."""
+    """As ``numba.njit(**options)``; compiled once for all processes of this user."""
 
     def decorated(function: Function) -> Function:
-        made: Function = shared(numba.njit(no_cfunc_wrapper=True, **options)(function))
+        made: Function = shared(numba.njit(**options)(function))
         return made
 
     return decorated

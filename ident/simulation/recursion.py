@@ -110,7 +110,7 @@ def advance(order: int, inputs: int = 2, lanes: int = LANES) -> Callable[..., An
 
 _RECURSION = """from numba import njit
 
-@njit(cache=True, fastmath={{"contract"}}, nogil=True, no_cfunc_wrapper=True)
+@njit(cache=True, fastmath={{"contract"}}, nogil=True)
 def recursion(b, u, first, last, out, stride):
     for k in range(first, last):
 {read}
