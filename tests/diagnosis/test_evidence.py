@@ -17,7 +17,7 @@ from ident.diagnosis.evidence.disturbance import Disturbance
 from ident.diagnosis.evidence.energy_bands import EnergyBands, Record
 from ident.diagnosis.evidence.evidence import SPANS, BlockMean, Evidence
 from ident.diagnosis.evidence.probability import NOTHING, SetGains, probabilities, structure_probabilities
-from ident.diagnosis.evidence.rule import generalises, improves_on_the_whole, matters, worth_adding
+from ident.diagnosis.evidence.rule import generalises, improves_on_the_whole, worth_adding
 from ident.diagnosis.evidence.separation import both_probable, dominated, indistinguishable
 
 Array = NDArray[np.float64]
@@ -231,36 +231,6 @@ def test_a_gain_of_less_than_a_hundredth_of_the_explainable_power_does_not_impro
         evidence = compared([before], [after], [Record(1.0, period=87.3)])
         assert evidence.difference.above(0.0, EVIDENCE_CRITERIA)
         assert improves_on_the_whole(evidence, lambda: 0.0) is expected
-
-
-@pytest.mark.parametrize("period", [200, 400])
-def test_an_effect_matters_below_a_drift_that_scatters_the_difference_of_the_powers(period: int) -> None:
-    """A narrow band of 8 % of the output and a random walk of 30 %: by the difference fewer than half are seen."""
-    seen = {"by the power": 0, "by the loss": 0}
-    for seed in range(12):
-        rng = np.random.default_rng(seed)
-        walk = np.cumsum(rng.standard_normal(8000))
-        drift = 0.3 * (walk - walk.mean()) / walk.std() + white(rng, 8000)
-        narrow = lfilter([1.0], [1.0, -1.98 * np.cos(2 * np.pi / period), 0.9801], rng.standard_normal(8000))
-        found = compared([drift + 0.08 * narrow / narrow.std()], [drift], [Record(1.0)])
-        unweighted = replace(found, weighted_share=BlockMean(0.0, 0.0, 12))
-        seen["by the power"] += matters(unweighted)
-        seen["by the loss"] += matters(found)
-    assert seen["by the power"] < 7
-    assert seen["by the loss"] > 9
-
-
-def test_a_weight_of_one_changes_no_residual_and_the_weighted_floor_is_that_of_noise() -> None:
-    """In bands of an octave and in harmonics; the noise is what is left."""
-    rng = np.random.default_rng(5)
-    for record in (Record(1.0, floor=1e-4), Record(1.0, period=40.0, floor=1e-4)):
-        noise, more = 0.01 * rng.standard_normal(4000), 0.1 * np.sin(2 * np.pi * np.arange(4000) / 40.0)
-        bands = EnergyBands((record,), (4000,))
-        (run,) = bands.runs
-        assert run.weighted(more + noise, np.ones(bands.size)) == pytest.approx(more + noise, abs=1e-12)
-        found = common(bands, [[more + noise], [noise]])
-        (weighted,) = found.weighted([noise])
-        assert np.mean(weighted**2) == pytest.approx(found.weighted_floors[0], rel=0.2)
 
 
 def test_an_effect_that_moves_the_means_of_the_runs_alone_matters() -> None:
