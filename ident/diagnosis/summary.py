@@ -61,8 +61,10 @@ def _missing(diagnosis: Diagnosis) -> Message:
 
 
 def _fails_on_validation_data(diagnosis: Diagnosis) -> bool:
-    """Whether the model without any named effect has far more than noise on validation data alone."""
-    steps = diagnosis.confirmed_ladder or (diagnosis.baseline,)
+    """Whether the model has far more than noise on validation data, where nothing is missing by estimation data."""
+    verdict, steps = diagnosis.verdict, diagnosis.confirmed_ladder or (diagnosis.baseline,)
+    if verdict.effects or (verdict.unexplained and not is_rather_noise(verdict.probabilities)):
+        return False
     return noise_on_validation_data(steps[-1].error, diagnosis.noise_floor) is not None
 
 
@@ -193,16 +195,15 @@ def next_step(diagnosis: Diagnosis) -> Message:
         return message("next.then", then=_then(diagnosis))
     if verdict.indistinguishable and diagnosis.next_experiment is not None:
         return message("next.distinguish", group=verdict.indistinguishable[0])
+    if not verdict.effects and (verdict.unconfirmed or _fails_on_validation_data(diagnosis)):
+        return message("next.validation")
     if verdict.unexplained and diagnosis.max_effects and len(verdict.effects) >= diagnosis.max_effects:
         return message("next.more", most=2 * diagnosis.max_effects)
     if verdict.unexplained and verdict.effects:
         return message("next.add_and", effects=verdict.effects, then=_then(diagnosis))
     if verdict.unexplained:
         return message("next.then", then=_then(diagnosis))
-    if verdict.effects:
-        return message("next.add", effects=verdict.effects)
-    doubted = verdict.unconfirmed or _fails_on_validation_data(diagnosis)
-    return message("next.validation" if doubted else "next.use")
+    return message("next.add", effects=verdict.effects) if verdict.effects else message("next.use")
 
 
 def _correct(suspect: Suspect, effects: Sequence[str]) -> Message:

@@ -125,7 +125,7 @@ def test_nothing_is_not_the_headline_of_a_model_that_fails_on_validation_data_al
     )
     assert found.summary[2].startswith("Next: compare the conditions of the validation runs with those of the")
     above = replace(found, verdict=replace(verdict, unexplained=True))
-    assert above.summary[0] == found.summary[0]
+    assert (above.summary[0], above.summary[2]) == (found.summary[0], found.summary[2])
     unlisted = replace(above, verdict=replace(above.verdict, probabilities={"unlisted": 0.9}))
     assert unlisted.summary[0].startswith("Missing: something that no effect in the library explains")
 
