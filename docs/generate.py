@@ -269,7 +269,8 @@ def why_this_verdict() -> list[str]:
     reasons = (
         ("`unexplained`", f"""a floor is known: `error` is not below `limit` = ({limits.floor_margin:g} +
           {noise.floor_deviations:g} × relative deviation of the floor) × `floor`; of a bench
-          {1 + noise.bench_excess:g} is in the place of {limits.floor_margin:g}""",
+          {1 + noise.bench_excess:g} is in the place of {limits.floor_margin:g}. Where no command was repeated and the
+          error is at most {noise.colour:g} times the floor, `predicted` has to be above `predicted_limit`, too""",
          "`noise_test`", "look at `proposals` and at the figure `residual-curve`"),
         ("`unexplained`", f"""no floor is known: the `correlation` of neighbouring residuals is above
           `limit` = {noise.noise_correlation:g}""", "`noise_test`", "record one run twice: that gives a floor"),
@@ -305,10 +306,12 @@ def why_this_verdict() -> list[str]:
         "**Why contradicted?** With each effect of `contradicted_by` the error on validation data rises by more than",
         f"{deviations:g} of its standard errors, from the stable rung of `ladder` before to its own, or the model is",
         "unstable there. `contradictions` has the numbers of each: the errors `before` and `after`, and the rise in",
-        "standard errors (`deviations`). Where the mean counts the errors `with_mean` are those that rise. Over",
-        "windows the error of the `free_run` may rise in place of the error over windows, where these do not confirm",
-        "the effect. It would be *found* if no error rose so, no reason of a `stand_in` held (see `noise_test`,",
-        "`at_bound`, `stood_in`), and validation data showed something of the last effect (`unconfirmed`).",
+        "standard errors (`deviations`), and the runs on which the model is `unstable`. Where the mean counts the",
+        "errors `with_mean` are those that rise. Over windows the error of the `free_run` may rise in place of the error",
+        "over windows, where these do not confirm the effect. One such effect makes the whole standing *contradicted*, and",
+        "`because` is empty then. It would be *found* if no error rose so and no reason of a `stand_in` held (see",
+        "`noise_test`, `at_bound`, `stood_in`). A last effect of which validation data then show nothing is not named",
+        "(`unconfirmed`).",
         "",
         "**Why one group?** `alternatives` has a row for each other effect of a group in the place of the named one.",
         "All four numbers of its `separation` are within their limits:",
@@ -324,7 +327,8 @@ def why_this_verdict() -> list[str]:
         "",
         "**Why no group?** An effect may be nearly as probable and yet in no group: a probability follows from gains,",
         "the first of the four numbers, alone. Another number is beyond its limit: `competing` has the four numbers",
-        "of each effect that is as probable by its gain, in the place of a named one. Or another effect dominates it.",
+        "of each effect that is as probable by its gain, in the place of a named one. Where all four are within their",
+        "limits another effect dominates it.",
         "And `probabilities` sum all sets with an effect: it may act together with the named one, not in its place",
         "(`effect_sets` has each set with its gain). An effect that was not refitted there is in no group, either.",
         "A group around an effect of `stood_in`, `unconfirmed` or `by_chance` is not said.",
