@@ -72,9 +72,8 @@ def bar(
 
 
 def _weights(disturbance: Disturbance) -> Array:
-    """c_b / S_b; 1 for a band without energy."""
-    there = disturbance.energy > 0
-    return np.where(there, disturbance.counted / np.where(there, disturbance.energy, 1.0), 1.0)
+    """The weights of the loss; 1 for a band without energy, which is divided by them."""
+    return np.where(disturbance.energy > 0, disturbance.weights, 1.0)
 
 
 def _real(parts: Complex) -> Array:

@@ -39,7 +39,6 @@ from ident.diagnosis.evidence.energy_bands import EnergyBands, Record
 from ident.diagnosis.evidence.evidence import SPANS, BlockMean, Evidence
 from ident.noise.autoregression import prediction_errors
 from ident.noise.effective_sample_size import independent_samples
-from ident.rounding import TINY
 
 Array = NDArray[np.float64]
 
@@ -196,8 +195,7 @@ def _without(disturbance: Disturbance, before: Array, after: Array) -> float:
     few."""
     if len(before) < disturbance.bands.criteria.whole_runs:
         return disturbance.gain(before.sum(axis=0), after.sum(axis=0))
-    weights = np.where(disturbance.energy > 0, disturbance.counted / np.maximum(disturbance.energy, TINY), 0.0)
-    best = int(np.argmax((before - after) @ weights))
+    best = int(np.argmax((before - after) @ disturbance.weights))
     others = np.arange(len(before)) != best
     return disturbance.without(best).gain(before[others].sum(axis=0), after[others].sum(axis=0))
 
