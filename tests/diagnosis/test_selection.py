@@ -9,10 +9,11 @@ from typing import Any
 
 import pytest
 
-from ident.diagnosis import ambiguity, candidate, moves, refitted_sets
+from ident.diagnosis import ambiguity, candidate, moves, refitted_sets, selection_loop
 from ident.diagnosis.moves import Moves
 from ident.diagnosis.selection import Selection
 from ident.diagnosis.selection_loop import add_and_exchange, select
+from ident.errors import TimeIsUp
 
 
 class Refit(SimpleNamespace):
@@ -430,3 +431,22 @@ def test_a_model_that_was_fitted_before_is_taken_where_it_improves_on_the_best_o
     search: Any = SimpleNamespace(models=None, start=start, step=lambda _selection, fitted: fitted)
     selection: Any = SimpleNamespace(fitted=SimpleNamespace(error=5.0))
     assert Moves._from_start(search, selection, best) is (start if is_taken else None)
+
+
+def test_a_selected_set_is_extended_by_strong_effects_before_other_sets_are_looked_at(monkeypatch):
+    """Else another set that is extended first takes the place of a better one."""
+    called: list[str] = []
+    begun = SimpleNamespace(changes=0)
+    monkeypatch.setattr(selection_loop, "add_and_exchange", lambda _moves, selection: selection)
+
+    def over(_selection: Any) -> None:
+        raise TimeIsUp
+
+    farther = ("exchange_pass", "joint_refit", "strong_starts", "runner_up", "pair_search")
+    found = SimpleNamespace(
+        above_floor=lambda _: True, may_lack_width=over, latest=begun, with_what_was_met=lambda latest: latest,
+        **{name: lambda _, name=name: called.append(name) for name in farther},
+    )  # fmt: skip
+    assert select(found, begun) is begun  # type: ignore[arg-type]
+    assert called.index("strong_starts") < called.index("runner_up")
+    assert sorted(called) == sorted(farther)
