@@ -294,7 +294,7 @@ def why_this_verdict() -> list[str]:
     )  # fmt: skip
     return [
         "The fields are those of `verdict` in the JSON, over HTTP and in Python; `ladder`, `candidates`, `complete`,",
-        "`not_looked_at`, `proposals`, `effect_sets` and `next_experiment` stand beside it, in the diagnosis.",
+        "`not_looked_at`, `proposals`, `effect_sets` and `next_experiment` are fields of the diagnosis itself.",
         "",
         "**Why `stand_in`?** `because` has the reasons. It is empty in every other standing. Without such a reason,",
         "and without a contradicted effect, the standing is *found*.",

@@ -17,9 +17,7 @@ PLATEAUS = 3  # peaks that end at the very same value
 STEP = 0.2  # of the usual step: a cut signal arrives at speed, one that comes to rest arrives slowly
 RESOLUTIONS = 3.0  # a rounded peak is left by one step of the resolution, a cut one by more
 NEAR = 2e-3  # of the range; in noise the fifth highest peak lies ten times deeper
-ON_ITS_WAY = (
-    3  # steps before a plateau in which what is cut off moved; a jump takes two where an uneven clock was evened
-)
+ON_ITS_WAY = 3  # steps before a plateau in which a cut signal moved; a jump on a clock that was evened takes two
 BETWEEN = 0.05  # of the range
 PEAKS = 5
 AT_REST = 0.4  # of the samples: a signal of levels, not a cut one

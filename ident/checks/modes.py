@@ -21,7 +21,8 @@ from ident.rounding import EPSILON
 
 Array = NDArray[np.float64]
 ORDER = 6
-"""Order p of the equation: an oscillation, a slower and a quicker motion beside it. Test: tests/checks/test_modes.py"""
+"""Order p of the equation: an oscillation, and a slower and a quicker motion at once.
+Test: tests/checks/test_modes.py"""
 ROWS = 4
 """Samples of the equation for each of its numbers at least. Test: as above"""
 SLOWEST, FASTEST = 0.45, 1.2

@@ -53,7 +53,7 @@ def test_an_effect_matters_below_a_drift_that_scatters_the_difference_of_the_pow
 
 
 def test_a_weight_of_one_changes_no_residual_and_the_weighted_floor_is_that_of_noise() -> None:
-    """In bands of an octave and in harmonics; the noise is what is left."""
+    """In bands of an octave and in harmonics; the second model leaves the noise alone."""
     rng = np.random.default_rng(5)
     for record in (Record(1.0, floor=1e-4), Record(1.0, period=40.0, floor=1e-4)):
         noise, more = 0.01 * rng.standard_normal(4000), 0.1 * np.sin(2 * np.pi * np.arange(4000) / 40.0)
