@@ -123,7 +123,7 @@ class Draft:
     def _hold(self, file: RawFile, channels: Mapping[str, Answer]) -> str:
         """What the command does between samples, by the look of it."""
         drive = next((channels[name].column for name in _DRIVES if name in channels), None)
-        held = drive is not None and moves_in_steps(file.samples(drive))
+        held = drive is not None and moves_in_steps(file.values(drive))
         return "zoh" if held else "linear"
 
     @property
@@ -211,7 +211,7 @@ class Draft:
         """Whether reading will take the commands, of which none is held, to be band-limited."""
         drives = [(file, one.channels["command"]) for file, one in zip(self.files, known, strict=True)
                   if "command" in one.channels]  # fmt: skip
-        return are_band_limited([file.samples(answer.column) for file, answer in drives])
+        return are_band_limited([file.values(answer.column) for file, answer in drives])
 
     def description(self) -> dict[str, Any]:
         """What matrix.yaml says. Raises Unusable ``not-stated`` with everything that is missing."""
@@ -268,7 +268,7 @@ class Draft:
         taken = {number for answer in answers for number in file.table.numbers(answer.column, file.name)}
         left = [column for column in file.columns if column.number not in taken]
         timed = known.time.column != "" or known.rate
-        times = {one: file.samples(one.number) for one in left} if not timed else {}
+        times = {one: file.values(one.number) for one in left} if not timed else {}
         increasing = {one: samples for one, samples in times.items() if (np.diff(samples) > 0).all()}
         clock = min(increasing, key=lambda one: abs(increasing[one][0]) / np.ptp(increasing[one]), default=None)
         return clock, [one for one in left if one is not clock]

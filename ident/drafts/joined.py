@@ -103,7 +103,8 @@ def _on_one_clock(
     for file, time in zip(files, clocks, strict=True):
         for column in _signals(file):
             samples = file.samples(column.number)
-            on_clock = evened(time, samples, rate, moves_in_steps(samples), file.name, begin)
+            known = ~np.isnan(samples)
+            on_clock = evened(time[known], samples[known], rate, moves_in_steps(samples[known]), file.name, begin)
             columns[_called(column, file, files, stems)] = on_clock[:count]
     least = min(map(len, columns.values()))
     per = "Hz" if unit == "s" else f"samples per {unit or 'unit of time'}"

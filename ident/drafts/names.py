@@ -41,6 +41,6 @@ def unnamed_clock(file: RawFile) -> Column | None:
     first = file.columns[0] if file.columns else None
     if first is None or first.number or first.name.strip() or len(file.columns) < 2:
         return None
-    steps = np.diff(file.samples(first.number))
+    steps = np.diff(file.values(first.number))
     even = bool((steps > 0).all()) and bool(np.ptp(steps) < _EVEN * steps.mean())
     return first if even and not np.isclose(steps.mean(), 1.0) else None

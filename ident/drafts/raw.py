@@ -37,6 +37,8 @@ _RATE = re.compile(
 )
 _STEP = re.compile(_SAMPLING + r"(?:time|interval\w*|period\w*|zeit)?" + _NUMBER + r"([A-Za-zµ]*)\W{0,9}$", re.I)
 _KIND = re.compile(r"rate|frequen|fr[ée]quen|time|interval|period|zeit", re.I)
+_FEWEST = 0.01
+"""Of the rows: in so many a column has a value at least. One that has fewer marks events."""
 _LONGEST_ENTRY = 200  # characters of a line that states a rate
 
 
@@ -84,7 +86,7 @@ class RawFile:
 
     @cached_property
     def columns(self) -> tuple[Column, ...]:
-        """Every column that holds numbers from its first sample to its last."""
+        """Every column that holds numbers, of which some may be missing."""
         named = enumerate(zip(self.table.names, self._meanings, strict=True))
         return tuple(Column(n, name, self._unit(n), meaning) for n, (name, meaning) in named if self._fine[n])
 
@@ -96,7 +98,7 @@ class RawFile:
     def _fine(self) -> list[bool]:
         """Of each column, whether it holds numbers: all are read at once, one by one where one of them holds none."""
         try:
-            return [_is_finite(samples) for samples in self.table.load(range(len(self.table.names)))]
+            return [_has_values(samples) for samples in self.table.load(range(len(self.table.names)))]
         except Unusable:
             return [self._holds_numbers(number) for number in range(len(self.table.names))]
 
@@ -148,7 +150,7 @@ class RawFile:
         """The unit of a time that runs in steps of the interval that the heading states."""
         if self.period is None or not self._fine[number]:
             return ""
-        step = float(np.median(np.diff(self.samples(number))))
+        step = float(np.median(np.diff(self.values(number))))
         return (self.period[1] or "s") if np.isclose(step, self.period[0], rtol=1e-3) else ""
 
     @cached_property
@@ -170,6 +172,11 @@ class RawFile:
         joins = [f"{self.name} is joined {one.removeprefix(JOINED)}" for one in lines if one.startswith(JOINED)]
         return tuple(filter(None, (*joins, *self.table.notices, assumed, *self.named_units, *self.left_out)))
 
+    def values(self, column: str | int) -> Samples:
+        """The samples of a column without those that have no value. Raises Unusable."""
+        samples = self.samples(column)
+        return samples[~np.isnan(samples)]
+
     def _has_stated(self, number: int) -> bool:
         stated = self.table.units[number] if number < len(self.table.units) else ""
         return is_unit(stated) or is_unit(bracketed(self.table.names[number])[1])
@@ -189,20 +196,24 @@ class RawFile:
                 return f"{refused.what}; {refused.remedy}"
             words = refused.code != "not-numeric" or number not in self.table.mostly
             return "" if words else refused.what
-        bad = np.flatnonzero(~np.isfinite(samples))
+        bad = np.flatnonzero(np.isinf(samples))
         if not len(bad) or len(bad) > len(samples) // 2:
             return ""
         return f"sample {bad[0]} is {samples[bad[0]]}"
 
     def _holds_numbers(self, number: int) -> bool:
         try:
-            return _is_finite(self.samples(number))
+            return _has_values(self.samples(number))
         except Unusable:
             return False
 
 
-def _is_finite(samples: NDArray[Any]) -> bool:
-    return len(samples) > 1 and samples.dtype.kind in NUMERIC and bool(np.isfinite(samples).all())
+def _has_values(samples: NDArray[Any]) -> bool:
+    """Whether a column is one of numbers, of which some may be missing."""
+    if samples.dtype.kind not in NUMERIC or len(samples) < 2:
+        return False
+    known = samples[~np.isnan(samples)]
+    return len(known) >= max(2, _FEWEST * len(samples)) and bool(np.isfinite(known).all())
 
 
 def _stated(pattern: re.Pattern[str], text: str) -> Sequence[tuple[float, str]]:

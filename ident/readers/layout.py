@@ -16,7 +16,7 @@ from dataclasses import dataclass
 from ident.errors import Unusable
 from ident.readers.dialect import DECIMALS, DELIMITERS, FOUND, Dialect
 from ident.readers.heading import Heading, heading, is_label
-from ident.readers.numeral import QUOTES, decimals, has_fraction, in_thousands, is_begun, is_numeral
+from ident.readers.numeral import QUOTES, decimals, has_fraction, has_no_value, in_thousands, is_begun, is_numeral
 from ident.readers.time_stamp import is_stamp
 
 HEAD_LINES = 400
@@ -78,18 +78,24 @@ class _Shape:
     stamps: frozenset[int]
 
     def is_full(self, fields: Sequence[str], comma: bool) -> bool:
-        """Whether a line has all that a row has."""
-        return len(fields) >= max((*self.numbers, *self.stamps)) + 1 and all(
-            is_numeral(fields[n], comma) for n in self.numbers
-        ) and all(is_stamp(fields[n]) for n in self.stamps)  # fmt: skip
+        """Whether a line has all that a row has; at least half of its numbers, the first among them, if others have no
+        value."""
+        if len(fields) < max((*self.numbers, *self.stamps)) + 1 or not all(is_stamp(fields[n]) for n in self.stamps):
+            return False
+        given = [n for n in self.numbers if not has_no_value(fields[n])]
+        enough = 2 * len(given) >= len(self.numbers) and (0 in given or 0 not in self.numbers)
+        return enough and all(is_numeral(fields[n], comma) for n in given)
 
     def is_flawed(self, fields: Sequence[str], comma: bool) -> bool:
-        """Whether a line is a row with a flaw: numbers in half of the columns, and no word that heads it."""
+        """Whether a line is a row with a flaw: numbers in half of the columns that have a value there, and no word that
+        heads it."""
         found = sum(n < len(fields) and is_numeral(fields[n], comma) for n in self.numbers)
         found += sum(n < len(fields) and is_stamp(fields[n]) for n in self.stamps)
         first = fields[0].strip(QUOTES) if fields else ""
-        words = 0 in self.numbers and is_label(first)
-        return 2 * found >= len(self.numbers) + len(self.stamps) and found > 0 and not words
+        words = 0 in self.numbers and is_label(first) and not has_no_value(first)
+        begun = is_numeral(first, comma) or is_stamp(first)
+        empty = sum(n < len(fields) and has_no_value(fields[n]) for n in self.numbers) if begun else 0
+        return 2 * found >= len(self.numbers) + len(self.stamps) - empty and found > 0 and not words
 
 
 def recognise(text: bytes, where: str, stated: Dialect = FOUND) -> Layout:

@@ -11,6 +11,10 @@ _COMMA = re.compile(_FORM.format(sign=","), re.IGNORECASE)
 _BEGUN = re.compile(r"[+-]?\d*[.,]?\d*(?:[eE][+-]?\d*)?")
 _PREFIXED = re.compile(r"[+-]?\d+(?:[.,]\d+)?(?:[eE][+-]?\d+)?\s?[TGMkmuµμnp]")
 _IN_THOUSANDS = re.compile(r"[+-]?[1-9]\d{0,2}([.,])\d{3}(?:\1\d{3})*")
+NO_VALUE = (
+    "", "nan", "na", "n/a", "#n/a", "null", "none", "-", "--", "---", "#value!", "#div/0!", "1.#qnan", "-1.#ind"
+)  # fmt: skip
+"""What loggers, databases and spreadsheets write, in any case of its letters, for a sample that has no value."""
 QUOTES = " \t\"'"
 """What may stand around a number or a name in a field."""
 
@@ -18,6 +22,11 @@ QUOTES = " \t\"'"
 def is_numeral(field: str, comma: bool) -> bool:
     """Whether a field is one number, with a decimal comma where `comma` is true and with a decimal point elsewhere."""
     return bool((_COMMA if comma else _POINT).fullmatch(field.strip(QUOTES)))
+
+
+def has_no_value(field: str) -> bool:
+    """Whether a field says that there is no value."""
+    return field.strip(QUOTES).lower() in NO_VALUE
 
 
 def has_fraction(field: str, comma: bool) -> bool:

@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import replace
 
 import numpy as np
 
 from ident.errors import Unusable
-from ident.readers.clock import evened, read_clock
+from ident.readers.missing_values import Numbers, OnOneClock, on_one_clock
 from ident.readers.past import with_past
 from ident.readers.run_description import RunDescription, TimeColumn
-from ident.readers.split import split
+from ident.readers.split import Split, split
 from ident.readers.table import Array, Table, numeric
+from ident.readers.time_order import oldest_first, with_new_times
 from ident.readers.trend import without_trend
 from ident.run import Run, Samples
 from ident.units.quantity import Scale, shown
@@ -29,51 +31,94 @@ def read_run(described: RunDescription, table: Table) -> tuple[tuple[Run, ...], 
     Raises Unusable: ``missing-column``, ``not-numeric``, ``unequal-lengths``, ``rows-outside``, ``too-short``,
     ``not-finite``, ``zero-variance``, ``time-not-monotonic``, ``nothing-left``, ``bad-split``.
     """
-    run, count = _whole(described, table)
-    parts, told = ((run,), ()) if described.split is None else _split(run, described, count)
+    run, described, told = _whole(described, table)
+    parts = (run,)
+    if described.split is not None:
+        assert described.rows is not None
+        parts, of_split = split(run, described.split, described.rows)
+        told = (*told, of_split)
     return tuple(without_trend(part, described.trend, described.outputs) for part in parts), told
 
 
-def _split(run: Run, described: RunDescription, count: int) -> tuple[tuple[Run, ...], tuple[str, ...]]:
-    assert described.split is not None
-    parts, told = split(run, described.split, described.rows or (0, count))
-    return parts, (told,)
-
-
-def _whole(described: RunDescription, table: Table) -> tuple[Run, int]:
-    """The run before it is split, and how many rows its file has."""
-    labels = described.labels
-    places = {name: f"{run_name(labels.id)} channels.{name}" for name in described.channels}
-    wanted = {name: channel.column for name, channel in described.channels.items()}
-    if described.time is not None:
-        places["time"], wanted["time"] = f"{run_name(labels.id)} time", described.time.column
-    numbers = {name: table.numbers(column, places[name]) for name, column in wanted.items()}
-    loaded = iter(table.load([number for of_channel in numbers.values() for number in of_channel]))
-    raw = {name: difference([next(loaded) for _ in found], places[name]) for name, found in numbers.items()}
-    check_lengths(raw, described)
+def _whole(described: RunDescription, table: Table) -> tuple[Run, RunDescription, tuple[str, ...]]:
+    """The run before it is split, its description with the rows of the file that it covers, and what to say of it."""
+    raw, places, reversed_ = _loaded(described, table)
+    rows = described.rows or (0, len(next(iter(raw.values()))))
     channels = {
-        name: in_si(part(raw[name], described, places[name]), channel.scale, places[name])
-        for name, channel in described.channels.items()
+        channel: in_si(part(raw[channel], described, places[channel]), of.scale, places[channel])
+        for channel, of in described.channels.items()
     }
-    for name in {"command", *described.outputs} & set(channels):
-        if name != "command" or not channels[name][0]:  # one that is held is a step from nothing at its first sample
-            check_moves(channels[name], places[name])
+    for channel in {"command", *described.outputs} & set(channels):
+        known = channels[channel][~np.isnan(channels[channel])]
+        if channel != "command" or not known[0]:  # one that is held is a step from nothing at its first sample
+            check_moves(known, places[channel])
+    if described.time is None and not any(np.isnan(values).any() for values in channels.values()):
+        run = replace(described.labels, channels=channels)
+        return with_past(run, raw, described, LARGEST), replace(described, rows=rows), ()
+    time, numbers, repeated = _times(described, raw, np.arange(*rows), places)
+    if repeated:
+        channels = {channel: values[numbers - rows[0]] for channel, values in channels.items()}
+    run, found = _on_one_clock(described, channels, time, numbers, places)
+    covered = replace(described, rows=(found.first, found.end), split=_covered(described.split, rows, found))
+    if not reversed_:
+        run = with_past(run, raw, covered if described.rows or found.first else described, LARGEST)
+    told = (f"{run_name(run.id)}: {said}" for said in (reversed_, repeated, found.told) if said)
+    return run, covered, tuple(told)
+
+
+def _loaded(described: RunDescription, table: Table) -> tuple[dict[str, Array], dict[str, str], str]:
+    """The columns of the channels and of the time, from the oldest row; where each is stated; what to say of the
+    order."""
+    name = run_name(described.labels.id)
+    places = {channel: f"{name} channels.{channel}" for channel in described.channels}
+    wanted = {channel: of.column for channel, of in described.channels.items()}
+    places["time"] = f"{name} time"
+    if described.time is not None:
+        wanted["time"] = described.time.column
+    numbers = {channel: table.numbers(column, places[channel]) for channel, column in wanted.items()}
+    loaded = iter(table.load([number for of_channel in numbers.values() for number in of_channel]))
+    raw = {channel: difference([next(loaded) for _ in found], places[channel]) for channel, found in numbers.items()}
+    check_lengths(raw, described)
     if described.time is None:
-        return with_past(replace(labels, channels=channels), raw, described, LARGEST), len(next(iter(raw.values())))
+        return raw, places | {"time": f"{name} sample_rate"}, ""
     _check_stamps(table, described.time, places["time"])
-    scale = Scale(described.time.factor, 0.0, "s")
-    time = in_si(part(raw["time"], described, places["time"]), scale, places["time"])
-    clock = read_clock(time, places["time"])
-    rate = described.time.resample or clock.rate
-    even = clock.even and rate == clock.rate
-    if not even:
-        held = "command" if labels.hold == "zoh" else ""
-        where = places["time"] + ".resample" if described.time.resample else places["time"]
-        channels = {name: evened(clock.time, values, rate, name == held, where) for name, values in channels.items()}
+    raw, told = oldest_first(raw)
+    return raw, places, told
+
+
+def _times(
+    described: RunDescription, raw: Mapping[str, Array], numbers: Numbers, places: Mapping[str, str]
+) -> tuple[Samples, Numbers, str]:
+    """The times in s of those rows that have a new one, these rows of the file, and what to say of the others."""
+    if described.time is None:
+        return numbers / described.labels.sample_rate, numbers, ""
+    time = in_si(part(raw["time"], described, places["time"]), Scale(described.time.factor, 0.0, "s"), places["time"])
+    new, told = with_new_times(time)
+    return time[new], numbers[new], told
+
+
+def _on_one_clock(
+    described: RunDescription, channels: Mapping[str, Samples], time: Samples, numbers: Numbers,
+    places: Mapping[str, str],
+) -> tuple[Run, OnOneClock]:  # fmt: skip
+    """The run on the clock of its outputs, and how it got there."""
+    resample = described.time.resample if described.time is not None else None
+    outputs = [channel for channel in described.outputs if channel in channels] or list(channels)
+    held = "command" if described.labels.hold == "zoh" else ""
+    found = on_one_clock(channels, time, numbers, outputs, held, resample, places["time"])
+    clock = found.clock
     run = replace(
-        labels, channels=channels, sample_rate=rate, clock_jitter=clock.jitter, gaps=clock.gaps, evened=not even
-    )
-    return with_past(run, raw, described, LARGEST), len(raw["time"])
+        described.labels, channels=found.channels, sample_rate=found.rate, clock_jitter=clock.jitter, gaps=clock.gaps,
+        evened=found.evened,
+    )  # fmt: skip
+    return run, found
+
+
+def _covered(of: Split | None, rows: tuple[int, int], found: OnOneClock) -> Split | None:
+    """The validation data, without rows at the ends of the part that have no value."""
+    if of is None or of.first < rows[0] or of.end > rows[1]:
+        return of  # which is refused
+    return replace(of, first=max(of.first, found.first), end=min(of.end, found.end))
 
 
 def _check_stamps(table: Table, time: TimeColumn, where: str) -> None:
@@ -124,17 +169,26 @@ def part(column: Array, described: RunDescription, where: str) -> Array:
 
 
 def in_si(raw: Array, scale: Scale, where: str) -> Samples:
-    """factor × raw + offset in new memory. Raises Unusable ``not-finite`` with the first bad sample."""
+    """factor × raw + offset in new memory, NaN where there is no value.
+
+    Raises Unusable: ``not-finite`` with the first bad sample, ``no-values``."""
     with np.errstate(all="ignore"):
         values: Samples = np.multiply(raw, scale.factor, dtype=np.float64)
         if scale.offset:
             values += scale.offset
     largest = max(-float(values.min()), float(values.max()))  # not a number where any sample is not
-    if not largest < LARGEST:
-        index = int(np.argmin(np.abs(values) < LARGEST))
+    if not largest < LARGEST and not _are_finite_or_missing(values):
+        if np.isnan(values).all():
+            raise Unusable("no-values", "the column has no value", where, "name another column")
+        index = int(np.argmin(np.isnan(values) | (np.abs(values) < LARGEST)))
         what = f"sample {index} is {shown(raw[index])}, not a finite number of a usable size"
         raise Unusable("not-finite", what, where, "cut the record there or repair the sample")
     return values
+
+
+def _are_finite_or_missing(values: Samples) -> bool:
+    missing = np.isnan(values)
+    return not missing.all() and bool((missing | (np.abs(values) < LARGEST)).all())
 
 
 def check_moves(values: Samples, where: str) -> None:

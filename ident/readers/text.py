@@ -9,6 +9,7 @@ from __future__ import annotations
 import codecs
 import csv
 import io
+import math
 import re
 from array import array
 from collections.abc import Sequence
@@ -19,7 +20,7 @@ from ident.errors import Unusable
 from ident.readers.dialect import ENCODINGS, FOUND, Dialect
 from ident.readers.layout import Layout, mixes_thousands, recognise
 from ident.readers.limits import Limits, check_size
-from ident.readers.numeral import is_prefixed
+from ident.readers.numeral import NO_VALUE, has_no_value, is_prefixed
 from ident.readers.table import Array, Table
 from ident.readers.time_stamp import seconds
 from ident.units.quantity import shown
@@ -29,6 +30,8 @@ _HALF = 0.4  # of the bytes of the head: the zeros of a text of two bytes a sign
 _BEYOND_ASCII = re.compile(rb"[\x80-\xff]+")
 _CHINESE = re.compile(rb"(?:[\xa1-\xa9\xb0-\xd7][\xa1-\xfe])+")
 """Punctuation and the usual characters of GB 2312 (1980), rows 1 to 9 and 16 to 55, each of two bytes."""
+_NO_VALUE = [cased for word in NO_VALUE for cased in dict.fromkeys((word, word.upper(), word.capitalize()))]
+"""As arrow compares them, whole and letter by letter; cells that are written otherwise are read line by line."""
 _LETTERS = 0xC0  # of Windows-1252; below stand its signs, such as the ² and · of a unit
 
 
@@ -165,7 +168,7 @@ def by_arrow(text: bytes, numbers: Sequence[int], delimiter: str, comma: bool) -
                 include_columns=list(dict.fromkeys(fields)),
                 column_types=dict.fromkeys(fields, pa.float64()),
                 decimal_point="," if comma else ".",
-                null_values=[],
+                null_values=_NO_VALUE,
             ),
         )
     except (pa.ArrowInvalid, pa.ArrowKeyError, UnicodeDecodeError):
@@ -201,7 +204,7 @@ def _unquoted(line: bytes, delimiter: str) -> list[bytes]:
 
 
 def as_float(field: bytes, comma: bool, line: int, where: str, within: bool = False) -> float:
-    """One field as a number; `within` the samples, not in their first row.
+    """One field as a number, NaN where it has no value; `within` the samples, not in their first row.
 
     Raises Unusable: ``not-numeric``, ``letter-behind-number``.
     """
@@ -212,14 +215,11 @@ def as_float(field: bytes, comma: bool, line: int, where: str, within: bool = Fa
         except ValueError:
             pass
     text = field.decode("utf-8", "replace").strip()
+    if has_no_value(text):
+        return math.nan
     if parted:
         what = f"line {line} holds {shown(text)!r} among decimal commas, where the point may separate thousands"
         raise Unusable("not-numeric", what, where, "export it without signs between thousands")
-    if not text.strip("\"' "):
-        what = f"line {line} has an empty cell where a number belongs"
-        raise Unusable(
-            "not-numeric", what, where, "fill it, or write nan there and keep the part before or after it with rows"
-        )
     if is_prefixed(text):
         raise Unusable(
             "letter-behind-number", f"line {line} holds {shown(text)!r}, a number with a letter behind it", where,
@@ -227,7 +227,7 @@ def as_float(field: bytes, comma: bool, line: int, where: str, within: bool = Fa
         )  # fmt: skip
     if within:
         what = f"line {line} holds {shown(text)!r} among numbers"
-        remedy = "correct the number, or write nan there and keep the part before or after it with rows"
+        remedy = "correct the number, or leave the cell empty"
         raise Unusable("not-numeric", what, where, remedy)
     remedy = "correct the number, or name a column of numbers; if the line is part of the heading, give skip_rows"
     raise Unusable("not-numeric", f"line {line} holds {shown(text)!r} where a number belongs", where, remedy)

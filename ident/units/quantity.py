@@ -134,6 +134,8 @@ def unit_scale(unit: str, dimension: str, where: str) -> Scale:
         return Scale(PRINTED_Z0_FACTOR, 0.0, target)
     if dimension == "acceleration" and unit in ("g", "G"):
         unit = "g_n"  # gram has no business here
+    if dimension == "temperature" and unit in ("C", "F"):
+        unit = f"deg{unit}"  # nor have coulomb and farad
     powers = known_powers(unit, where, target)
     if target == "rad/s" and powers == {"min": -1.0}:
         powers = {"rev": 1.0, "min": -1.0}  # of a speed of rotation 1/min counts turns

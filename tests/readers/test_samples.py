@@ -18,7 +18,7 @@ def refusal(path):
     return refused.value
 
 
-@pytest.mark.parametrize("bad", [np.nan, np.inf, -np.inf, 1e200])
+@pytest.mark.parametrize("bad", [np.inf, -np.inf, 1e200])
 def test_a_sample_that_is_not_finite_is_named(matrix, kind, bad):
     matrix.columns["x"][[17, 90]] = bad
     refused = refusal(matrix.write(kind))
@@ -71,7 +71,7 @@ def test_text_in_a_column_of_numbers_is_named_with_its_line(matrix):
     (path / "runs/first.csv").write_text("\n".join(text))
     refused = refusal(path)
     assert refused.code == "not-numeric"
-    assert "line 6 holds 'broken' among numbers; correct the number, or write nan there" in str(refused)
+    assert "line 6 holds 'broken' among numbers; correct the number, or leave the cell empty" in str(refused)
     assert "heading" not in str(refused)
 
 
@@ -112,7 +112,7 @@ def test_a_time_column_gives_the_rate(matrix, kind):
     assert run.clock_jitter < 1e-6
 
 
-@pytest.mark.parametrize("change", [lambda t: t[::-1], lambda t: np.where(np.arange(400) == 7, t[6], t)])
+@pytest.mark.parametrize("change", [lambda t: np.roll(t, 7), lambda t: np.where(np.arange(400) == 7, t[5], t)])
 def test_time_that_does_not_increase_is_refused(matrix, change):
     matrix.change("sample_rate: 1000 Hz", "time: {column: t, unit: s}")
     matrix.columns["t"] = change(matrix.columns["t"])

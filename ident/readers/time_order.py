@@ -1,0 +1,42 @@
+"""The rows of a file in the order of time: the oldest first, and each time once."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ident.readers.table import NUMERIC, Array
+from ident.run import Samples
+from ident.words.number import count
+
+
+def oldest_first(raw: Mapping[str, Array]) -> tuple[dict[str, Array], str]:
+    """The columns of a file, reversed where its `time` falls throughout, as historians write it; and what to say.
+
+    Rows are counted from the oldest then.
+    """
+    time = raw["time"]
+    if time.dtype.kind not in NUMERIC or len(time) < 2 or not time[0] > time[-1]:
+        return dict(raw), ""
+    if not np.all(np.diff(time[~np.isnan(time)]) < 0):
+        return dict(raw), ""
+    reversed_ = {name: column[::-1] for name, column in raw.items()}
+    return reversed_, "the newest row stands first; rows are taken, and counted, from the oldest"
+
+
+def with_new_times(time: Samples) -> tuple[NDArray[np.bool_], str]:
+    """Which rows have a time t (n,) that is known and not that of the row before; and what to say of the others.
+
+    All rows, where a time stands for two rows or more in the mean: then it is printed too coarsely to tell a clock.
+    """
+    known = ~np.isnan(time)
+    new = known.copy()
+    new[known] = np.concatenate([[True], np.diff(time[known]) != 0])[: int(known.sum())]
+    repeated, without = int(known.sum() - new.sum()), int(len(time) - known.sum())
+    if 2 * repeated >= known.sum():
+        new, repeated = known, 0
+    parts = [f"{count(without, 'row')} without a time"] if without else []
+    parts += [f"{count(repeated, 'row')} with the time of the row before"] if repeated else []
+    return new, f"{' and '.join(parts)} {'is' if without + repeated == 1 else 'are'} left out" if parts else ""
