@@ -1,4 +1,5 @@
-"""JSON: a list of records, a record a line, an object of columns, or an object of tables, each a list of rows.
+"""JSON: a list of records, a record a line, an object of columns, an object of tables, each a list of rows, or a list
+of signals, each an object with its samples, its name and perhaps its unit.
 
 In addition to its columns an object may state ``sample_rate`` (Hz) or ``dt`` (s), and ``units`` by the names of the
 columns. It may stand within other objects, beside what describes the test: of several the one with most numbers counts.
@@ -16,6 +17,9 @@ RATES = ("sample_rate", "samplerate", "sampling_rate", "sample_rate_hz", "rate",
 """Entries that state a sample rate in Hz, in small letters."""
 STEPS = ("dt", "dt_s", "ts", "sample_time", "sample_interval", "sample_period", "interval")
 """Entries that state the time between two samples in s."""
+
+UNIT = "unit"
+"""What the name of the entry contains that holds the unit of a signal."""
 
 
 @lru_cache(1)
@@ -38,7 +42,8 @@ def _record(path: str) -> Any:
     parts, largest, most = [held], held, 0
     while parts:
         part = parts.pop(0)
-        parts += [value for value in part.values() if isinstance(value, dict)] if isinstance(part, dict) else []
+        within = part.values() if isinstance(part, dict) else ()
+        parts += [value for value in within if isinstance(value, dict) or is_signals(value)]
         if (size := _numbers(part)) > most:
             largest, most = part, size
     return largest
@@ -74,6 +79,11 @@ def columns(path: str) -> Iterator[tuple[str, str, Any]]:
 
 
 def _columns(held: Any) -> Iterator[tuple[str, str, Any]]:
+    return of_signals(held) if is_signals(held) else of_records(held)
+
+
+def of_records(held: Any) -> Iterator[tuple[str, str, Any]]:
+    """The columns of a list of records, of an object of columns or of one of tables. Raises ValueError."""
     if isinstance(held, dict):
         tables = {name: value for name, value in held.items() if isinstance(value, list)}
         if tables and all(map(is_table, tables.values())):
@@ -98,6 +108,29 @@ def _columns(held: Any) -> Iterator[tuple[str, str, Any]]:
             raise ValueError(f"record {number} has other entries than the first")
     for name in names:
         yield name, "", plain([record[name] for record in held])
+
+
+def is_signals(held: Any) -> bool:
+    """Whether a list holds signals: objects with one list of samples each, all of one length, and a text."""
+    if not isinstance(held, list) or not held or not all(isinstance(one, dict) for one in held):
+        return False
+    samples = [[value for value in one.values() if isinstance(value, list)] for one in held]
+    named = all(any(isinstance(value, str) for value in one.values()) for one in held)
+    if not named or any(len(lists) != 1 for lists in samples) or len({len(lists[0]) for lists in samples}) > 1:
+        return False
+    return len(samples[0][0]) > 1 and all(type(value) in (int, float) for (one,) in samples for value in one)
+
+
+def of_signals(held: list[dict[str, Any]]) -> Iterator[tuple[str, str, Any]]:
+    """The samples of each signal, under the first text that differs between all of them; the unit stands in a text
+    whose entry says so."""
+    texts = [entry for entry, value in held[0].items() if isinstance(value, str)]
+    names = [entry for entry in texts if len({str(one.get(entry)) for one in held}) == len(held)]
+    units = [entry for entry in texts if UNIT in entry.lower()]
+    for number, one in enumerate(held):
+        (values,) = (value for value in one.values() if isinstance(value, list))
+        name = str(one[names[0]]) if names else str(number)
+        yield name, next((str(one.get(entry, "")) for entry in units), ""), plain(values)
 
 
 def is_table(rows: list[Any]) -> bool:

@@ -12,6 +12,8 @@ from ident.readers.mat5 import Damaged, Variable, variables5
 from ident.readers.mat_inflate import byte_order, inflated
 from ident.readers.table import Array, Table, column_of, split_columns
 
+_STEP, _INPUT = "Ts", "InputData"
+"""Fields of MATLAB's ``iddata``: the time between two samples, and the inputs."""
 Column = tuple[str, Array | str, int]
 """Name, the variable it is a column of, and which."""
 
@@ -33,7 +35,17 @@ def read_mat(data: bytes, where: str, limits: Limits) -> Table:
     def load(numbers: Sequence[int]) -> list[Array]:
         return [samples(columns[number], where) for number in numbers]
 
-    return Table(tuple(name for name, _, _ in columns), load)
+    return Table(tuple(name for name, _, _ in columns), load, rate=_rate(found))
+
+
+def _rate(found: Sequence[Variable]) -> float:
+    """The sample rate in Hz of MATLAB's ``iddata``, which states the step Ts in s; 0 where there is none."""
+    held = dict(found)
+    for name, step in held.items():
+        owner, _, field = name.rpartition(".")
+        if field == _STEP and f"{owner}.{_INPUT}" in held and not isinstance(step, str) and step.size == 1:
+            return 1.0 / float(step.ravel()[0]) if 0.0 < float(step.ravel()[0]) < float("inf") else 0.0
+    return 0.0
 
 
 def variables(data: bytes, where: str, limits: Limits) -> Iterator[Variable]:

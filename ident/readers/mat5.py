@@ -1,4 +1,4 @@
-"""The variables of a v5 MAT file: arrays of numbers, and the fields of structures.
+"""The variables of a v5 MAT file: arrays of numbers, and the fields of structures and of objects such as iddata.
 
 Read here, byte by byte, because scipy's reader can end the whole process on a damaged file. A file is a row of
 elements, each a tag (type, size) and its data; a variable is an element of elements: flags, dimensions, name, values.
@@ -17,7 +17,7 @@ from ident.readers.table import Array
 
 MATRIX, INT8, INT32, UINT32, UTF8 = 14, 1, 5, 6, 16
 STORED = {1: "i1", 2: "u1", 3: "i2", 4: "u2", 5: "i4", 6: "u4", 7: "f4", 9: "f8", 12: "i8", 13: "u8"}
-STRUCT, CHARACTERS, OPAQUE = 2, 4, 17
+CELL, STRUCT, OBJECT, CHARACTERS, OPAQUE = 1, 2, 3, 4, 17
 LONGEST_LABEL = 200
 NUMBERS = range(6, 16)
 COMPLEX, LOGICAL = 8, 2
@@ -92,12 +92,16 @@ def variable(elements: Elements, name: str, depth: int) -> Iterator[Variable]:
         raise Damaged("a variable without flags")
     kind, marks = int(flags[0]) & 0xFF, int(flags[0]) >> 8
     if kind == OPAQUE:
-        return  # an object of a MATLAB class
+        return  # an object of a MATLAB class of today
     shape = tuple(int(length) for length in elements.values(INT32))
     own = elements.text()  # empty in a field
     name = name or own
-    if kind == STRUCT and 0 <= math.prod(shape) <= MOST and depth:
+    if kind == OBJECT:
+        elements.text()  # the name of its class; then it is stored as a structure
+    if kind in (STRUCT, OBJECT) and 0 <= math.prod(shape) <= MOST and depth:
         yield from structures(elements, name, math.prod(shape), depth)
+    elif kind == CELL and 0 < math.prod(shape) <= MOST and depth:
+        yield from cells(elements, name, math.prod(shape), depth)
     elif kind in NUMBERS and not marks & (COMPLEX | LOGICAL):
         yield name, numbers(elements, shape)
     else:
@@ -110,6 +114,13 @@ def numbers(elements: Elements, shape: tuple[int, ...]) -> Array:
     if not shape or min(shape) < 0 or math.prod(shape) != len(values):
         raise Damaged("an array whose size is not that of its data")
     return values.reshape(shape, order="F")
+
+
+def cells(elements: Elements, name: str, count: int, depth: int) -> Iterator[Variable]:
+    """The elements of a cell array: the only one under its name, of several each as ``name.number``."""
+    for number in range(count):
+        content = content_of(elements)
+        yield from variable(Elements(content, elements.order), name if count == 1 else f"{name}.{number}", depth - 1)
 
 
 def structures(elements: Elements, name: str, count: int, depth: int) -> Iterator[Variable]:

@@ -3,12 +3,17 @@
 from __future__ import annotations
 
 import hashlib
+import io
 
 import numpy as np
 import pytest
+from scipy.io import savemat
+from scipy.io.matlab import MatlabObject
 
 from ident.errors import Unusable
-from ident.readers import read_matrix
+from ident.readers import read_matrix, read_table
+from ident.readers.dialect import FOUND
+from ident.readers.limits import LIMITS
 
 
 def test_every_file_type_reads_to_the_same_run_in_si(matrix, columns, kind):
@@ -129,3 +134,22 @@ def test_a_type_that_nobody_can_read_is_refused_with_the_list(matrix):
     with pytest.raises(Unusable, match=r"\.parquet") as refused:
         read_matrix(matrix.path)
     assert refused.value.code == "unknown-type"
+
+
+def test_an_object_of_iddata_has_its_input_its_output_and_its_rate():
+    """As the System Identification Toolbox saves it: an object of an old class whose samples stand in cells."""
+    cell = np.empty((1, 1), object)
+    held = {}
+    for field, samples in (("InputData", np.repeat([50, 80], 20)), ("OutputData", np.linspace(2.0, 38.0, 40))):
+        held[field] = cell.copy()
+        held[field][0, 0] = samples[:, None]
+    fields = [(name, object) for name in (*held, "Ts", "InputName")]
+    made = np.empty((1, 1), fields)
+    made[0, 0] = (*held.values(), np.array([[0.01]]), "u1")
+    file = io.BytesIO()
+    savemat(file, {"pump": MatlabObject(made, "iddata")})
+    table = read_table(file.getvalue(), "pump.mat", FOUND, LIMITS)
+    assert table.rate == pytest.approx(100.0)
+    numbers = [table.number(name, "") for name in ("InputData", "OutputData")]
+    for loaded, field in zip(table.load(numbers), held, strict=True):
+        np.testing.assert_array_equal(loaded, held[field][0, 0].ravel())

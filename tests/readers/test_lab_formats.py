@@ -88,6 +88,15 @@ def test_a_record_within_a_document_is_the_part_that_has_the_most_numbers():
     np.testing.assert_array_equal(table.load([1])[0], X)
 
 
+def test_a_list_of_signals_within_a_document_is_read_by_their_names_and_units():
+    """Each signal is an object with its name, its unit and its samples; lists of settings stand beside them."""
+    signals = [{"name": name, "units": unit, "data": list(one)} for name, unit, one in (("u", "V", U), ("x", "mm", X))]
+    held = {"settings": {"table": [0, 1, 2]}, "scenario": {"steps": [{"at": 1}]}, "traces": signals}
+    table = read_table(json.dumps(held).encode(), "run.json", FOUND, LIMITS)
+    assert (table.names, table.units) == (("u", "x"), ("V", "mm"))
+    np.testing.assert_array_equal(table.load([1])[0], X)
+
+
 @pytest.mark.parametrize(
     ("name", "data", "code"),
     [
