@@ -41,13 +41,14 @@ def read_clock(time: Samples, where: str) -> Clock:
     Raises Unusable: ``time-not-monotonic``.
     """
     steps = np.diff(time)
+    if (steps == 0).any() and (steps >= 0).all() and (printed := _of_few_digits(time)) is not None:
+        return printed
     if not (steps > 0).all():
         index = int(np.argmin(steps > 0)) + 1
         before, after = time[index - 1 : index + 1]
         what = f"time does not increase at sample {index}: {after:.9g} s comes after {before:.9g} s"
-        raise Unusable(
-            "time-not-monotonic", what, where, "sort the lines of the file by time, and delete repeated ones"
-        )
+        remedy = "sort the lines by time and delete repeated ones, or state the sample rate in place of the time"
+        raise Unusable("time-not-monotonic", what, where, remedy)
     near = steps[steps <= STEP_OF_A_GAP * np.median(steps)]
     usual, uneven = float(np.mean(near)), float(np.std(near)) > UNEVEN * float(np.mean(near))
     counted = np.maximum(np.rint(steps / usual), 1.0)
@@ -64,6 +65,17 @@ def read_clock(time: Samples, where: str) -> Clock:
     long = counted[counted - 1.0 > _SHORT * len(time)] - 1.0
     lost = gaps > len(time) or float(long.sum()) > _LOST * len(time)
     return Clock(rate, stray / step, gaps, lost or (printed and not gaps), even if printed else time)
+
+
+def _of_few_digits(time: Samples) -> Clock | None:
+    """The even clock of a time that repeats itself since it was printed with too few digits; None of any other."""
+    numbers = np.arange(len(time), dtype=np.float64)
+    step, begin = np.polyfit(numbers, time, 1)
+    even: Samples = begin + step * numbers
+    stray = float(np.max(np.abs(time - even)))
+    if stray >= _ROUNDED * _last_digit(time):
+        return None
+    return Clock(float(f"{1 / step:.9g}"), stray / float(step), 0, True, even)
 
 
 def _last_digit(time: Samples) -> float:

@@ -194,3 +194,13 @@ def test_a_difference_names_the_column_that_is_not_there(matrix):
 def test_columns_of_a_difference_are_of_one_length():
     with pytest.raises(Unusable, match="3 and 2 samples"):
         difference([np.zeros(3), np.zeros(2)], "run one channels.command")
+
+
+def test_a_time_of_too_few_digits_repeats_itself_and_is_an_even_clock():
+    """2.5 kHz and 10 kHz printed in milliseconds; lines that are there twice are no such clock, and are refused."""
+    for rate in (2500.0, 10000.0):
+        clock = read_clock(np.round(np.arange(4000) / rate, 3), "t")
+        assert (clock.rate, clock.gaps, clock.even) == (pytest.approx(rate, rel=1e-4), 0, True)
+    twice = np.insert(np.arange(400) / 100, [200, 200, 200], 2.0)
+    with pytest.raises(Unusable, match="state the sample rate"):
+        read_clock(twice, "t")
