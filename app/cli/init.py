@@ -66,8 +66,8 @@ def init(
                      "encoding, if it is not detected. @FILE=KEY=VALUE: in some files only. May be repeated."),
     ] = None,
     output: Annotated[str, typer.Option(metavar="NAME", help="Output channel of the model.")] = "",
-    verify: Annotated[_Texts, typer.Option(metavar="FILE", help="A validation run, with or without its suffix; may be "
-                                                      "repeated.")] = None,
+    verify: Annotated[_Texts, typer.Option(metavar="FILE", help="A validation run: one of FILES, with or without its "
+                                                      "suffix, or another file; may be repeated.")] = None,
     validation: Annotated[
         float,
         typer.Option(metavar="SHARE", help="Share of each run, at its end, for validation, such as 0.3; a gap as long "
@@ -90,7 +90,7 @@ def init(
 
     if out is not None:
         _free(out)
-    given_files, files = files, [file for one in files for file in _records(one)]
+    given_files, files = files, _with_validation([file for one in files for file in _records(one)], verify or [])
     whole = [(Path(name).name, data) for name, data in with_runs_joined([(str(one), _content(one)) for one in files])]
     given = {"gain": gain, "hold": hold}
     names = [name for name, _ in whole]
@@ -128,6 +128,12 @@ def _records(given: Path) -> list[Path]:
         what, remedy = "the folder holds no records", f"name a folder with files of {', '.join(ENDINGS)}"
         raise Unusable("missing-file", what, str(given), remedy)
     return found
+
+
+def _with_validation(files: list[Path], verify: list[str]) -> list[Path]:
+    """The files, and those that are there and are named as validation runs alone."""
+    names = {name for file in files for name in (file.name, file.stem)}
+    return [*files, *(Path(one) for one in verify if Path(one).name not in names and Path(one).is_file())]
 
 
 def _with_command(draft: Draft, files: list[Path], said: Mapping[str, object]) -> Unusable:

@@ -158,9 +158,7 @@ class Draft:
         bench = self.answers.common.get("kind") in BENCH
         drives = {"command", *(("current",) if bench else ()), *(MOTIONS if wanted == "force" else ())}
         if not drives & known.channels.keys() and self._said(file, "command") != NONE:
-            driven = ", or say --output force where the motion drives" if "force" in known.channels else ""
-            what = f"which column of {_listed(file)} is the command, or the force that drives{driven}"
-            found.append(Missing("channel command", what))
+            found.append(self._missing_drive(file, known))
         if not wanted or wanted not in known.channels:
             what = wanted or "displacement, velocity or force"
             found.append(Missing(f"channel {wanted or OUTPUTS[0]}", f"which column of {_listed(file)} is the {what}"))
@@ -172,6 +170,15 @@ class Draft:
         elif known.time.column != "" and not known.time.unit:
             found.append(Missing("unit time", f"unit of the time, column {shown(known.time.column)!r}"))
         return found
+
+    def _missing_drive(self, file: RawFile, known: Known) -> Missing:
+        """The question for what drives: the motion, where the force was said to be the output."""
+        if self.answers.output == "force":
+            what = f"which column of {_listed(file)} is the displacement or velocity that drives"
+            return Missing(f"channel {MOTIONS[0]}", what)
+        driven = ", or say --output force where the motion drives" if "force" in known.channels else ""
+        what = f"which column of {_listed(file)} is the command, or the force that drives{driven}"
+        return Missing("channel command", what)
 
     def _said(self, file: RawFile, channel: str) -> str | int:
         return self.answers.of(file_name(file)).channels.get(channel, Answer()).column

@@ -30,7 +30,7 @@ WORDS = {
         "指令", "命令", "给定", "给定值", "设定值", "目标值", "目标位移", "指令位移", "位移指令", "命令位移",
     ),
     "displacement": (
-        "displacement", "disp", "position", "pos", "lvdt", "stroke", "travel", "measured displacement",
+        "displacement", "disp", "displ", "position", "pos", "lvdt", "stroke", "travel", "measured displacement",
         "measured position", "actual position", "actual displacement", "position feedback", "feedback position",
         "displacement feedback", "position actual", "position measured", "act pos", "pos act", "pos meas",
         "pos fb", "piston position", "piston displacement", "rod position", "rod displacement", "cylinder position",

@@ -61,6 +61,10 @@ ksi = 1000 * psi
 atm = 101325 * pascal = atmosphere
 technical_atmosphere = kilogram_force / (1e-2 * meter) ** 2 = at
 mmHg = 133.322387415 * pascal
+inHg = 3386.388640341 * pascal
+mmH2O = 9.80665 * pascal
+cmH2O = 98.0665 * pascal
+inH2O = 249.08891 * pascal
 joule = newton * meter = J
 watt = joule / second = W
 volt = watt / ampere = V = volts

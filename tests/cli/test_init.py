@@ -178,3 +178,13 @@ def test_a_share_of_each_run_is_validation_data(servoident, record, tmp_path):
     refused = servoident("init", record, *given[:-3], "--validation", "30")
     assert refused.returncode == 2
     assert "a share of 30 of every run cannot be validation data" in refused.stderr
+
+
+def test_a_run_to_verify_that_is_named_by_itself_is_one_of_the_runs(servoident, record, tmp_path):
+    """A file that is there need not be named twice."""
+    (tmp_path / "b.csv").write_bytes(record.read_bytes().replace(b",0.9", b",0.8"))
+    given = ("--serial", "SW-6", *KNOWN, "--verify", tmp_path / "b.csv", "--out", tmp_path / "m")
+    made = servoident("init", record, *given)
+    assert made.returncode == 0, made.stderr
+    matrix = read_matrix(tmp_path / "m")
+    assert [[run.id for run in matrix.of_use(use)] for use in ("fit", "verify")] == [["a"], ["b"]]

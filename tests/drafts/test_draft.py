@@ -426,3 +426,11 @@ def test_the_rate_and_the_units_of_a_tdms_are_found(tmp_path):
     file = read_raw((tmp_path / "run.tdms").read_bytes(), "run.tdms")
     known = Draft([file], Answers()).known(file)
     assert (known.rate, known.channels["command"].unit, known.channels["displacement"].unit) == ("500 Hz", "V", "mm")
+
+
+def test_where_the_force_was_said_to_be_the_output_the_motion_is_asked_for():
+    """Not the command: a name that is misspelt is no displacement by itself."""
+    text = table("Time (s),Displacment (mm),Force (kN)")
+    draft = Draft([raw(text)], Answers(serial="A1", output="force"))
+    assert [one.key for one in draft.missing] == ["channel displacement"]
+    assert draft.options == ("--channel displacement='Displacment (mm)'",)
