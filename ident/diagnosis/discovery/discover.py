@@ -42,13 +42,13 @@ def terms_of(models: CandidateModels, selection: Selection, budget: SearchBudget
     """Terms in addition to the given model and, where effects were selected, to the selected one.
 
     A selected effect may imitate a term, and is redundant with that term. The terms of the first search stay where
-    there is no time for the second.
+    there is no time for the second, if they leave less of the held-out data than the selected effects.
     """
     alone = _search(selection, selection.base, budget)
     if not selection.added:
         return alone
     both = in_time(lambda: _of_both_searches(models, selection, alone, budget))
-    return replace(alone, complete=False) if both is None else both
+    return replace(_of_first_search(alone, selection), complete=False) if both is None else both
 
 
 def _of_both_searches(
@@ -56,13 +56,23 @@ def _of_both_searches(
 ) -> DiscoveryResult:
     """The terms `alone`, or those in addition to the selected effects: the smaller error, or the simpler model."""
     alone = alone.instead(selection.fitted, selection.added)
-    if not alone.complete or models.is_noise(alone.error_with_terms(selection.base.error)):
+    if models.is_noise(alone.error_with_terms(selection.base.error)):
         return alone
+    if not alone.complete:
+        return _of_first_search(alone, selection)
     further = _search(selection, selection.fitted, budget)
     before, selected = (refit.held_out.error for refit in (selection.base, selection.fitted))
     most = min(further.error_with_terms(selected, "held_out") * CRITERIA.conclusion.simpler_terms, selected)
     simpler = alone.error_with_terms(before, "held_out") < most and not _is_a_selected_effect(alone, selection)
     return replace(alone if simpler else further.or_rejected(alone), complete=further.complete)
+
+
+def _of_first_search(alone: DiscoveryResult, selection: Selection) -> DiscoveryResult:
+    """The terms of a search that the time ended; none where the selected effects leave less of the held-out data."""
+    before, selected = (refit.held_out.error for refit in (selection.base, selection.fitted))
+    if alone.error_with_terms(before, "held_out") < selected:
+        return alone
+    return replace(alone, proposals=(), refit=None)
 
 
 def _search(selection: Selection, refit: FittedModel, budget: SearchBudget) -> DiscoveryResult:
