@@ -27,6 +27,7 @@ FOLDS = 8  # parts of the record, every second of which is foretold from the oth
 PAST = 0.05  # of the innovations' power, foretold by the output's past; in open loop 0.02
 PRESENT = 0.3  # foretold where the output's present is added: a quick controller has it
 RIDGE = 1e-12  # of the regressors' power: least squares of what is nearly collinear
+STILL = 0.5  # of the samples, in rests longer than the output's past that is looked at: what noise moves has no such
 ROUNDS = 5  # in which jumps are told from the rest
 
 
@@ -55,13 +56,14 @@ def shares(run: Run) -> tuple[float, float] | None:
 
     Each is the lesser of two halves of the record, foretold from the other. None where the command does not counteract
     what the output does, and where nothing can be told: a command that its own past foretells to rounding but for
-    jumps, too short a record, or one of an uneven clock, between whose samples nobody knows the command.
+    jumps or that moves between levels, too short a record, or one of an uneven clock, between whose samples nobody
+    knows the command.
     """
     if "command" not in run.channels or run.stepped or run.evened or run.kind in ("sine", "frequency"):
         return None
     first, lags = max(0, (run.length - LONGEST) // 2), OWN + OTHER
     u, y = (_scaled(signal[first : first + LONGEST]) for signal in (run.command, run.measured))
-    if len(u) - lags < LEAST * (lags + OTHER):
+    if len(u) - lags < LEAST * (lags + OTHER) or _still(u) > STILL:
         return None
     # What is foretold, the mean and the command's past; then the output's past; then its present.
     table = np.column_stack([
@@ -78,6 +80,17 @@ def shares(run: Run) -> tuple[float, float] | None:
     if _weights(halves[0] + halves[1])[-1] * float(u[:-1] @ np.diff(y)) >= 0:
         return None
     return float(np.min(1.0 - past / alone)), float(np.min(1.0 - present / alone))
+
+
+def _still(signal: Samples) -> float:
+    """The share of the samples at which a signal has stood still for longer than OTHER samples.
+
+    A controller moves with each sample of a noisy output. Ramps between levels begin where an output that settles
+    is always alike, so that it foretells them: no controller made them.
+    """
+    moves = np.flatnonzero(np.diff(signal))
+    rests = np.diff(np.concatenate([[-1], moves, [len(signal) - 1]]))
+    return float(rests[rests > OTHER].sum()) / len(signal)
 
 
 def _scaled(signal: Samples) -> Samples:

@@ -78,6 +78,22 @@ def test_the_like_command_that_knows_nothing_of_the_output_is_not(seed):
     assert not closed_loop(cylinder(seed, looped=False))
 
 
+@pytest.mark.parametrize("seed", range(3))
+def test_ramps_between_levels_that_come_again_and_again_are_not(seed):
+    """As the pressure of a ventilator is asked for, breath after breath: how far it sank tells when the next begins."""
+    random, rate, breaths = np.random.default_rng(seed), 100.0, 20
+    lengths = 100 + random.integers(0, 3, breaths)
+    begin = np.concatenate([[0], np.cumsum(lengths)])
+    corners = [(b + n, level) for b in begin[:-1] for n, level in ((0, 5.0), (10, 15.0), (40, 15.0), (41, 5.0))]
+    u = np.interp(np.arange(begin[-1]), *zip(*corners, strict=True))
+    y = np.full(len(u), 5.0)
+    for k in range(len(u) - 1):
+        y[k + 1] = y[k] + (u[k] - y[k]) / (4.0 if u[k] > y[k] else 60.0)
+    y += 0.1 * random.standard_normal(len(u))
+    run = Run("one", "", rate, {"command": u, "displacement": y}, {"command": "1", "displacement": "1"})
+    assert not closed_loop(run), shares(run)
+
+
 def test_commands_of_labs_in_open_loop_are_not_doubted(full):
     """Noise, sweeps, steps, staircases, by hand; dead zones, delays and friction between command and output."""
     for seed in range(3000, 3200 if full else 3006):
