@@ -207,6 +207,9 @@ CAUSES: Mapping[str, str] = {
     "cause.unit": "a wrong unit of a channel or of the time",
     "cause.unit_of": "a wrong unit: {what}",
     "cause.sign": "a channel with the wrong sign, or from another run",
+    "cause.no_loop":
+        "no loop compares {channel} with the command, as where a mechanism, a valve or a column of air lies between "
+        "them (--model first_order)",
     "cause.model": "the wrong model (--model, now {model})",
     "cause.offset": "a command offset at rest, which the machine integrates (null_bias)",
     "cause.bounds_large":
