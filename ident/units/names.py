@@ -62,9 +62,9 @@ atm = 101325 * pascal = atmosphere
 technical_atmosphere = kilogram_force / (1e-2 * meter) ** 2 = at
 mmHg = 133.322387415 * pascal
 inHg = 3386.388640341 * pascal
-mmH2O = 9.80665 * pascal
-cmH2O = 98.0665 * pascal
-inH2O = 249.08891 * pascal
+millimeter_of_water = 9.80665 * pascal
+centimeter_of_water = 98.0665 * pascal
+inch_of_water = 249.08891 * pascal
 joule = newton * meter = J
 watt = joule / second = W
 volt = watt / ampere = V = volts
@@ -103,6 +103,7 @@ SPELLINGS = {
 COMPOUNDS = {
     **{f"{pound}*{length}": f"lbf*{length}" for pound in ("lb", "lbs") for length in ("ft", "in")},
     **{f"{length}*{pound}": f"lbf*{length}" for pound in ("lb", "lbs") for length in ("ft", "in")},
+    "mmH2O": "millimeter_of_water", "cmH2O": "centimeter_of_water", "inH2O": "inch_of_water",
     "oz*in": "ozf*in", "in*oz": "ozf*in", "r/min": "rev/min", "r/s": "rev/s", "kgm2": "kg*m^2", "kgm^2": "kg*m^2",
 }  # fmt: skip
 """Compounds whose names by themselves are another unit: the pound of a torque is a force, the r of r/min a turn."""
