@@ -86,12 +86,14 @@ def init(
     from ident.drafts.answers import NONE, Answers
     from ident.drafts.draft import Draft
     from ident.drafts.signal_files import with_runs_joined
+    from ident.drafts.tables_apart import with_tables_apart
     from ident.drafts.text import gathered
 
     if out is not None:
         _free(out)
     given_files, files = files, _with_validation([file for one in files for file in _records(one)], verify or [])
-    whole = [(Path(name).name, data) for name, data in with_runs_joined([(str(one), _content(one)) for one in files])]
+    tables = with_tables_apart([(str(one), _content(one)) for one in files])
+    whole = [(Path(name).name, data) for name, data in with_runs_joined(tables)]
     given = {"gain": gain, "hold": hold}
     names = [name for name, _ in whole]
     of_all, of_some = _said(names, channel or [], time or [], rate or [], dialect or [])

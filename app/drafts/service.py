@@ -21,6 +21,7 @@ from ident.drafts.answers import Answer, Answers, FileAnswers
 from ident.drafts.draft import Draft
 from ident.drafts.raw import RawFile, read_or_shown
 from ident.drafts.signal_files import named_runs, with_runs_joined
+from ident.drafts.tables_apart import may_hold_tables, with_tables_apart
 from ident.drafts.text import as_yaml, run_files
 from ident.errors import Unusable
 from ident.readers import read_source
@@ -57,7 +58,7 @@ def begin(context: Context, files: Mapping[str, BinaryIO]) -> DraftView:
     context.storage.tidy()
     name, store = context.storage.begun()
     try:
-        whole = _joined({inside(path, "upload"): content for path, content in files.items()})
+        whole = _joined(_apart({inside(path, "upload"): content for path, content in files.items()}))
         plain = {PurePosixPath(path).name: content for path, content in whole.items()}
         if len(plain) < len(whole):
             raise Unusable("duplicate-file", "two files have one name", "upload", "give each its own name")
@@ -67,6 +68,18 @@ def begin(context: Context, files: Mapping[str, BinaryIO]) -> DraftView:
     except BaseException:
         shutil.rmtree(store.folder, ignore_errors=True)
         raise
+
+
+def _apart(files: Mapping[str, BinaryIO]) -> Mapping[str, BinaryIO]:
+    """The files, each text that holds several tables as a file of each. Raises Unusable."""
+    found: dict[str, BinaryIO] = {}
+    for name, file in files.items():
+        data = file.read(LIMITS.file + 1) if may_hold_tables(name) else b""
+        check_size(len(data), LIMITS.file, "the file", name)
+        file.seek(0)
+        parts = with_tables_apart([(name, data)])
+        found |= {name: file} if len(parts) == 1 else {part: io.BytesIO(content) for part, content in parts}
+    return found
 
 
 def _joined(files: Mapping[str, BinaryIO]) -> Mapping[str, BinaryIO]:

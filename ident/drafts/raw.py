@@ -26,6 +26,8 @@ from ident.units.quantity import unit_scale
 
 JOINED = "# joined: "
 """How a line begins, above a table that was joined from several files, that says how."""
+CUT = "# cut: "
+"""How a line begins, above a table that was one of several in a file, that says which."""
 _OF_TABLES = (".json",)
 _OF_DIALECT = ("no-columns", "comma-twice", "not-numeric", "ragged-row", "bad-rows")
 """Refusals that another dialect may cure."""
@@ -170,6 +172,7 @@ class RawFile:
             assumed = f"{self.name}: the interval of {self.period[0]:g} has no unit; seconds are assumed"
         lines = self.preamble.splitlines()
         joins = [f"{self.name} is joined {one.removeprefix(JOINED)}" for one in lines if one.startswith(JOINED)]
+        joins += [f"{self.name} is cut {one.removeprefix(CUT)}" for one in lines if one.startswith(CUT)]
         return tuple(filter(None, (*joins, *self.table.notices, assumed, *self.named_units, *self.left_out)))
 
     def values(self, column: str | int) -> Samples:

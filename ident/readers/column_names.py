@@ -239,9 +239,23 @@ def stem_of(name: str) -> str:
 def without_common_words(names: Sequence[str]) -> tuple[str, ...]:
     """Names without the words that all of them share at an end: of EXP_Time and EXP_Pos, Time and Pos.
 
-    They stay as they are where one of them is known, one would be left without a word, or the words are a unit.
+    A time need not share them: of Time, Axial Force and Axial Displacement. They stay as they are where one that is
+    known would mean another thing, no more of them are known without the words, one would be left without a word, or
+    the words are a unit.
     """
-    if len(names) < 2 or any(is_known(name) for name in names):
+    others = [name for name in names if not is_time(name)]
+    shorter = dict(zip(others, _shortened(others), strict=True))
+    known = [name for name in others if is_known(name)]
+    if known or len(others) < len(names):
+        kept = all(channel_of(name) == channel_of(shorter[name]) for name in known)
+        if not kept or sum(map(is_known, shorter.values())) <= len(known):
+            return tuple(names)
+    return tuple(shorter.get(name, name) for name in names)
+
+
+def _shortened(names: Sequence[str]) -> tuple[str, ...]:
+    """Names without the words that all of them share at an end, where each has others."""
+    if len(names) < 2:
         return tuple(names)
     parts = [re.split(_BETWEEN_WORDS, bare(name)) for name in names]
     first = _shared(parts)

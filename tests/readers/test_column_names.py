@@ -112,6 +112,10 @@ def test_what_all_names_have_in_common_says_nothing_of_a_column():
     assert {name: answer.unit for name, answer in draft.known(file).channels.items()} == {
         "force": "kN", "displacement": "mm"
     }  # fmt: skip
+    file, draft = known("Tiempo [s]", "Axial Force [kN]", "Axial Displacement [mm]", "Axial Count [1]")
+    assert {*draft.known(file).channels} == {"force", "displacement"}
+    assert without_common_words(("Time", "Ch 1 Force", "Ch 1 Displacement")) == ("Time", "Force", "Displacement")
+    assert without_common_words(("Time", "Motor A", "Motor B")) == ("Time", "Motor A", "Motor B")
     assert without_common_words(("cmd_pos", "cmd_vel")) == ("cmd_pos", "cmd_vel")
     assert without_common_words(("pos_mm", "ref_mm")) == ("pos_mm", "ref_mm")
     assert without_common_words(("run_a", "run_b_a")) == ("run_a", "run_b_a")
