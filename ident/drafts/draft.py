@@ -160,7 +160,7 @@ class Draft:
         if not drives & known.channels.keys() and self._said(file, "command") != NONE:
             found.append(self._missing_drive(file, known))
         if not wanted or wanted not in known.channels:
-            what = wanted or "displacement, velocity or force"
+            what = wanted or "displacement, velocity, force or load pressure (load_pressure)"
             found.append(Missing(f"channel {wanted or OUTPUTS[0]}", f"which column of {_listed(file)} is the {what}"))
         for channel, answer in known.channels.items():
             if not answer.unit:
