@@ -41,7 +41,7 @@ def read_clock(time: Samples, where: str) -> Clock:
     Raises Unusable: ``time-not-monotonic``.
     """
     steps = np.diff(time)
-    if (steps == 0).any() and (steps >= 0).all() and (printed := _of_few_digits(time)) is not None:
+    if (steps == 0).any() and (steps >= 0).all() and (printed := of_few_digits(time)) is not None:
         return printed
     if not (steps > 0).all():
         index = int(np.argmin(steps > 0)) + 1
@@ -67,8 +67,9 @@ def read_clock(time: Samples, where: str) -> Clock:
     return Clock(rate, stray / step, gaps, lost or (printed and not gaps), even if printed else time)
 
 
-def _of_few_digits(time: Samples) -> Clock | None:
-    """The even clock of a time that repeats itself since it was printed with too few digits; None of any other."""
+def of_few_digits(time: Samples) -> Clock | None:
+    """The even clock of a time t (n,) in s that repeats itself since it was printed with too few digits; None of any
+    other."""
     numbers = np.arange(len(time), dtype=np.float64)
     step, begin = np.polyfit(numbers, time, 1)
     even: Samples = begin + step * numbers

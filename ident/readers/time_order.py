@@ -7,6 +7,7 @@ from collections.abc import Mapping
 import numpy as np
 from numpy.typing import NDArray
 
+from ident.readers.clock import of_few_digits
 from ident.readers.table import NUMERIC, Array
 from ident.run import Samples
 from ident.words.number import count
@@ -27,16 +28,19 @@ def oldest_first(raw: Mapping[str, Array]) -> tuple[dict[str, Array], str]:
 
 
 def with_new_times(time: Samples) -> tuple[NDArray[np.bool_], str]:
-    """Which rows have a time t (n,) that is known and not that of the row before; and what to say of the others.
+    """Which rows have a time t (n,) in s that is known and not that of the row before; and what to say of the others.
 
-    All rows, where a time stands for two rows or more in the mean: then it is printed too coarsely to tell a clock.
+    All rows that have a time, where an even clock was printed with too few digits, or where most times are repeated: a
+    remedy is in the refusal of such a clock.
     """
     known = ~np.isnan(time)
+    given = time[known]
+    repeats = np.concatenate([[False], np.diff(given) == 0])[: len(given)]
+    if repeats.any() and (2 * int(repeats.sum()) >= len(given) or of_few_digits(given) is not None):
+        repeats[:] = False
     new = known.copy()
-    new[known] = np.concatenate([[True], np.diff(time[known]) != 0])[: int(known.sum())]
-    repeated, without = int(known.sum() - new.sum()), int(len(time) - known.sum())
-    if 2 * repeated >= known.sum():
-        new, repeated = known, 0
+    new[known] = ~repeats
+    repeated, without = int(repeats.sum()), int(len(time) - len(given))
     parts = [f"{count(without, 'row')} without a time"] if without else []
     parts += [f"{count(repeated, 'row')} with the time of the row before"] if repeated else []
     return new, f"{' and '.join(parts)} {'is' if without + repeated == 1 else 'are'} left out" if parts else ""

@@ -128,10 +128,19 @@ def test_rows_without_a_new_time_are_left_out_and_told(tmp_path):
     assert "1 row without a time and 2 rows with the time of the row before are left out" in told(matrix)
 
 
-def test_times_that_are_printed_too_coarsely_stay_refused(tmp_path):
-    rows = [f"{np.floor(time * 10) / 10:.1f},{row.split(',', 1)[1]}" for time, row in zip(TIME, table(), strict=True)]
+def test_rows_of_an_even_clock_that_was_printed_with_too_few_digits_all_stay(tmp_path):
+    lines = [f"{time:.1f},{row.split(',', 1)[1]}" for time, row in zip(TIME, table(), strict=True)]
+    matrix = read(tmp_path, lines)
+    (run,) = matrix.runs
+    assert (run.length, run.sample_rate) == (COUNT, pytest.approx(RATE, rel=1e-3))
+    assert "left out" not in told(matrix)
+
+
+def test_rows_of_an_uneven_clock_of_which_most_times_are_repeated_are_refused(tmp_path):
+    times = np.floor(5 * TIME**1.3) / 5
+    lines = [f"{time:.1f},{row.split(',', 1)[1]}" for time, row in zip(times, table(), strict=True)]
     with pytest.raises(Unusable) as refused:
-        read(tmp_path, rows)
+        read(tmp_path, lines)
     assert refused.value.code == "time-not-monotonic"
 
 

@@ -42,7 +42,7 @@ def terms_of(models: CandidateModels, selection: Selection, budget: SearchBudget
     """Terms in addition to the given model and, where effects were selected, to the selected one.
 
     A selected effect may imitate a term, and is redundant with that term. The terms of the first search stay where
-    there is no time for the second, if they leave less of the held-out data than the selected effects.
+    there is no time for the second, if their held-out error is smaller than that of the selected effects.
     """
     alone = _search(selection, selection.base, budget)
     if not selection.added:
@@ -68,7 +68,7 @@ def _of_both_searches(
 
 
 def _of_first_search(alone: DiscoveryResult, selection: Selection) -> DiscoveryResult:
-    """The terms of a search that the time ended; none where the selected effects leave less of the held-out data."""
+    """The terms of a search that the time ended; none where the selected effects have the smaller held-out error."""
     before, selected = (refit.held_out.error for refit in (selection.base, selection.fitted))
     if alone.error_with_terms(before, "held_out") < selected:
         return alone
