@@ -88,6 +88,7 @@ class Run(Shown):
     rated_current: float | None = None
     clock_jitter: float = 0.0  # largest deviation of the time column from an even clock, in samples
     gaps: int = 0  # samples missing from the time column
+    unbroken: tuple[int, int] | None = None  # rows [first, end) of its file: the longest part without a gap
     evened: bool = False  # brought from the uneven clock of its time column to an even one
     past: Samples | None = None  # the command up to the first sample, where the record is cut out of a longer file
     record: str = ""

@@ -15,6 +15,7 @@ from ident.words.message import message
 JITTER = 0.5  # samples; a time printed with too few digits stays below, a real clock that errs more does not
 SAMPLES_A_CYCLE = 10.0  # of the highest excited frequency; below, the command between samples decides the fit
 POWER = 0.95
+FEW = 0.01  # of the samples of a run: interpolated a tenth of the deviation off, so many leave 1 % of the deviation
 QUICK, SETTLED = 2, 10  # samples behind a step: most of the answer, and all of it
 MOST = 0.8  # of the answer
 STEPS = 3  # at least, to tell it by
@@ -23,8 +24,11 @@ STEPS = 3  # at least, to tell it by
 def timing(run: Run, response: Response | None) -> Iterator[Finding]:
     """Gaps and jitter of a time column; samples a cycle."""
     if run.gaps:
+        first, end = run.unbroken or (0, run.length)
         key = "check.gaps_filled" if run.evened else "check.gaps"
-        yield Finding.of(run.id, "doubt", "gaps", message(key, run=run.id, missing=run.gaps))
+        text = message(key, run=run.id, missing=run.gaps, first=first, end=end)
+        harmless = run.evened and run.gaps <= FEW * run.length
+        yield Finding.of(run.id, "note" if harmless else "doubt", "gaps", text)
     if run.evened and run.clock_jitter > STRAY:
         key = "check.jitter_held" if run.hold == "zoh" else "check.jitter_interpolated"
         text = message(key, run=run.id, jitter=run.clock_jitter, rate=run.sample_rate)

@@ -25,7 +25,8 @@ class Clock:
     """`rate` in Hz; `jitter`, the largest deviation from an even clock, in samples; `gaps`, samples missing.
 
     `even`: the samples are taken as even; what deviates is the printing of the time, or too much is missing.
-    `time` (n,) in s is the time without what its printing rounds off.
+    `time` (n,) in s is the time without what its printing rounds off. `unbroken` are the first and the last sample of
+    the longest part without a gap.
     """
 
     rate: float
@@ -33,6 +34,7 @@ class Clock:
     gaps: int
     even: bool
     time: Samples
+    unbroken: tuple[int, int]
 
 
 def read_clock(time: Samples, where: str) -> Clock:
@@ -64,7 +66,9 @@ def read_clock(time: Samples, where: str) -> Clock:
     printed = stray <= STRAY * step or stray < _ROUNDED * _last_digit(time)
     long = counted[counted - 1.0 > _SHORT * len(time)] - 1.0
     lost = gaps > len(time) or float(long.sum()) > _LOST * len(time)
-    return Clock(rate, stray / step, gaps, lost or (printed and not gaps), even if printed else time)
+    parts = np.split(np.arange(len(time)), np.flatnonzero(counted > 1.0) + 1)
+    first, last = (int(number) for number in max(parts, key=len)[[0, -1]])
+    return Clock(rate, stray / step, gaps, lost or (printed and not gaps), even if printed else time, (first, last))
 
 
 def of_few_digits(time: Samples) -> Clock | None:
@@ -76,7 +80,7 @@ def of_few_digits(time: Samples) -> Clock | None:
     stray = float(np.max(np.abs(time - even)))
     if stray >= _ROUNDED * _last_digit(time):
         return None
-    return Clock(float(f"{1 / step:.9g}"), stray / float(step), 0, True, even)
+    return Clock(float(f"{1 / step:.9g}"), stray / float(step), 0, True, even, (0, len(time) - 1))
 
 
 def _last_digit(time: Samples) -> float:

@@ -28,7 +28,8 @@ class OnOneClock:
     """Channels (n,) each, on the clock of the outputs: at `rate`, Hz, `evened` where they are not the file's own
     samples.
 
-    They cover the rows [`first`, `end`) of the file. `told` says what had no value, empty where all had.
+    They cover the rows [`first`, `end`) of the file; `unbroken` are the longest part of them without a gap. `told` says
+    what had no value, empty where all had.
     """
 
     channels: dict[str, Samples]
@@ -37,6 +38,7 @@ class OnOneClock:
     evened: bool
     first: int
     end: int
+    unbroken: tuple[int, int]
     told: str = ""
 
 
@@ -76,7 +78,8 @@ def on_one_clock(
     on_clock = {name: np.ascontiguousarray(values[:length]) for name, values in on_clock.items()}
     first, last = (int(number) for number in numbers[rows][[0, -1]])
     told = _told(lacking, total, known, rows, (first, last), rate) if lacking else ""
-    return OnOneClock(on_clock, clock, rate, not own_rows, first, last + 1, told)
+    begin, end = (int(numbers[rows][place]) for place in clock.unbroken)
+    return OnOneClock(on_clock, clock, rate, not own_rows, first, last + 1, (begin, end + 1), told)
 
 
 def _of_outputs(known: Mapping[str, Rows], time: Samples, outputs: Sequence[str], where: str) -> Rows:

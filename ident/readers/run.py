@@ -109,7 +109,7 @@ def _on_one_clock(
     clock = found.clock
     run = replace(
         described.labels, channels=found.channels, sample_rate=found.rate, clock_jitter=clock.jitter, gaps=clock.gaps,
-        evened=found.evened,
+        evened=found.evened, unbroken=found.unbroken if clock.gaps else None,
     )  # fmt: skip
     return run, found
 

@@ -58,11 +58,11 @@ CHECKS: Mapping[str, str] = {
         "{channel} of {run:run} reaches {highest:.3g} Pa where the supply is {supply:.3g} Pa; correct the unit of the "
         "channel or supply_pressure",
     "check.gaps":
-        "samples of {run:run} are missing ({missing}), and the phase after a gap is shifted. Use the longest part "
-        "without a gap (rows), or repeat the run",
+        "samples of {run:run} are missing ({missing}), and the phase after a gap is shifted. Repeat the run, or use "
+        "the longest part without a gap, rows: [{first}, {end}]",
     "check.gaps_filled":
-        "samples of {run:run} are missing ({missing}), and they were interpolated. Use the longest part without a gap "
-        "(rows), or repeat the run",
+        "samples of {run:run} are missing ({missing}), and they were interpolated. The longest part without a gap is "
+        "rows: [{first}, {end}]",
     "check.jitter":
         "the clock of {run:run} has a jitter of up to {jitter:.3g} samples, and a constant sample rate is assumed. "
         "Record with a hardware clock, or print the time with more digits",

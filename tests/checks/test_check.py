@@ -97,6 +97,9 @@ def test_a_command_that_stands_still_is_found_inside_a_run_but_not_at_its_ends(f
 def test_gaps_and_jitter_are_told(faulty):
     assert faulty.run(1, gaps=3).found() == {("run-1", "gaps"): "doubt"}
     assert "are missing (3)" in faulty.run(1, gaps=3).text("gaps")
+    assert "rows: [40, 900]" in faulty.run(1, gaps=3, unbroken=(40, 900)).text("gaps")
+    assert faulty.run(1, gaps=3, evened=True).found() == {("run-1", "gaps"): "note"}
+    assert faulty.run(1, gaps=300, evened=True).found() == {("run-1", "gaps"): "doubt"}
     assert faulty.run(1, clock_jitter=0.7).found() == {("run-1", "clock-jitter"): "doubt"}
     assert faulty.run(1, clock_jitter=0.3).found() == {("run-1", "clock-jitter"): "note"}
     assert faulty.run(1, clock_jitter=0.05).found() == {}

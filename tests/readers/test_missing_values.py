@@ -47,7 +47,7 @@ def told(matrix: Matrix) -> str:
 def test_single_cells_without_a_value_are_interpolated_and_told(tmp_path, word):
     matrix = read(tmp_path, table({250: word}, {100: word, 101: word, 300: word}))
     (run,) = matrix.runs
-    assert (run.length, run.sample_rate, run.gaps) == (COUNT, RATE, 3)
+    assert (run.length, run.sample_rate, run.gaps, run.unbroken) == (COUNT, RATE, 3, (102, 300))
     np.testing.assert_allclose(run.channels["velocity"], SPEED, atol=2e-3)
     np.testing.assert_allclose(run.command, np.where(np.arange(COUNT) == 250, LEVELS[249], LEVELS), atol=1e-6)
     assert "no value of command in 1 and velocity in 3 of 400 rows" in told(matrix)
