@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from ident.readers.clock import of_few_digits
 from ident.readers.table import NUMERIC, Array
 from ident.run import Samples
+from ident.words.listed import all_of
 from ident.words.number import count
 
 
@@ -43,4 +44,4 @@ def with_new_times(time: Samples) -> tuple[NDArray[np.bool_], str]:
     repeated, without = int(repeats.sum()), int(len(time) - len(given))
     parts = [f"{count(without, 'row')} without a time"] if without else []
     parts += [f"{count(repeated, 'row')} with the time of the row before"] if repeated else []
-    return new, f"{' and '.join(parts)} {'is' if without + repeated == 1 else 'are'} left out" if parts else ""
+    return new, f"left out: {all_of(parts)}" if parts else ""

@@ -125,7 +125,7 @@ def test_rows_without_a_new_time_are_left_out_and_told(tmp_path):
     matrix = read(tmp_path, rows)
     (run,) = matrix.runs
     np.testing.assert_allclose(run.channels["velocity"], SPEED, atol=1e-6)
-    assert "1 row without a time and 2 rows with the time of the row before are left out" in told(matrix)
+    assert "left out: 1 row without a time and 2 rows with the time of the row before" in told(matrix)
 
 
 def test_rows_of_an_even_clock_that_was_printed_with_too_few_digits_all_stay(tmp_path):
