@@ -10,6 +10,7 @@ samples in which the play turns or the supply pressure is reached are divided. T
 from __future__ import annotations
 
 from math import log, sqrt
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -28,6 +29,7 @@ PARTS = (1, 2, _OF.turning, _OF.passing)
 """Into how many parts a sample may be divided."""
 _WHOLE, _HALVES, _TURNING, _PASSING = range(len(PARTS))
 _FAR = _OF.far
+_NO_SIDE: Any = np.int64(0)  # of the play is in contact; to numba a constant of Python would be a type of its own
 
 
 @jit(nogil=True, error_model="numpy")
@@ -111,7 +113,7 @@ def respond_exact(  # noqa: PLR0912, PLR0915 - one loop over the samples, whose 
         wI = 1.0
     else:
         wB = 1.0 if w > samples[0] else -1.0
-    contact = 0
+    contact = _NO_SIDE
     gains, gains_T = gains_of(T, step, PARTS)
     # The speed at which the link starts, over the root, and how it moves with dead space and table, of each side.
     start, start_slope = np.zeros(2), np.zeros(2)

@@ -7,6 +7,7 @@ all differ in length, so that the kernel's sixteen lanes would run nearly empty:
 from __future__ import annotations
 
 from math import exp, sqrt
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,6 +15,9 @@ from numpy.typing import NDArray
 from ident.simulation.jit import jit
 
 Array = NDArray[np.float64]
+_ONCE: Any = np.int64(1)
+_LEVEL: Any = np.bool_(False)
+"""To numba each constant of Python is a type of its own, for which a function is compiled anew."""
 
 
 @jit(nogil=True, error_model="numpy")
@@ -156,7 +160,7 @@ def residuals(
         B, I0 = constants[j, 1], constants[j, 2]
         start[0], start[1], start[2] = position[0], current[0], current[0]
         start[3] = min(max(I0, current[0] - B), current[0] + B)
-        respond(current, step, 1, held, constants[j], nodes, pieces[j], start, answer)
+        respond(current, step, _ONCE, held, constants[j], nodes, pieces[j], start, answer)
         at = 0
         for i in range(2):
             measured = position if i == 0 else pressure
@@ -212,7 +216,7 @@ def compared(
                 first, end = parts[p, 0], parts[p, 1]
                 if j < len(pressures):
                     seen = measured if counts > 0.0 else nothing
-                    rest(pressures[j], seen, first, end, scale, False, out[j, at : at + end - first])
+                    rest(pressures[j], seen, first, end, scale, _LEVEL, out[j, at : at + end - first])
                 else:
                     out[j, at : at + end - first] = 0.0
                 at += end - first

@@ -13,10 +13,18 @@ Array = NDArray[np.float64]
 _LOST = FIT_CRITERIA.refinement.lost
 
 
-@jit(nogil=True)
 def bounded_step(point: Array, H: Array, g: Array) -> Array:
     """−H⁻¹ g on the axes that it leaves in the unit cube; the axis that would leave it farthest stays at its bound, and
-    so on with the others. Zero where H is not finite."""
+    so on with the others. Zero where H is not finite.
+
+    `point` and `g` are (p,), `H` is (p, p), wherever they stand: for arrays with gaps the step would be compiled anew.
+    """
+    step: Array = _bounded_step(*(np.ascontiguousarray(given) for given in (point, H, g)))
+    return step
+
+
+@jit(nogil=True)
+def _bounded_step(point: Array, H: Array, g: Array) -> Array:
     step = np.zeros(len(point))
     if not _is_finite(H):
         return step
@@ -85,7 +93,7 @@ def bounded_steps(point: Array, H: Array, g: Array) -> Array:
     """The step of each of n problems from one point (p,), of H (n, p, p) and g (n, p): (n, p)."""
     steps = np.empty_like(g)
     for i in range(len(g)):
-        step = bounded_step(point, np.ascontiguousarray(H[i]), np.ascontiguousarray(g[i]))
+        step = _bounded_step(point, np.ascontiguousarray(H[i]), np.ascontiguousarray(g[i]))
         for j in range(len(step)):
             steps[i, j] = step[j]
     return steps

@@ -18,7 +18,7 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from ident.simulation.jit import jit
+from ident.simulation.jit import in_place, inlined
 
 Y, P, G, DY, DP, DG, UYP, UYG, UPG = range(9)
 """Places in the state: the estimate, and the factors of its covariance U D Uᵀ, U unit upper triangular."""
@@ -48,7 +48,7 @@ LEAST_NIS = 0.05  # below which the residual drowns in the noise, whatever its c
 _SERIES = 0.1  # of pΔt, below which series are quicker than the exponential and lose no digits
 
 
-@jit(nogil=True)
+@inlined
 def _weights(h: float) -> Any:
     """a, c₀, c₁ and the derivatives of the latter by h = pΔt; series where h is small."""
     if abs(h) < _SERIES:
@@ -65,7 +65,7 @@ def _weights(h: float) -> Any:
     return a, c0, c1, -c0 - d1, d1
 
 
-@jit(nogil=True)
+@inlined
 def _predict(s: Any, c: Any, r0: float, r1: float) -> None:
     """Estimate and covariance a sample later: the step's Jacobian is upper triangular, as U is."""
     dt, y, p, g = c[STEP], s[Y], s[P], s[G]
@@ -79,7 +79,7 @@ def _predict(s: Any, c: Any, r0: float, r1: float) -> None:
     _wander(s, c, r1)
 
 
-@jit(nogil=True)
+@inlined
 def _wander(s: Any, c: Any, r: float) -> None:
     """The fictitious noise of a sample: of each parameter while the motion shows it, and it is known to the cap.
 
@@ -95,14 +95,14 @@ def _wander(s: Any, c: Any, r: float) -> None:
         _widen(s, c[GAIN_NOISE] * c[STEP], 0.0, p)
 
 
-@jit(nogil=True)
+@in_place()
 def _of_gain(s: Any, p: float, g: float) -> Any:
     """p⁴ times the variance of k = g/p, to first order: a sum of squares, never below 0."""
     by = p - g * s[UPG]
     return s[DP] * g * g + s[DG] * by * by
 
 
-@jit(nogil=True)
+@in_place()
 def _widen(s: Any, q: float, xp: float, xg: float) -> None:
     """Add q x xᵀ to the covariance, x = (0, xp, xg): the rank-one update of Agee and Turner."""
     if q == 0.0:
@@ -121,7 +121,7 @@ def _widen(s: Any, q: float, xp: float, xg: float) -> None:
     s[DY] += q * before / s[DP] * xy * xy
 
 
-@jit(nogil=True)
+@inlined
 def _correct(s: Any, c: Any, innovation: float) -> None:
     """Take a sample up, by Bierman's update of the factors."""
     yp, yg = s[UYP], s[UYG]
@@ -144,7 +144,7 @@ def _correct(s: Any, c: Any, innovation: float) -> None:
     s[G] += kg / last * innovation
 
 
-@jit(nogil=True)
+@inlined
 def _reopen(s: Any, c: Any, innovation: float) -> None:
     """What was known of the parameters holds no longer: the covariance of a start, about the present estimate."""
     p, gain = max(s[P], c[LEAST_P]), abs(s[G] / max(s[P], c[LEAST_P]))
@@ -154,13 +154,13 @@ def _reopen(s: Any, c: Any, innovation: float) -> None:
     s[DG] = c[SPREAD_G] * p * p * min(max(gain, 1e-4 * c[MOST_GAIN]), c[MOST_GAIN]) ** 2
 
 
-@jit(nogil=True)
+@inlined
 def _of_y(s: Any) -> Any:
     """The variance of y."""
     return s[DY] + s[UYP] * s[UYP] * s[DP] + s[UYG] * s[UYG] * s[DG]
 
 
-@jit(nogil=True)
+@in_place()
 def advance(s: Any, c: Any, r0: float, r1: float, y: float) -> Any:
     """One sample: the reference ran from r0 to r1, then y was measured (not finite: it was not).
 
@@ -194,7 +194,7 @@ def advance(s: Any, c: Any, r0: float, r1: float, y: float) -> Any:
     return nu * nu
 
 
-@jit(nogil=True)
+@inlined
 def _count(s: Any, nu: float) -> None:
     """What a verdict stands on, a window of samples at a time; the first window is that of finding."""
     s[USED] += 1
@@ -213,7 +213,7 @@ def _count(s: Any, nu: float) -> None:
     s[IN_WINDOW] = s[OF_WINDOW] = s[PRODUCTS] = 0.0
 
 
-@jit(nogil=True)
+@in_place()
 def estimate(s: Any, c: Any) -> Any:
     """τ, k, y and the variances of τ and k, to first order. τ is positive, and both are within their limits."""
     p = max(s[P], c[LEAST_P])
@@ -223,7 +223,7 @@ def estimate(s: Any, c: Any) -> Any:
     return 1.0 / p, gain, s[Y], var_tau, _of_gain(s, 1.0, gain) * square
 
 
-@jit(nogil=True)
+@in_place()
 def sample(s: Any, c: Any, held: bool, r: float, y: float) -> Any:
     """One sample of r and y: τ, k, y, var τ, var k and the normalised innovation squared."""
     before = s[REFERENCE]
@@ -233,14 +233,14 @@ def sample(s: Any, c: Any, held: bool, r: float, y: float) -> Any:
     return tau, gain, position, var_tau, var_gain, nis
 
 
-@jit(nogil=True)
+@in_place()
 def follow(s: Any, c: Any, held: bool, r: Any, y: Any, out: Any) -> None:
     """A block of samples r and y (n,), the rows of :func:`sample` into out (n, 6)."""
     for k in range(len(r)):
         out[k, 0], out[k, 1], out[k, 2], out[k, 3], out[k, 4], out[k, 5] = sample(s, c, held, r[k], y[k])
 
 
-@jit(nogil=True)
+@in_place()
 def compensate(s: Any, c: Any, w: Any, d: float, y: float) -> Any:
     """The command u = (d + τ d′)/k of a sample, d the way that is wanted and y the one measured now.
 

@@ -19,7 +19,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ident.simulation.jit import jit
+from ident.simulation.jit import in_place, inlined
 from ident.simulation.machine_call import advance_from
 
 Array = NDArray[np.float64]
@@ -32,7 +32,6 @@ NumPy's integers have one type, and each of Python's constants one of its own, f
 """
 ROWS = 7
 _NEVER = 1 << 40  # steps between rows that a kernel writes: the loop reads the buffer itself
-_inlined = jit(nogil=True, inline="always")  # a call passes all that a rig holds, which takes longer than its work
 
 
 class Rig(NamedTuple):
@@ -101,7 +100,7 @@ class Rig(NamedTuple):
 # Machines -----------------------------------------------------------------------------------------------------------
 
 
-@_inlined
+@inlined
 def _feed(k: int, g: int, rig: Any) -> None:
     """The commands of the lanes of a kernel before, at and behind the steps of sample k.
 
@@ -131,7 +130,7 @@ def _feed(k: int, g: int, rig: Any) -> None:
         rig.places[at + lane] = window - k * steps - 1
 
 
-@jit(nogil=True)
+@in_place()
 def advance_machines(k: int, rig: Any) -> None:
     """The machines from sample k to k + 1; what their transducers read at k is noted."""
     for g in range(len(rig.code)):
@@ -148,7 +147,7 @@ def advance_machines(k: int, rig: Any) -> None:
             _advance(g, k * rig.steps[g] + 1, (k + 1) * rig.steps[g], rig)
 
 
-@_inlined
+@inlined
 def _advance(g: int, first: int, last: int, rig: Any) -> None:
     advance_from(
         rig.code[g], rig.buffer, rig.begin[g], rig.window, rig.pushes, rig.places, rig.pushed_at, g * LANES, first,
@@ -156,14 +155,14 @@ def _advance(g: int, first: int, last: int, rig: Any) -> None:
     )  # fmt: skip
 
 
-@_inlined
+@inlined
 def _shown(c: int, what: int | np.int64, rig: Any) -> Any:
     """What the kernel of a column shows of it."""
     g = rig.kernel[c]
     return rig.buffer[rig.begin[g] + rig.rows[g, what] * LANES + rig.lane[c]]
 
 
-@_inlined
+@inlined
 def _read(k: int, c: int, beside: float, rig: Any) -> None:
     """The transducers of a column at sample k; the load cell reads a force `beside` that of the kernel."""
     p = rig.part[c]
@@ -176,7 +175,7 @@ def _read(k: int, c: int, beside: float, rig: Any) -> None:
 # What joins them ----------------------------------------------------------------------------------------------------
 
 
-@jit(nogil=True)
+@inlined
 def _advance_joined(k: int, rig: Any) -> None:
     """As :func:`advance_machines`, step by step: each machine gets the force that the others exert on it."""
     steps, parts = rig.steps[0], len(rig.place)
@@ -194,7 +193,7 @@ def _advance_joined(k: int, rig: Any) -> None:
             _interact(k if step == k * steps else -1, system, parts, rig)
 
 
-@_inlined
+@inlined
 def _interact(k: int, system: int, parts: int, rig: Any) -> None:
     """What the machines of a system feel of each other at the begin of the step; at sample k, if any, they are read."""
     felt, push, a = 0, parts, 2 * parts  # where each stands in `rig.u`
@@ -226,7 +225,7 @@ def _interact(k: int, system: int, parts: int, rig: Any) -> None:
 # The rest of the loop -----------------------------------------------------------------------------------------------
 
 
-@jit(nogil=True)
+@inlined
 def control(k: int, c: int, rig: Any) -> Any:
     """u(k) of the sampled controller of a column, whose state goes on, with what was computed ahead."""
     p, d, y, n = rig.part[c], rig.d[k, c], rig.y[k, c], rig.x.shape[1]
@@ -242,7 +241,7 @@ def control(k: int, c: int, rig: Any) -> Any:
     return u
 
 
-@jit(nogil=True)
+@inlined
 def close(k: int, system: int, rig: Any) -> None:
     """Take the numerical part of a system to sample k + 1, by the forces that were measured."""
     parts, n = len(rig.place), rig.z.shape[1]
@@ -267,7 +266,7 @@ def close(k: int, system: int, rig: Any) -> None:
         rig.z[system, i] = rig.scratch[i]
 
 
-@_inlined
+@inlined
 def _ask(k: int, system: int | np.int64, rig: Any) -> None:
     """What the substructure asks of the actuators of a system; one that ran away is taken out.
 
@@ -280,7 +279,7 @@ def _ask(k: int, system: int | np.int64, rig: Any) -> None:
             rig.ended[system] = k
 
 
-@jit(nogil=True)
+@in_place()
 def advance_under(first: int, last: int, rig: Any) -> Any:
     """Samples first to last − 1 under sampled controllers; how many systems have not run away."""
     parts, systems = len(rig.place), len(rig.ended)
@@ -304,7 +303,7 @@ def advance_under(first: int, last: int, rig: Any) -> Any:
     return left
 
 
-@jit(nogil=True)
+@in_place()
 def read(k: int, rig: Any) -> None:
     """d(k) and y(k) of the one system there is, for controllers that are no sampled linear ones."""
     advance_machines(k, rig)

@@ -44,6 +44,19 @@ def jit(**options: Any) -> Callable[[Function], Function]:
     return decorated
 
 
+def in_place(**options: Any) -> Callable[[Function], Function]:
+    """As :func:`jit` without the interpreter's lock, for a function that makes no array and changes those it is given.
+
+    Numba then counts no references to arrays, which takes a quarter of the compilation and of the run.
+    """
+    return jit(nogil=True, _nrt=False, **options)
+
+
+inlined = jit(nogil=True, inline="always")
+"""For a function that one compiled function calls: a call of its own is compiled, too, and takes longer than its work.
+"""
+
+
 def shared(function: Any) -> Any:
     """One of numba's functions, from now on compiled once for all processes of this user."""
     kept = function._cache = _Kept(function)

@@ -7,6 +7,7 @@ in rated currents, positions in m.
 from __future__ import annotations
 
 from math import pi, sin
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,6 +17,7 @@ from ident.simulation.jit import jit
 
 Array = NDArray[np.float64]
 STATIC, FREQUENCY, LEVELS, CONTINUOUS = range(4)
+_HELD: Any = np.bool_(False)  # to numba a constant of Python would be a type of its own
 
 
 @jit()
@@ -95,6 +97,6 @@ def driven(
         if k == 0:
             state[1] = state[2] = current[0]
             state[3] = min(max(constants[2], current[0] - constants[1]), current[0] + constants[1])
-        respond(current[max(k - 1, 0) : k + 1], step, steps, False, constants, nodes, pieces, state, part)
+        respond(current[max(k - 1, 0) : k + 1], step, steps, _HELD, constants, nodes, pieces, state, part)
         last = 1 if k > 0 else 0
         out[0, k], out[1, k], out[2, k] = part[0, last], part[1, last], part[2, last]
