@@ -33,6 +33,7 @@ def test_what_a_process_prints_is_read_back():
     assert Measured(**json.loads(json.dumps(asdict(SOON)))).row == SOON.row
 
 
+@pytest.mark.full
 def test_a_set_that_is_not_there_is_said_so_and_misses_no_goal(tmp_path, monkeypatch):
     """A set that cannot be read does, with the reason."""
     monkeypatch.setattr(records, "DATA", tmp_path)

@@ -100,6 +100,7 @@ def test_the_errors_reported_are_those_of_the_reference(fit, records, hold):
         assert reported[record.trial.id] == pytest.approx(reference.error(record, found, hold), rel=5e-3)
 
 
+@pytest.mark.full
 def test_every_seed_ends_at_the_same_optimum(matrix, hold, full):
     """Cost within 1e-6 relative from every seed: 30 of them in the full form, 3 of every third run in the short one."""
     matrix = matrix if full else third_of(hold)

@@ -87,6 +87,7 @@ def test_it_says_which_ratios_are_determined_and_what_is_not(by_library):
     assert all(entry["std_error"] < 0.1 * abs(entry["value"]) for entry in by_library["determined"])
 
 
+@pytest.mark.full
 def test_a_determined_combination_does_not_depend_on_the_seed(folder, by_library):
     """Other seeds may end at other values of what is not determined, never of what is."""
     other = identify(read_matrix(folder), Settings(seed=11))

@@ -209,6 +209,7 @@ def test_every_name_is_added_by_the_page_s_button(service, servo, bench, asked, 
         assert answer.json()["settings"] == asked[name], name
 
 
+@pytest.mark.full
 def test_every_name_is_added_from_the_command_line(servo, bench, asked, servoident, tmp_path, full, monkeypatch):
     """With the very settings of the service; in the short form two of the fits are made, the others only asked for."""
     seen = list(_fitted(servoident, monkeypatch, servo, bench, tmp_path, full))

@@ -10,7 +10,7 @@ from sqlalchemy import text
 
 from tests.hostile.__main__ import sent
 
-FILES = 24
+FILES = 12
 
 
 def kept(service: TestClient) -> tuple[int, int]:

@@ -52,6 +52,7 @@ def test_the_page_has_them_all_and_leaves_one_out_or_adds_one(service, three):
     assert service.get("/compare", params={"fits": three[0]}).status_code == 422
 
 
+@pytest.mark.full
 def test_the_profile_of_a_parameter_holds_its_estimate(service, three):
     found = service.get(f"/api/v1/fits/{three[0]}/profile", params={"parameter": "tau"}).json()
     estimate = service.get(f"/api/v1/fits/{three[0]}").json()["result"]["parameters"]["tau"]

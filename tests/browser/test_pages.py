@@ -29,7 +29,7 @@ OF_A_DAY = {
 }  # fmt: skip
 """Those looked at by all rules; the other tests do so with those that need more than is here."""
 ELSEWHERE = {
-    "/search", "/units", "/plan", "/matrices/{matrix}/signals", "/live", "/jobs/{job}", "/compare", "/tokens", "/audit",
+    "/search", "/units", "/matrices/{matrix}/signals", "/live", "/jobs/{job}", "/compare", "/tokens", "/audit",
     "/regressions/{regression}", "/webhooks", "/retention", "/{path}", "/actuators/{serial}", "/workers", "/statistics",
     "/limits", "/regressions",
 }  # fmt: skip

@@ -7,6 +7,7 @@ import zipfile
 from pathlib import Path
 
 import numpy as np
+import pytest
 import yaml
 from playwright.sync_api import Page, expect
 
@@ -44,6 +45,7 @@ def played(sent: bytes, folder: Path) -> Path:
     return answered
 
 
+@pytest.mark.full
 def test_a_plan_is_played_uploaded_and_fitted(
     page: Page, site: Service, screenshots: Path | None, tmp_path: Path, watch
 ):

@@ -72,6 +72,7 @@ def test_three_raw_files_become_a_fit_without_a_description(page, watch, site, t
     expect(page.get_by_role("heading", name="Error, eq. (17)")).to_be_visible(timeout=60_000)  # it shows itself
 
 
+@pytest.mark.full
 @pytest.mark.parametrize("case", CASES, ids=lambda case: case.name)
 def test_files_of_any_form_are_described_each_by_its_own(page, watch, site, tmp_path, case, full):
     """Each has its columns, units and time on the page, as it states them; the matrix has the clock of each.

@@ -94,6 +94,7 @@ def every_figure_is_downloaded(page: Page, full: bool) -> None:
             assert answer.body().startswith(first)
 
 
+@pytest.mark.full
 def test_what_if_is_an_address_that_can_be_kept(page, site, fitted):
     """Sizes and gains go into the address; the answer has poles, factors and both figures."""
     page.goto(f"{site.address}/fits/{fitted}/use")

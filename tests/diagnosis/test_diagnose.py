@@ -190,6 +190,7 @@ def test_what_the_catalogue_does_not_hold_is_called_unexplained(full):
     assert "no run was recorded twice. Record one run twice" in found.verdict.text
 
 
+@pytest.mark.full
 @pytest.mark.usefixtures("few_effects")
 def test_the_same_matrix_gives_the_same_diagnosis():
     """Whether its fit is given or made first."""

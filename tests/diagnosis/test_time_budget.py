@@ -128,7 +128,7 @@ def ends(stages: list[str], each_stage: int) -> list[int]:
 def test_after_the_limit_no_simulation_begins_in_any_stage(counted, full):
     """The fit, the ranking, the labels, lags and delays, the error budget, the next run and the terms.
 
-    In the short form the time is over once in every sixth, in the full one twelve times in each. A fit that was made
+    In the short form the time is over once in every ninth, in the full one twelve times in each. A fit that was made
     before is given to what comes after it.
     """
     whole, events = counted.diagnosis(propose=full)
@@ -141,7 +141,7 @@ def test_after_the_limit_no_simulation_begins_in_any_stage(counted, full):
         assert done == total > 0
     assert "preparing" in events.counts
     assert {"prepare", "polish", "predicting", "trying", "confirming", "labels", "error budget", "next run"} <= stages
-    cuts = ends(events.stages, 12) if full else ends(events.stages, 1)[::6]
+    cuts = ends(events.stages, 12) if full else ends(events.stages, 1)[::9]
     if not full:  # the way to the terms is the same
         cuts.append(len(events.stages) + 20)
     fit, of_fit = counted.fit()

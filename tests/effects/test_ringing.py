@@ -41,7 +41,7 @@ def positions(speed: np.ndarray, rate: float, seed: int) -> np.ndarray:
     return way + 0.001 * way.std() * np.random.default_rng([67, seed]).standard_normal(len(way))
 
 
-@pytest.mark.parametrize("seen", [0, 1])
+@pytest.mark.parametrize("seen", short_form([0, 1], 1))
 def test_positions_ring_that_integrate(seen):
     """At seven seeds of eight at least. Least squares alone are misled by the noise of the position at most seeds."""
     runs = [matrix(seed, seen).runs[0] for seed in range(8)]

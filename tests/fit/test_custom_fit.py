@@ -136,6 +136,7 @@ def test_an_own_effect_finds_its_strength(name, overlap):
     assert found.error["fit"] < 1.05 * NOISE
 
 
+@pytest.mark.full
 def test_a_fit_with_an_own_effect_goes_on_after_a_restart(overlap):
     """Settings and state through JSON, each generation in a new process: the same parameters, bit for bit."""
     data, whole = overlap

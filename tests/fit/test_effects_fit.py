@@ -30,6 +30,7 @@ def data() -> Matrix:
     return matrix("dead_zone", 2e-4, seed=5, seconds=0.5, every=3)
 
 
+@pytest.mark.full
 def test_a_search_cut_after_every_generation_ends_the_same(data):
     """Each generation in a new process, the state through JSON: the same parameters, bit for bit."""
     whole = identify(data, SETTINGS)

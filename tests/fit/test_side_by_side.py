@@ -14,6 +14,7 @@ from ident.matrix import Actuator, Matrix
 from ident.presets import preset
 from ident.run import Run
 from ident.simulation.simulate import Simulation
+from tests.short_form import short_form
 
 EFFECTS = tuple(effect for effect in CATALOGUE if effect.name in ("dead_zone", "specimen_hysteresis"))
 SERVO = {"Z0/A^2": 9.004, "tau": 0.03, "m0": 1.0, "c0": 6.829, "Ka/A^2": 2.6e-6, "Cl/A^2": 1.805e-5}
@@ -43,7 +44,7 @@ def points(count: int) -> list[dict[str, float]]:
     return drawn
 
 
-@pytest.mark.parametrize("count", [1, 3])
+@pytest.mark.parametrize("count", short_form([1, 3], 3))
 @pytest.mark.parametrize("begins", ["at rest", "standing", "moving"])
 def test_side_by_side_each_answers_to_the_bit_as_it_does_alone(begins, count):
     """Whatever it begins with, however many steps it asks for, and whatever power stands in its code."""
@@ -56,7 +57,7 @@ def test_side_by_side_each_answers_to_the_bit_as_it_does_alone(begins, count):
     assert not np.array_equal(together[0]["r0"], together[1]["r0"])
 
 
-@pytest.mark.parametrize("count", [1, 3])
+@pytest.mark.parametrize("count", short_form([1, 3], 3))
 def test_first_states_settle_side_by_side_to_the_bit_as_they_do_alone(count):
     """From those that are known of another model, in as many rounds as each takes, with a model that is unstable."""
     noise, asked = matrix("moving", count), points(11)

@@ -35,6 +35,7 @@ def measured(of, gain) -> dict[str, float]:
     return {"phase_margin": margin, "bandwidth": band, "peak": 20 * np.log10(G.max())}
 
 
+@pytest.mark.full
 @pytest.mark.parametrize("quantity", short_form(TARGETS, "peak"))
 def test_the_true_machine_has_what_is_wanted(quantity, full):
     """Fits off by 0.5 % of each parameter: 100 machines each, one in the short form."""
@@ -71,6 +72,7 @@ def test_a_gain_from_a_fit_gives_the_true_machine_what_is_wanted(number, full):
             assert measured(of, chosen.gain)[quantity] == pytest.approx(wanted, abs=tolerance), (draw, quantity)
 
 
+@pytest.mark.full
 def test_a_gain_margin_is_met_and_what_follows_is_said():
     of = reference.TABLE_4
     fit = fit_of(of)

@@ -44,6 +44,7 @@ def slow(seconds, **given):
     return case.changed(sample_rate=RATE), loop
 
 
+@pytest.mark.full
 def test_two_joined_actuators_over_a_spread_are_those_of_a_brute_force(full):
     """200 draws of ± 20 % of both machines (12 in the short form) where a part is unstable: share, scores of each."""
     draws = 200 if full else 12
@@ -130,6 +131,7 @@ def test_the_cause_of_an_instability_is_the_gain_that_rose():
     assert "left.Kp" in found.text[1]
 
 
+@pytest.mark.full
 def test_the_cause_of_an_instability_is_the_machine_that_changed():
     """The damping of the left machine a hundredth of what it was, at the same gains: named, with both values."""
     case, loop = beam(0.1, gains=(20.0, 16.0), delays=(1, 1))

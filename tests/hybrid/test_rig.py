@@ -121,6 +121,7 @@ def test_live_estimates_compensate_the_delay(gain, full):
     assert left[1] <= left[0] / 6
 
 
+@pytest.mark.full
 @pytest.mark.parametrize("gain", short_form([5.0, 10.0], 10.0))
 def test_live_estimates_compensate_the_delay_before_an_isolator(gain, full):
     """Half of the physical spring is one that yields, after Bouc and Wen: still at least five times."""

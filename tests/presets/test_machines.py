@@ -24,6 +24,7 @@ from ident.readers import read_matrix
 from ident.run import Run
 from ident.workflows import compare, diagnose, identify
 from tests.conftest import of_few_effects
+from tests.short_form import short_form
 
 RATE = 200.0
 TIME = np.arange(3000) / RATE
@@ -129,7 +130,7 @@ def motor(seed: int, half_width: float = 0.0) -> Matrix:
     return Matrix(Actuator("MOTOR"), tuple(runs))
 
 
-@pytest.mark.parametrize("of_current", [True, False])
+@pytest.mark.parametrize("of_current", short_form([True, False], True))
 def test_friction_that_a_current_commands_is_named_where_it_follows_the_current(full, of_current):
     """Of 20 N while the current is on, 20 ms behind it; or of 10 N whatever the current is."""
     runs = []
@@ -172,6 +173,7 @@ def test_a_turned_sign_is_said_and_turned_back():
     assert {use: fits[1].error[use] for use in again} == pytest.approx(again, rel=1e-4)
 
 
+@pytest.mark.full
 def test_hidden_friction_of_a_specimen_is_named_and_the_error_falls_to_the_noise(full):
     """Dahl's, with a way of its own, within twice the default: a fifth of the motion's deviation."""
     matrix = specimen(5, friction=20.0)

@@ -18,6 +18,7 @@ def test_it_imports_nothing_of_the_program():
     assert imported <= {"__future__", "dataclasses", "typing", "numpy", "numba", "numpy.typing"}
 
 
+@pytest.mark.full
 def test_finer_steps_change_nothing(monkeypatch):
     """Four times as many: within 0.02 % of each sine's deviation."""
     truth = reference.scattered(0)

@@ -36,6 +36,7 @@ def test_the_reference_imports_nothing_of_the_project():
     assert not names & {"__import__", "exec", "eval", "importlib"}
 
 
+@pytest.mark.full
 def test_the_reference_writes_a_matrix_where_the_project_cannot_be_imported(tmp_path):
     """As a script, with every package of the project blocked, it still writes a whole matrix."""
     blocked = (

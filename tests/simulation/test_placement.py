@@ -8,6 +8,7 @@ import sys
 
 import pytest
 
+from tests.short_form import short_form
 from tests.test_imports import ROOT
 
 CODE = """
@@ -54,7 +55,7 @@ print(len(found), len(simulated))
 """
 
 
-@pytest.mark.parametrize("processor", ["host", "generic"])
+@pytest.mark.parametrize("processor", short_form(["host", "generic"], "host"))
 def test_the_same_bits_come_out_wherever_buffers_lie(processor):
     """On this processor, and compiled for any: a check for overlap that fails in vain must not round otherwise."""
     environment = os.environ | ({"NUMBA_CPU_NAME": "generic"} if processor == "generic" else {})

@@ -149,6 +149,7 @@ def test_no_backup_holds_one(said: str, data: Path, tmp_path: Path) -> None:
     assert found == []
 
 
+@pytest.mark.full
 @pytest.mark.skipif(not SERVERS, reason=MISSING)
 def test_no_dump_of_postgresql_holds_one(said: str, data: Path, tmp_path: Path) -> None:
     """As pg_dump writes it, of the same records."""
