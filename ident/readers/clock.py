@@ -43,8 +43,8 @@ def read_clock(time: Samples, where: str) -> Clock:
     Raises Unusable: ``time-not-monotonic``.
     """
     steps = np.diff(time)
-    if (steps == 0).any() and (steps >= 0).all() and (printed := of_few_digits(time)) is not None:
-        return printed
+    if (steps == 0).any() and (steps >= 0).all() and (coarse := of_few_digits(time)) is not None:
+        return coarse
     if not (steps > 0).all():
         index = int(np.argmin(steps > 0)) + 1
         before, after = time[index - 1 : index + 1]

@@ -32,7 +32,7 @@ def read_run(described: RunDescription, table: Table) -> tuple[tuple[Run, ...], 
     ``not-finite``, ``zero-variance``, ``time-not-monotonic``, ``nothing-left``, ``bad-split``.
     """
     run, described, told = _whole(described, table)
-    parts = (run,)
+    parts: tuple[Run, ...] = (run,)
     if described.split is not None:
         assert described.rows is not None
         parts, of_split = split(run, described.split, described.rows)
