@@ -44,6 +44,7 @@ CHANNELS = (
 )  # fmt: skip
 DISTURBANCES = {"flow_disturbance": "flow", "load_disturbance": "load", "sensor_disturbance": "sensor"}
 """What acts on a machine beside its command, measured: the channel, and the place where it adds."""
+_PULSE = 2  # changes of a command that is a step or a pulse
 
 
 @dataclass(frozen=True)
@@ -109,9 +110,13 @@ class Run(Shown):
 
     @cached_property
     def dwell(self) -> float:
-        """The lower quartile of the times between changes of the command, s; 0 of one that changes less than thrice."""
+        """The lower quartile of the times for which the command is held after its changes, s; 0 where it never changes.
+
+        A step or a pulse is held until the record ends; of more changes that rest is not counted, for it may be short.
+        """
         changes = np.flatnonzero(np.abs(np.diff(self.command)) > ROUNDING * np.abs(self.command).max())
-        return float(np.quantile(np.diff(changes), 0.25)) / self.sample_rate if len(changes) > 2 else 0.0
+        ends = changes if len(changes) > _PULSE else np.append(changes, self.length - 1)
+        return float(np.quantile(np.diff(ends), 0.25)) / self.sample_rate if len(changes) else 0.0
 
     @cached_property
     def drive(self) -> float:

@@ -15,7 +15,7 @@ from ident.parameter import Parameter
 OF_THE_RUNS = frozenset("WXULVMH")
 """What a scale may read of the runs together: W, the angular frequency up to which the command excites the machine
 (rad/s), X, U, L and V, the standard deviations of output, command, position and speed, M, the largest command, H, the
-longest time for which the command of a run is held between its changes (s)."""
+longest time for which the command of a run is held after its changes (s)."""
 ORDER_OF_MAGNITUDE = "order of magnitude; searched over scale-free ratios"
 """The source of a parameter whose bounds belong to no certain machine."""
 

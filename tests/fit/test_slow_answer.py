@@ -78,3 +78,18 @@ def test_a_step_that_is_late_is_found_where_another_run_has_no_steps():
     assert fit.parameters["command_delay.delay"].value == pytest.approx(late / rate, rel=0.02)
     assert fit.values["tau"] == pytest.approx(0.2, rel=0.05)
     assert not any("a bound that no user set" in note for note in fit.notes)  # from there not every search leads on
+
+
+@pytest.mark.parametrize("until", [100.0, 9.0])
+def test_one_step_or_pulse_that_is_late_is_found(until):
+    """A lag of 0.5 s behind a delay of 1.2 s, in closed form: what is held after a change says how late it may be."""
+    rate, late, pole, rng = 100.0, 120, np.exp(-1.0 / 100.0 / 0.5), np.random.default_rng(5)
+    t = np.arange(1500) / rate
+    u = np.where((t >= 3.0) & (t < until), 5.0, 0.0)
+    command = np.concatenate([np.zeros(late), u])[: len(u)]
+    x = scipy.signal.lfilter([0.0, 1.0 - pole], [1.0, -pole], command) + 0.02 * rng.standard_normal(len(u))
+    units = {"command": "V", "displacement": "m"}
+    run = Run("one", "", rate, {"command": u, "displacement": x}, units, hold="zoh")
+    fit = identify(Matrix(Actuator("LATE"), (run,)), Settings(model="first_order", effects=("command_delay",)))
+    assert fit.parameters["command_delay.delay"].value == pytest.approx(late / rate, rel=0.02)
+    assert not any("a bound that no user set" in note for note in fit.notes)
