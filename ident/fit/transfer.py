@@ -10,13 +10,12 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from functools import lru_cache
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ident.linear import LinearModel
-from ident.simulation.compiled import function
+from ident.simulation.kernel.elementwise import elementwise
 
 Array = NDArray[np.float64]
 Pattern = tuple[tuple[bool, ...], ...]
@@ -29,54 +28,49 @@ def values_at(
 
     A run at a time, so that the values are still in the processor's cache when the caller uses them.
     """
-    n = len(pattern) - 1
+    n, size = len(pattern) - 1, len(nodes)
     runs, count = model.system.shape[2:]
-    flat, kernel, scaled_nodes = model.system.reshape(-1), _kernel(pattern), nodes / band
+    scaled_nodes, unit, models = nodes / band, np.array([1.0 / band]), runs * count
+    polynomials = np.empty((2 * (n + 1) + 1, models))
+    _polynomials(pattern)(unit, 1, 1, model.system.reshape(-1), models, models, polynomials, models, 0)
+    values_of, stable = _values(n), polynomials[-1] > 0
     for run in range(runs):
-        polynomials, out = np.empty((2 * (n + 1) + 1) * count), np.empty((count, 2 * len(nodes)))
-        kernel(flat, scaled_nodes, 1.0 / band, polynomials, out, run * count, count, runs * count)
-        yield out, polynomials[-count:] > 0
+        out, first = np.empty((count, 2 * size)), run * count
+        values_of(polynomials[:, first:], models, count, scaled_nodes, size, size, out, size, 2 * size)
+        yield out, stable[first : first + count]
 
 
 @lru_cache
-def _kernel(pattern: Pattern) -> Callable[..., Any]:
+def _polynomials(pattern: Pattern) -> Callable[..., None]:
+    """num and den of models whose entries are rows, and the margin of each."""
     n = len(pattern) - 1
-    lines = [*_faddeev_leverrier(pattern), *_routh(n)]
-    stored = [f"p[{i} * batch + v] = num{i}" for i in range(n + 1)]
-    stored += [f"p[{n + 1 + i} * batch + v] = den{i}" for i in range(n + 1)]
-    loaded = [f"num{i} = p[{i} * batch + v]" for i in range(n + 1)]
-    loaded += [f"den{i} = p[{n + 1 + i} * batch + v]" for i in range(n + 1)]
-    parts = [
-        f"{part} = {_horner([f'{poly}{i}' for i in range(parity, n + 1, 2)])}"
+    rows = [f"e{i}" for i in range((n + 1) ** 2)]
+    lines = (*_faddeev_leverrier(pattern), *_routh(n))
+    return elementwise(lines, ("unit",), tuple(rows), (*_names("num", n), *_names("den", n), "margin"))
+
+
+@lru_cache
+def _values(n: int) -> Callable[..., None]:
+    """[Re G, Im G] at nodes w of models of order n, one after the other."""
+    parts = (
+        f"{poly}_{part} = {_horner([f'{poly}{i}' for i in range(parity, n + 1, 2)])}"
         for poly in ("num", "den")
-        for parity, part in ((0, f"{poly}_re"), (1, f"{poly}_im"))
-    ]
-    source = _SOURCE.format(
-        recursion="\n        ".join([*lines, *stored, f"p[{2 * n + 2} * batch + v] = margin"]),
-        loaded="\n        ".join(loaded),
-        parts="\n            ".join(parts),
+        for parity, part in ((0, "re"), (1, "odd"))
     )
-    return function("transfer", source)
+    lines = (
+        "square = -w * w",
+        *parts,
+        "num_im = num_odd * w",
+        "den_im = den_odd * w",
+        "scale = 1.0 / (den_re * den_re + den_im * den_im)",
+        "re = (num_re * den_re + num_im * den_im) * scale",
+        "im = (num_im * den_re - num_re * den_im) * scale",
+    )
+    return elementwise(lines, (*_names("num", n), *_names("den", n)), ("w",), ("re", "im"))
 
 
-_SOURCE = """from numba import njit
-
-@njit(cache=True, fastmath=True, nogil=True)
-def transfer(x, w, unit, p, out, first, batch, stride):
-    for v in range(batch):
-        {recursion}
-    count = len(w)
-    for v in range(batch):
-        {loaded}
-        for k in range(count):
-            square = -w[k] * w[k]
-            {parts}
-            num_im *= w[k]
-            den_im *= w[k]
-            scale = 1.0 / (den_re * den_re + den_im * den_im)
-            out[v, k] = (num_re * den_re + num_im * den_im) * scale
-            out[v, count + k] = (num_im * den_re - num_re * den_im) * scale
-"""
+def _names(poly: str, n: int) -> tuple[str, ...]:
+    return tuple(f"{poly}{i}" for i in range(n + 1))
 
 
 def _horner(coefficients: list[str]) -> str:
@@ -93,8 +87,8 @@ def _faddeev_leverrier(pattern: Pattern) -> list[str]:
     name = {
         (i, j): f"a{i}_{j}" for i in range(n + 1) for j in range(n + 1) if pattern[i][j]
     }  # row n holds C and D, column n holds B and D
-    entry = "x[{} * stride + first + v]{}"  # A and B in the time unit of the band
-    lines = [f"{text} = {entry.format(i * (n + 1) + j, ' * unit' * (i < n))}" for (i, j), text in name.items()]
+    # A and B in the time unit of the band
+    lines = [f"{text} = e{i * (n + 1) + j}{' * unit' * (i < n)}" for (i, j), text in name.items()]
     lines += [f"den{n} = 1.0", f"num{n} = {name.get((n, n), '0.0')}"]
     M: dict[tuple[int, int], str] = {(i, i): "" for i in range(n)}  # "" stands for the factor 1
     for power in range(n - 1, -1, -1):

@@ -32,7 +32,7 @@ from ident.simulation.kept import kept
 LANES = 16
 WIDE = 8
 """Lanes of one operation, two registers of AVX2 or one of AVX-512: fewer cost as much."""
-_VECTOR = f"<{WIDE} x double>"
+VECTOR = f"<{WIDE} x double>"
 _FAST = "nnan ninf nsz contract"
 _SIGNS: dict[type[ast.AST], str] = {ast.Add: "fadd", ast.Sub: "fsub", ast.Mult: "fmul", ast.Div: "fdiv"}
 _RELATIONS: dict[type[ast.AST], str] = {
@@ -76,7 +76,7 @@ def advance(lines: Sequence[str], fed: Sequence[Fed], shown: int, lanes: int = L
 
 @lru_cache(maxsize=256)
 def _machine_code(lines: Sequence[str], fed: Sequence[Fed], shown: int, lanes: int) -> Any:
-    return _engine(lambda: _program(lines, fed, shown, lanes), (_writer(), repr((fed, shown, lanes)), *lines))
+    return engine(lambda: _program(lines, fed, shown, lanes), (written_by(), repr((fed, shown, lanes)), *lines))
 
 
 @lru_cache(maxsize=256)
@@ -90,7 +90,7 @@ def address(lines: Sequence[str], fed: Sequence[Fed], shown: int, lanes: int) ->
 
 
 @dataclass
-class _Writer:
+class Writer:
     """Operations on eight lanes, from the `lane` on, in the order of the lines.
 
     What was computed or stored once is known by what it is.
@@ -111,7 +111,7 @@ class _Writer:
             if columns > 1:
                 at = self._new(f"add i64 {self._once(f'mul i64 {at}, {columns}')}, {column}")
             value = self._new(f"load double, ptr {self._new(f'getelementptr double, ptr %{array}, i64 {at}')}")
-            vector = self._new(f"insertelement {_VECTOR} {vector}, double {value}, i32 {lane}")
+            vector = self._new(f"insertelement {VECTOR} {vector}, double {value}, i32 {lane}")
         self.store(row * LANES, vector)
 
     def line(self, text: str) -> None:
@@ -126,13 +126,13 @@ class _Writer:
 
     def store(self, offset: int, value: str) -> None:
         """Put a value into the buffer."""
-        self.written.append(f"store {_VECTOR} {value}, ptr {self._place(offset)}, align 8")
+        self.written.append(f"store {VECTOR} {value}, ptr {self._place(offset)}, align 8")
         self.known["at", offset] = value
 
     def load(self, offset: int) -> str:
         """What stands in the buffer."""
         if ("at", offset) not in self.known:
-            self.known["at", offset] = self._new(f"load {_VECTOR}, ptr {self._place(offset)}, align 8")
+            self.known["at", offset] = self._new(f"load {VECTOR}, ptr {self._place(offset)}, align 8")
         return self.known["at", offset]
 
     def _place(self, offset: int) -> str:
@@ -156,27 +156,27 @@ class _Writer:
                 return _number(float(value))  # type: ignore[arg-type]
             case ast.Name(id="k"):
                 number = self._once("sitofp i64 %k to double")
-                alone = self._once(f"insertelement {_VECTOR} undef, double {number}, i32 0")
-                return self._once(f"shufflevector {_VECTOR} {alone}, {_VECTOR} undef, <{WIDE} x i32> zeroinitializer")
+                alone = self._once(f"insertelement {VECTOR} undef, double {number}, i32 0")
+                return self._once(f"shufflevector {VECTOR} {alone}, {VECTOR} undef, <{WIDE} x i32> zeroinitializer")
             case ast.Name(id=name):
                 return self.names[name]
             case ast.Subscript():
                 return self.load(_offset(node))
             case ast.UnaryOp(op=ast.USub(), operand=operand):
-                return self._once(f"fneg {_FAST} {_VECTOR} {self._value(operand)}")
+                return self._once(f"fneg {_FAST} {VECTOR} {self._value(operand)}")
             case ast.UnaryOp(op=ast.UAdd(), operand=operand):
                 return self._value(operand)
             case ast.BinOp(left=left, op=op, right=right) if type(op) in _SIGNS:
-                return self._once(f"{_SIGNS[type(op)]} {_FAST} {_VECTOR} {self._value(left)}, {self._value(right)}")
+                return self._once(f"{_SIGNS[type(op)]} {_FAST} {VECTOR} {self._value(left)}, {self._value(right)}")
             case ast.IfExp(test=ast.Compare(left=left, ops=[op], comparators=[right]), body=body, orelse=other):
                 a, b = self._value(left), self._value(right)
-                holds = self._once(f"fcmp {_FAST} {_RELATIONS[type(op)]} {_VECTOR} {a}, {b}")
+                holds = self._once(f"fcmp {_FAST} {_RELATIONS[type(op)]} {VECTOR} {a}, {b}")
                 then, els = self._value(body), self._value(other)
-                return self._once(f"select <{WIDE} x i1> {holds}, {_VECTOR} {then}, {_VECTOR} {els}")
+                return self._once(f"select <{WIDE} x i1> {holds}, {VECTOR} {then}, {VECTOR} {els}")
             case ast.Call(func=ast.Name(id=name), args=arguments) if len(arguments) == _CALLS.get(name):
                 self.called.add(name)
-                given = ", ".join(f"{_VECTOR} {self._value(argument)}" for argument in arguments)
-                return self._once(f"call {_FAST} {_VECTOR} @llvm.{name}.v{WIDE}f64({given})")
+                given = ", ".join(f"{VECTOR} {self._value(argument)}" for argument in arguments)
+                return self._once(f"call {_FAST} {VECTOR} @llvm.{name}.v{WIDE}f64({given})")
         raise TypeError(f"{ast.unparse(node)!r} is nothing that a kernel can do")
 
 
@@ -205,7 +205,7 @@ def _number(value: float) -> str:
 
 def _program(lines: Sequence[str], fed: Sequence[Fed], shown: int, lanes: int) -> str:
     """The function in the language of LLVM: in each step the operations on eight lanes, then those on the next."""
-    parts = [_Writer(first) for first in range(0, lanes, WIDE)]
+    parts = [Writer(first) for first in range(0, lanes, WIDE)]
     for of in parts:
         for row, array, column, columns in fed:
             of.feed(row, array, column, columns)
@@ -227,11 +227,11 @@ def _program(lines: Sequence[str], fed: Sequence[Fed], shown: int, lanes: int) -
         for of, output in zip(parts, outputs, strict=True)
         for line in (
             f"%target_{of.lane} = getelementptr double, ptr %shown, i64 {of.lane}",
-            f"store {_VECTOR} {output}, ptr %target_{of.lane}, align 8",
+            f"store {VECTOR} {output}, ptr %target_{of.lane}, align 8",
         )
     ]
     called = sorted(parts[0].called)
-    declared = (f"declare {_VECTOR} @llvm.{name}.v{WIDE}f64({', '.join([_VECTOR] * _CALLS[name])})" for name in called)
+    declared = (f"declare {VECTOR} @llvm.{name}.v{WIDE}f64({', '.join([VECTOR] * _CALLS[name])})" for name in called)
     steps = [line for of in parts for line in of.written]
     return _PROGRAM.format(
         declared="\n".join(declared), begins="\n  ".join(begins), steps="\n  ".join(steps), stores="\n  ".join(stores)
@@ -293,12 +293,12 @@ def _host() -> tuple[str, str]:
 
 
 @cache
-def _writer() -> str:
-    """What writes the programs: a change of this file makes others of the same lines."""
-    return hashlib.sha256(Path(__file__).read_bytes()).hexdigest()
+def written_by(*files: str) -> str:
+    """What writes programs, these files among it: a change of one makes others of the same lines."""
+    return hashlib.sha256(b"".join(Path(file).read_bytes() for file in (__file__, *files))).hexdigest()
 
 
-def _engine(program: Callable[[], str], written: Sequence[str]) -> llvm.ExecutionEngine:
+def engine(program: Callable[[], str], written: Sequence[str]) -> llvm.ExecutionEngine:
     """The program, compiled, as long as the engine lives; all that it is `written` from says which one it is."""
     processor, features = _processor()
     machine = _target().create_target_machine(cpu=processor, features=features, opt=2, jit=True)
