@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from ident.preprocessing.step import Threshold
 from ident.presets.preset import Preset
 from ident.run import Run
-from ident.stages import ACTING_PRESSURE, DIRECT_FORCE, DRIVEN_MASS, TORQUE
+from ident.stages import ACTING_PRESSURE, DIRECT_FORCE, OPENED_BY_COMMAND, TORQUE
 
 Array = NDArray[np.float64]
 _DRIVES = (DIRECT_FORCE, ACTING_PRESSURE, TORQUE)
@@ -22,9 +22,13 @@ BALANCED = Threshold(
 
 
 def drives_mass(model: Preset) -> bool:
-    """Whether a force, a pressure or a torque, which has the sign of what was recorded, drives a mass."""
+    """Whether a force, a pressure or a torque, which has the sign of what was recorded, drives a mass in open loop.
+
+    In a loop the other sign would be no machine: it would run away.
+    """
     stages = model.chain.stages
-    return DRIVEN_MASS in stages and any(drive in stages for drive in _DRIVES)
+    in_open_loop = DIRECT_FORCE in stages or OPENED_BY_COMMAND in stages
+    return in_open_loop and any(drive in stages for drive in _DRIVES)
 
 
 def against_its_drive(run: Run) -> bool | None:

@@ -67,3 +67,13 @@ def test_a_muscle_that_contracts_under_pressure_is_a_mass_on_a_spring():
     assert fit.error["fit"] < 0.2
     as_recorded = Settings(model="pressure_drive", preprocessing={"force_sign": False})
     assert identify(muscle, as_recorded).error["fit"] > 0.9
+
+
+def test_a_motor_whose_encoder_counts_the_other_way_is_a_motor():
+    """As recorded, its torque constant would be negative, and a motor without a sign explains nothing."""
+    recorded = driven(DAMPER, -1.0, "velocity")
+    volts = {"command": recorded.command * 1e-4, "velocity": recorded.measured - 3.0}
+    run = Run("r", "", RATE, volts, {"command": "V", "velocity": "rad/s"}, hold="zoh", output="velocity")
+    fit = identify(Matrix(Actuator("MOTOR"), (run,)), Settings(model="motor"))
+    assert any("taken with the other sign" in note for note in fit.notes)
+    assert fit.error["fit"] < 0.1
