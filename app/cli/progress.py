@@ -19,7 +19,7 @@ COMPILING = Progress("compiling the simulation (once)", 0, 1)
 @contextmanager
 def shown() -> Iterator[Report]:
     """A report to hand to long work, shown until the block ends; what is compiled meanwhile is reported too."""
-    from ident.simulation.compiled import watching
+    from ident.simulation.jit import watching
 
     with bar() if sys.stderr.isatty() else nullcontext((Lines(), _plain)) as (show, say):
         told: set[str] = set()

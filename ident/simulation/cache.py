@@ -1,7 +1,7 @@
 """The cache folder of compiled kernels: where it is, and how it stays small.
 
-A kernel is a generated file and what numba keeps beside it. The last use of each is noted in the time of access of
-its file; the time of change stays, because numba trusts its machine code by that.
+A kernel is a file of machine code, whose last use is noted in its time of access. Versions before kept a generated
+file and what numba kept beside it.
 """
 
 from __future__ import annotations
@@ -105,7 +105,7 @@ def _last_use(files: list[Path]) -> float:
     for file in files:
         with suppress(OSError):
             found = file.stat()
-            times.append(found.st_atime if file.suffix == ".py" else found.st_mtime)
+            times += (found.st_atime, found.st_mtime)
     return max(times)
 
 

@@ -11,6 +11,7 @@ from __future__ import annotations
 import pickle
 import sys
 from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from operator import attrgetter
 from types import CodeType, FunctionType, ModuleType
 from typing import Any, TypeVar
@@ -31,7 +32,18 @@ from ident.simulation.kept import found, in_turn, keep
 Function = TypeVar("Function", bound=Callable[..., Any])
 _bytes_of: Callable[[Any], bytes] = serialize.dumps
 _code_of = attrgetter("library")  # numba's name for the machine code of what it compiled
+_watchers: list[Callable[[], None]] = []
 VERSIONS = (numba.__version__, llvmlite.__version__, np.__version__, sys.version)
+
+
+@contextmanager
+def watching(tell: Callable[[], None]) -> Iterator[None]:
+    """Until the block ends, `tell` is called before each compilation: it takes seconds, once on a machine."""
+    _watchers.append(tell)
+    try:
+        yield
+    finally:
+        _watchers.remove(tell)
 
 
 def jit(**options: Any) -> Callable[[Function], Function]:
@@ -58,16 +70,14 @@ inlined = jit(nogil=True, inline="always")
 
 
 def shared(function: Any) -> Any:
-    """One of numba's functions, from now on compiled once for all processes of this user."""
+    """One of numba's functions, from now on compiled once for all processes of this user.
+
+    Processes that need it at once wait for the one that compiles.
+    """
     kept = function._cache = _Kept(function)
-    return in_turns(function, lambda: kept.made_of)
-
-
-def in_turns(function: Any, text: Callable[[], str]) -> Any:
-    """One of numba's functions that is kept on disk: processes that need it at once wait for the one that compiles."""
 
     def compile_in_turn(signature: Any) -> Any:
-        with global_compiler_lock, in_turn(text()):
+        with global_compiler_lock, in_turn(kept.made_of):
             return Dispatcher.compile(function, signature)
 
     function.compile = compile_in_turn
@@ -90,7 +100,11 @@ class _Kept(NullCache):  # type: ignore[misc]  # to the type checker a class of 
         target_context.refresh()
         rebuild: Any = CompileResult._rebuild
         code = found(self._text(sig, target_context.codegen()))
-        return None if code is None else rebuild(target_context, *pickle.loads(code))
+        if code is not None:
+            return rebuild(target_context, *pickle.loads(code))
+        for tell in tuple(_watchers):
+            tell()
+        return None
 
     def save_overload(self, sig: Any, data: Any) -> None:
         """Keep what was compiled, unless it holds addresses of this process."""

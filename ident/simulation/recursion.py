@@ -13,7 +13,6 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,7 +21,8 @@ from scipy.special import factorial
 
 from ident.linear import LinearModel
 from ident.simulation.between import nodes
-from ident.simulation.compiled import function
+from ident.simulation.kernel.machine_code import address
+from ident.simulation.machine_call import advance_groups
 from ident.time_budget import check_time
 
 Array = NDArray[np.float64]
@@ -41,13 +41,12 @@ class Recursion:
     D: Array
     start: Array
 
-    def packed(self, lanes: int) -> Array:
-        """One flat buffer, the lane its fastest index: Φ, Γ, C, D, state.
-
-        One buffer at constant offsets lets the compiler see that nothing overlaps. Spare lanes are zero systems.
+    def packed(self) -> Array:
+        """One flat buffer of sixteen lanes, the lane its fastest index: Φ, Γ, C, D, state, then the command at its
+        nodes and the output. Spare lanes are zero systems.
         """
-        spare = lanes - len(self.D)
-        pad = [np.concatenate([a, np.zeros((spare, *a.shape[1:]))]) for a in self._parts]
+        own = [*self._parts, np.zeros((len(self.D), self.gamma.shape[1] + 1))]
+        pad = [np.concatenate([a, np.zeros((LANES - len(self.D), *a.shape[1:]))]) for a in own]
         return np.concatenate([np.moveaxis(a, 0, -1).ravel() for a in pad])
 
     def part(self, first: int, last: int) -> Recursion:
@@ -87,37 +86,32 @@ def discretise(model: LinearModel, sample_rate: float, hold: str) -> Recursion:
 
 
 @lru_cache
-def advance(order: int, inputs: int = 2, lanes: int = LANES) -> Callable[..., Any]:
-    """The compiled recursion for `order` states: kernel(b, u, first, last, out, stride) takes the packed buffer b over
-    the samples first to last − 1 and writes the outputs, a row of lanes a sample, rows `stride` apart in the flat out.
+def advance(order: int, inputs: int = 2) -> Callable[..., None]:
+    """The recursion for `order` states: kernel(b, u, first, last, out, lanes) takes the packed buffers b of so many
+    lanes over the samples first to last − 1 and writes the outputs to the flat out, a row of lanes a sample.
     Of each sample the command has `inputs` values, at its nodes, one after the other in the flat u.
-
-    It is generated with every offset a number: only so does the compiler see that nothing overlaps and use SIMD.
     """
-    n, L = order, lanes
-    gamma, C, D = n * n * L, (n * n + inputs * n) * L, (n * n + (inputs + 1) * n) * L
-    state = D + L
-    read = "\n".join(f"        u{j} = u[k * {inputs} + {j}]" for j in range(inputs))
-    lines = [f"            s{i} = b[{state + i * L} + lane]" for i in range(n)]
-    reading = " + ".join([f"b[{D} + lane] * u0", *(f"b[{C + i * L} + lane] * s{i}" for i in range(n))])
-    lines.append(f"            out[row + lane] = {reading}")
+    n = order
+    gamma, C, D = n * n, n * n + inputs * n, n * n + (inputs + 1) * n
+    state, given = D + 1, D + 1 + n
+
+    def at(row: int) -> str:
+        return f"b[{row * LANES} + lane]"
+
+    reading = " + ".join([f"{at(D)} * {at(given)}", *(f"{at(C + i)} * s{i}" for i in range(n))])
+    lines = [*(f"s{i} = {at(state + i)}" for i in range(n)), f"{at(given + inputs)} = {reading}"]
     for i in range(n):
-        drive = " + ".join(f"b[{gamma + (j * n + i) * L} + lane] * u{j}" for j in range(inputs))
-        terms = " + ".join(f"b[{(i * n + j) * L} + lane] * s{j}" for j in range(n))
-        lines.append(f"            b[{state + i * L} + lane] = {drive} + {terms} + {_TINY} - {_TINY}")
-    return function("recursion", _RECURSION.format(lanes=L, read=read, body="\n".join(lines)))
+        drive = " + ".join(f"{at(gamma + j * n + i)} * {at(given + j)}" for j in range(inputs))
+        terms = " + ".join(f"{at(i * n + j)} * s{j}" for j in range(n))
+        lines.append(f"{at(state + i)} = {drive} + {terms} + {_TINY} - {_TINY}")
+    fed = tuple((given + j, "shared", j, inputs) for j in range(inputs))
+    code, engine = address(tuple(lines), fed, given + inputs, LANES)
 
+    def kernel(b: Array, u: Array, first: int, last: int, out: Array, lanes: int, _kept: object = engine) -> None:
+        begins = np.zeros(lanes, np.int64)
+        advance_groups(code, LANES, (0, lanes // LANES), b, u, u, begins, begins, first, last, 1, out, lanes)
 
-_RECURSION = """from numba import njit
-
-@njit(cache=True, fastmath={{"contract"}}, nogil=True)
-def recursion(b, u, first, last, out, stride):
-    for k in range(first, last):
-{read}
-        row = (k - first) * stride
-        for lane in range({lanes}):
-{body}
-"""
+    return kernel
 
 
 def responses(recursion: Recursion, u: Array, spare: int = 0) -> Iterator[tuple[Array, int, int]]:
@@ -131,12 +125,11 @@ def responses(recursion: Recursion, u: Array, spare: int = 0) -> Iterator[tuple[
     lanes = -(-(batch + spare) // LANES) * LANES
     kernel, length, flat = advance(order, u.shape[1]), max(1, _BLOCK // lanes), np.ascontiguousarray(u).ravel()
     buffer = np.empty(length * lanes)
-    groups = [(recursion.part(i, i + LANES).packed(LANES), buffer[i:]) for i in range(0, lanes, LANES)]
+    packed = np.concatenate([recursion.part(i, i + LANES).packed() for i in range(0, lanes, LANES)])
     for first in range(0, len(u), length):
         last = min(first + length, len(u))
-        for packed, out in groups:
-            check_time()
-            kernel(packed, flat, first, last, out, lanes)
+        check_time()
+        kernel(packed, flat, first, last, buffer, lanes)
         yield buffer[: (last - first) * lanes].reshape(-1, lanes), first, last
 
 

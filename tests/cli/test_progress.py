@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import signal
-import uuid
 from contextlib import suppress
 
 import pytest
@@ -11,46 +10,40 @@ import pytest
 from app.cli.interrupts import heard
 from app.cli.progress import shown
 from ident.progress import Expected, Progress
-from ident.simulation import compiled
-
-SOURCE = """from numba import njit
-
-@njit(cache=True)
-def doubled(x):  # {mark}
-    return 2 * x
-"""
+from ident.simulation import kept
+from ident.simulation.jit import jit
 
 
 @pytest.fixture
 def new_function(tmp_path, monkeypatch):
     """Ask for a function that no earlier process has compiled, as a new process would."""
-    monkeypatch.setattr(compiled, "cache_folder", lambda: tmp_path)
-    source = SOURCE.format(mark=uuid.uuid4().hex)
+    monkeypatch.setattr(kept, "cache_folder", lambda: tmp_path)
 
-    def ask():
-        compiled.function.cache_clear()
-        return compiled.function("doubled", source)
+    def ask(factor=2.0):
+        @jit()
+        def multiplied(x):
+            return factor * x
 
-    yield ask
-    compiled.function.cache_clear()
+        return multiplied
+
+    return ask
 
 
 def test_the_first_compilation_is_announced_and_the_next_process_is_spared_it(new_function, capsys):
-    """The line stands before the seconds of waiting; where the machine code is on disk there is none."""
+    """Where the machine code is on disk there is no line."""
     with shown() as report:
         report(Progress("prepare", 0, 1))
-        function = new_function()
+        assert new_function()(2.0) == 4.0
         assert capsys.readouterr().err.splitlines() == ["prepare 0/1", "compiling the simulation (once) 0/1"]
-        assert function(2.0) == 4.0
         assert new_function()(2.0) == 4.0
     assert not capsys.readouterr().err
 
 
 def test_several_compilations_in_a_row_are_one_line(new_function, capsys):
-    """As at the first fit of all, with a recursion, a transfer function and a kernel."""
+    """As at the first fit of all, whose functions are a dozen."""
     with shown():
-        new_function()
-        new_function()
+        new_function(3.0)(2.0)
+        new_function(4.0)(2.0)
     assert capsys.readouterr().err.splitlines() == ["compiling the simulation (once) 0/1"]
 
 
@@ -58,7 +51,7 @@ def test_nobody_is_told_after_the_work(new_function, capsys):
     """The report of a finished command is not kept."""
     with shown():
         pass
-    new_function()
+    new_function()(2.0)
     assert not capsys.readouterr().err
 
 

@@ -4,21 +4,14 @@ from __future__ import annotations
 
 import os
 import time
-import uuid
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import pytest
 
-from ident.simulation import compiled
+from ident.simulation import kept
 from ident.simulation.cache import IN_USE, OLDEST, tidy, tidy_daily
 
-SOURCE = """from numba import njit
-
-@njit(cache=True)
-def tripled(x):  # {mark}
-    return 3 * x
-"""
 DAY = 86_400.0
 
 
@@ -74,39 +67,20 @@ def test_a_folder_is_looked_through_once_a_day(tmp_path: Path) -> None:
     assert not names(folder)
 
 
-@pytest.fixture
-def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    monkeypatch.setattr(compiled, "cache_folder", lambda: tmp_path)
-    return tmp_path
+def test_a_new_kernel_makes_room_for_itself(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(kept, "cache_folder", lambda: tmp_path)
+    kernel(tmp_path, "old", OLDEST + DAY)
+    kept.keep("a program", b"its machine code")
+    assert kept.found("a program") == b"its machine code"
+    assert "old" not in names(tmp_path)
 
 
-def loaded(source: str) -> float:
-    """What a process gets that has not used the function before."""
-    compiled.function.cache_clear()
-    try:
-        return float(compiled.function("tripled", source)(2.0))
-    finally:
-        compiled.function.cache_clear()
-
-
-def test_a_kernel_that_is_used_stays_and_is_not_compiled_again(folder: Path) -> None:
-    """To use it is noted without a change that would make numba distrust its machine code."""
-    source, told = SOURCE.format(mark=uuid.uuid4().hex), []
-    assert loaded(source) == 6.0
-    for file in folder.rglob("*"):
-        if file.is_file():
-            os.utime(file, (time.time() - OLDEST - DAY, time.time() - OLDEST - DAY))
-    before = names(folder)
-    with compiled.watching(lambda: told.append(1)):
-        loaded(source)  # numba looks at the time of the file, which moved here by hand
-        told.clear()
-        assert loaded(source) == 6.0
-    tidy(folder)
-    assert names(folder) == before
-    assert not told
-
-
-def test_a_new_kernel_makes_room_for_itself(folder: Path) -> None:
-    kernel(folder, "old", OLDEST + DAY)
-    loaded(SOURCE.format(mark=uuid.uuid4().hex))
-    assert "old" not in names(folder)
+def test_a_kernel_that_is_used_stays(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """However long ago it was compiled."""
+    monkeypatch.setattr(kept, "cache_folder", lambda: tmp_path)
+    kept.keep("a program", b"its machine code")
+    (file,) = (file for file in tmp_path.iterdir() if file.suffix == ".o")
+    os.utime(file, (time.time() - OLDEST - DAY,) * 2)
+    assert kept.found("a program") == b"its machine code"
+    tidy(tmp_path)
+    assert kept.found("a program") == b"its machine code"

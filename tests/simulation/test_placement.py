@@ -32,7 +32,7 @@ known = conditions(run, Actuator("", piston_area=4.97e-4))
 values = {p.in_equations: p.value * rng.uniform(0.8, 1.25, LANES) for p in model.parameters} | known
 linear = PRESETS["qian2014"].chain.linearise({**values, **{n: np.full(LANES, v) for n, v in known.items()}})
 recursion = discretise(linear, 4096.0, "linear")
-packed, kernel = recursion.packed(LANES), advance(recursion.C.shape[1])
+packed, kernel = recursion.packed(), advance(recursion.C.shape[1])
 found = set()
 for order in itertools.permutations(("b", "u", "out")):
     for gap in (0, 1, 5, 64):

@@ -46,7 +46,10 @@ _RELATIONS: dict[type[ast.AST], str] = {
 _CALLS = {"sqrt": 1, "pow": 2, "sin": 1, "cos": 1, "tanh": 1}
 Advance = Callable[..., None]
 Fed = tuple[int, str, int, int]
-"""A row that is filled in each step: the row, from what array, from which column of how many."""
+"""A row that is filled in each step: the row, from what array, from which column of how many.
+
+The arrays are the `commands`, the `forces`, and `shared`: commands that are those of every lane.
+"""
 
 
 @lru_cache(maxsize=256)
@@ -56,8 +59,9 @@ def advance(lines: Sequence[str], fed: Sequence[Fed], shown: int, lanes: int = L
     It serves the first `lanes` lanes of the buffer, eight or sixteen, and leaves the others alone.
 
     Before the lines of step k of a lane are carried out, each row of `fed` is filled from commands[command_at[lane] +
-    k + 1] or from the forces alike, of which the columns that it names lie side by side; row `shown` is what is
-    written to `out` (see :class:`ident.simulation.kernel.layout.Kernel`). Arrays are contiguous, of float64 and int64.
+    k + 1] or from the forces alike, of which the columns that it names lie side by side, or from the commands of step
+    k that all lanes share; row `shown` is what is written to `out` (see
+    :class:`ident.simulation.kernel.layout.Kernel`). Arrays are contiguous, of float64 and int64.
     """
     engine = _machine_code(lines, fed, shown, lanes)
     types = [*[ctypes.c_void_p] * 5, *[ctypes.c_int64] * 3, ctypes.c_void_p, ctypes.c_int64]
@@ -104,7 +108,12 @@ class Writer:
     count: int = 0
 
     def feed(self, row: int, array: str, column: int, columns: int) -> None:
-        """Fill a row from the next value of every lane."""
+        """Fill a row from the next value of every lane, or from the one that is that of all."""
+        if array == "shared":
+            at = self._new(f"add i64 {self._once(f'mul i64 %k, {columns}')}, {column}")
+            value = self._new(f"load double, ptr {self._new(f'getelementptr double, ptr %commands, i64 {at}')}")
+            self.store(row * LANES, self._everywhere(value))
+            return
         vector = "undef"
         for lane in range(WIDE):
             at = self._once(f"add i64 %{array}_{self.lane + lane}, %k")
@@ -150,14 +159,16 @@ class Writer:
             self.known[key] = self._new(operation)
         return self.known[key]
 
+    def _everywhere(self, number: str) -> str:
+        alone = self._once(f"insertelement {VECTOR} undef, double {number}, i32 0")
+        return self._once(f"shufflevector {VECTOR} {alone}, {VECTOR} undef, <{WIDE} x i32> zeroinitializer")
+
     def _value(self, node: ast.expr) -> str:
         match node:
             case ast.Constant(value=value):
                 return _number(float(value))  # type: ignore[arg-type]
             case ast.Name(id="k"):
-                number = self._once("sitofp i64 %k to double")
-                alone = self._once(f"insertelement {VECTOR} undef, double {number}, i32 0")
-                return self._once(f"shufflevector {VECTOR} {alone}, {VECTOR} undef, <{WIDE} x i32> zeroinitializer")
+                return self._everywhere(self._once("sitofp i64 %k to double"))
             case ast.Name(id=name):
                 return self.names[name]
             case ast.Subscript():
