@@ -33,3 +33,11 @@ def test_where_there_is_nothing_nothing_is_written(times, count):
     apply = elementwise(LINES, ("a", "b"), ("x", "z", "unused", "y"), ("least", "ratio"))
     apply(np.ones(4), 2, times, np.ones(16), 4, count, out, 4, 4)
     assert np.all(out == 7.0)
+
+
+def test_an_output_may_be_a_row_a_shared_number_or_a_number():
+    out = np.empty((3, 2))
+    elementwise(("row = x", "number = 2.0"), ("a",), ("x",), ("row", "a", "number"))(
+        np.array([3.0]), 1, 1, np.array([5.0, 6.0]), 2, 2, out, 2, 0
+    )
+    assert out.tolist() == [[5.0, 6.0], [3.0, 3.0], [2.0, 2.0]]

@@ -55,7 +55,7 @@ def _program(lines: Sequence[str], shared: Sequence[str], rows: Sequence[str], o
     of.names = {name: f"%c{i}" for i, name in enumerate(shared)} | {name: f"%x{i}" for i, name in enumerate(rows)}
     for line in lines:
         of.line(line)
-    read = set(re.findall(r"%x\d+", "\n".join(of.written)))
+    read = set(re.findall(r"%x\d+", "\n".join([*of.written, *(of.names[name] for name in outputs)])))
     splats = [
         part
         for i in range(len(shared))
