@@ -25,7 +25,7 @@ from ident.fit.result import FitResult
 from ident.fit.settings import GENERAL, Settings
 from ident.plain import written
 from ident.preprocessing import off_steps, screen
-from ident.presets.suited import in_question
+from ident.presets.suited import in_question, is_assumed_loop
 from ident.residuals.budget import Budget, budget
 from ident.residuals.survey import survey
 from ident.words.error import ErrorOf
@@ -107,7 +107,8 @@ def _model(request: Chosen, matrix: MatrixView | None) -> str:
         return matrix.machine
     likeliest, *others = in_question(matrix.runs, oil=matrix.states_oil)
     belongs = request.effects or request.custom or request.bounds or request.set or request.method not in GENERAL
-    return likeliest.name if belongs or (not others and likeliest.name == Settings().model) else ""
+    usual = not others and likeliest.name == Settings().model and not is_assumed_loop(likeliest, matrix.runs)
+    return likeliest.name if belongs or usual else ""
 
 
 def yardsticks(context: Context, fits: Sequence[str]) -> dict[str, Yardstick]:

@@ -31,13 +31,21 @@ from ident.errors import Unusable
 from ident.fit.identification import Identification, completed
 from ident.fit.result import FitResult, Structure, Window
 from ident.fit.settings import Settings
-from ident.fit.summary import noticed
+from ident.fit.summary import HARDLY, noticed
 from ident.fit.windows import likelihood
 from ident.matrix import Matrix
 from ident.preprocessing import off_steps, screen
 from ident.preprocessing.pipeline import ALL_ON
 from ident.presets import Preset, preset
-from ident.presets.suited import in_question, moved_by_command, on_a_spring, told_by_following, unusual
+from ident.presets.suited import (
+    in_question,
+    is_assumed_loop,
+    moved_by_command,
+    on_a_spring,
+    told_by_following,
+    unusual,
+    without_loop,
+)
 from ident.progress import Progress, Report, silent
 from ident.words.message import Message, message
 from ident.words.titles import title
@@ -79,23 +87,24 @@ def compared_structures(
 def _compared(
     matrix: Matrix, report: Report, preprocessing: Mapping[str, bool]
 ) -> tuple[tuple[Structure, ...], FitResult | None]:  # fmt: skip
-    """The models in question as :func:`compared_structures` has them, and the fit of the first where several were."""
+    """The models in question as :func:`compared_structures` has them, and the fit of the first where it was made.
+
+    A loop that nobody stated is the only one where its fit explains the records. Command and output are alike, but not
+    compared, where it explains hardly anything: then it is compared with models without a loop.
+    """
     models = in_question(matrix.runs, matrix.machine, matrix.actuator.states_oil)
+    fitted: dict[str, _FittedStructure] = {}
     if len(models) == 1:
-        only = models[0]
-        if matrix.machine:
-            why = message("structure.described")
-        elif moved_by_command(only, matrix.runs):
-            why = message("structure.moved", machine=only.name, unit=matrix.runs[0].units["command"])
-        elif only.data.turns:
-            why = message("structure.turning", machine=only.name)
-        elif told_by_following(only, matrix.runs):
-            of_position = "displacement" in only.chain.outputs
-            why = message("structure.position_loop" if of_position else "structure.loop", machine=only.name)
-        else:
-            why = message("structure.driven", machine=only.name, driver=only.data.driven_by)
-        return (Structure(only.name, {"held_out": None}, len(only.parameters), str(why)),), None
-    fitted = _all_fitted(models, matrix, report, preprocessing)
+        (only,) = models
+        structure = Structure(only.name, {"held_out": None}, len(only.parameters), str(_why_alone(only, matrix)))
+        if matrix.machine or not is_assumed_loop(only, matrix.runs):
+            return (structure,), None
+        fitted = _all_fitted(models, matrix, report, preprocessing)
+        fit, others = fitted[only.name].fit, without_loop(matrix.runs, matrix.actuator.states_oil)
+        if (fit.error["fit"] or 0.0) < HARDLY or not others:
+            return (structure,), fit
+        models = (only, *others)
+    fitted |= _all_fitted([model for model in models if model.name not in fitted], matrix, report, preprocessing)
     over, tried = _judged(list(fitted.values()))
     springs = on_a_spring(models, matrix.runs, matrix.actuator.states_oil)
     if springs and not fitted[min(tried, key=lambda judged: judged.error).machine].integrates:
@@ -115,6 +124,20 @@ def _compared(
         for number, model in enumerate(compared)
     )
     return tuple(said), fitted[best.machine].fit
+
+
+def _why_alone(only: Preset, matrix: Matrix) -> Message:
+    """Why no other model than this one is in question."""
+    if matrix.machine:
+        return message("structure.described")
+    if moved_by_command(only, matrix.runs):
+        return message("structure.moved", machine=only.name, unit=matrix.runs[0].units["command"])
+    if only.data.turns:
+        return message("structure.turning", machine=only.name)
+    if told_by_following(only, matrix.runs):
+        of_position = "displacement" in only.chain.outputs
+        return message("structure.position_loop" if of_position else "structure.loop", machine=only.name)
+    return message("structure.driven", machine=only.name, driver=only.data.driven_by)
 
 
 def _rather(model: _JudgedStructure, first: _JudgedStructure, probable: Mapping[str, float]) -> Message | None:

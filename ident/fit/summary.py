@@ -33,8 +33,9 @@ from ident.fit.transducer import Offset, offset_at, offsets_that_count, rest_of
 from ident.fit.uncertainty import Covariance, covariance
 from ident.matrix import Matrix
 from ident.noise.floor import Floors
-from ident.presets.preset import Combined, Preset
+from ident.presets.preset import Combined
 from ident.presets.record_units import SAMPLE
+from ident.presets.suited import is_assumed_loop
 from ident.run import Run, over_runs
 from ident.simulation.steps import FASTEST, MOST
 from ident.unstable import UNSTABLE
@@ -396,17 +397,12 @@ def _hardly_explained(settings: Settings, objective: Fitness, error: float) -> I
     causes = [
         *far,
         *([message("cause.offset")] if integrated else []),
-        *([message("cause.no_loop", channel=runs[0].output)] if _assumes_a_loop(preset, runs) else []),
+        *([message("cause.no_loop", channel=runs[0].output)] if is_assumed_loop(preset, runs) else []),
         message("cause.sign"),
         message("cause.model", model=preset.name),
         *unit_causes(objective.matrix.runs),
     ]
     yield str(message("hardly", error=error, causes=causes))
-
-
-def _assumes_a_loop(preset: Preset, runs: Sequence[Run]) -> bool:
-    """Whether the model is a loop that nobody stated: command and output may be alike and no loop compare them."""
-    return preset.chain.reads("Kp") and all(run.gain is None for run in runs)
 
 
 def _beyond(optimum: Optimum, values: Mapping[str, float], label: Mapping[str, tuple[str, str]]) -> Iterator[str]:

@@ -78,8 +78,8 @@ FORCE_SIGN = Step(
     name="force_sign",
     does="turns the sign of the force of a run, or of the motion that a force drives",
     applies="a motion drives the model, a run records force and speed, and their product says that the specimen gives "
-    "work back; or a force, a pressure, a torque or a motor drives a mass in open loop, and every estimation run says that "
-    "the motion is counted against it",
+    "work back; or a force, a pressure, a torque or a motor drives a mass in open loop, and every estimation run says "
+    "that the motion is counted against it",
     without="force and motion are taken with the sign that was recorded",
     thresholds=(GIVES_BACK, BALANCED),
     act=_act,

@@ -82,6 +82,16 @@ def in_question(runs: Sequence[Described], machine: str = "", oil: bool = False)
     return tuple(known for known in found if not known.chain.reads("Kp"))
 
 
+def is_assumed_loop(model: Preset, runs: Sequence[Described]) -> bool:
+    """Whether the model is a loop that nobody stated: command and output may be alike though no loop compares them."""
+    return model.chain.reads("Kp") and all(run.gain is None for run in runs)
+
+
+def without_loop(runs: Sequence[Described], oil: bool = False) -> tuple[Preset, ...]:
+    """The models in question where nothing compares the output with the command, as on both sides of a gear."""
+    return tuple(known for known in suited(runs, oil) if not known.chain.reads("Kp"))
+
+
 def on_a_spring(models: Collection[Preset], runs: Sequence[Described], oil: bool = False) -> tuple[Preset, ...]:
     """The machines against a spring that are not among the `models` in question, since no record of theirs rings.
 

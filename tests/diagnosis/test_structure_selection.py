@@ -15,7 +15,7 @@ from ident.diagnosis import structure_selection
 from ident.diagnosis.candidate_models import CandidateModels
 from ident.diagnosis.evidence.comparison import Residuals
 from ident.diagnosis.evidence.energy_bands import EnergyBands, Record
-from ident.diagnosis.structure_selection import _judged, _preferred, compared_structures
+from ident.diagnosis.structure_selection import _judged, _preferred, choose_structure, compared_structures
 from ident.fit.result import FitResult, Structure, TransducerOffset
 from ident.fit.settings import Settings
 from ident.matrix import Actuator, Matrix
@@ -61,6 +61,24 @@ def of_motor() -> tuple[Structure, ...]:
     matrix = motor(8)
     runs = (replace(run, units={"command": "1", "velocity": "rad/s"}) for run in matrix.runs)
     return compared_structures(replace(matrix, runs=tuple(runs)))
+
+
+@pytest.mark.parametrize(("ratio", "model"), [(-0.3, "first_order"), (1.0, "position_servo")])
+def test_angles_of_both_sides_of_a_gear_are_no_loop(ratio, model):
+    """Command and output are angles both. A loop would bring the output to the command; a gear brings it elsewhere."""
+    matrix = lag("displacement", integrates=False, levels=20)
+    runs = [
+        replace(
+            run, units={"command": "rad", "displacement": "rad"},
+            channels={"command": run.command, "displacement": ratio * run.channels["displacement"]},
+        )
+        for run in matrix.runs
+    ]  # fmt: skip
+    choice = choose_structure(replace(matrix, runs=tuple(runs)))
+    assert choice.structures[0].machine == model
+    assert choice.fit is not None
+    assert choice.fit.error["fit"] < 0.03
+    assert ("first_order" in {one.machine for one in choice.structures}) is (ratio < 0)
 
 
 @pytest.mark.parametrize(("integrates", "model"), [(False, "first_order"), (True, "open_valve")])

@@ -90,7 +90,7 @@ def test_a_fit_that_leaves_four_fifths_of_the_output_explains_hardly_anything(mo
     monkeypatch.setattr(summary, "excited_band", lambda _: 1.0)
     monkeypatch.setattr(summary, "integrates", lambda *_: False)
     monkeypatch.setattr(summary, "unit_causes", lambda _: ())
-    monkeypatch.setattr(summary, "_assumes_a_loop", lambda *_: False)
+    monkeypatch.setattr(summary, "is_assumed_loop", lambda *_: False)
     matrix = SimpleNamespace(runs=(), actuator=None)
     objective: Any = SimpleNamespace(preset=SimpleNamespace(name="m", chain=None), runs=(), matrix=matrix)
     assert bool(list(summary._hardly_explained(Settings(), objective, error))) is doubted

@@ -229,7 +229,7 @@ def test_a_loop_that_nobody_stated_and_that_explains_hardly_anything_is_doubted(
         angle[k] = 0.5 * place
     run = Run("one", "", 100.0, {"command": command, "displacement": angle}, {"command": "rad", "displacement": "rad"})
     quick = {"population": 24, "generations": 6, "elite": 3}
-    fit = identify(Matrix(Actuator("J-1"), (run,)), Settings(options=quick))
+    fit = identify(Matrix(Actuator("J-1"), (run,)), Settings(model="position_servo", options=quick))
     assert fit.error["fit"] > 0.9
     assert "no loop compares displacement with the command" in fit.notes[0]
     assert "--model first_order" in fit.notes[0]
