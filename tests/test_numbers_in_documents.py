@@ -148,7 +148,7 @@ def of_others() -> Iterator[Tie]:
     yield M, "({} % of the deviation that the output has in the others, under more than {} of their command", (
         per_cent(run_exclusion.STANDS.value), PARTS[run_exclusion.DRIVEN.value],
     )  # fmt: skip
-    yield M, "of at least {} samples, all finite", (run.SHORTEST,)
+    yield M, "of at least {} samples; command and output vary", (run.SHORTEST,)
     yield M, "so one of it is 0.0254 m × 6.894757 kPa = {:.6f} m⁴/s", (PRINTED_Z0_FACTOR,)
 
     yield "line.md", "(σ = mean moving range / {})", (plain(D2),)

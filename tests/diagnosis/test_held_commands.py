@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -44,7 +45,9 @@ def test_a_command_is_held_between_its_changes():
     assert run.dwell == HELD / RATE
     moved = Run("m", "", RATE, {"command": np.sin(np.arange(300.0)), "displacement": np.arange(300.0)})
     assert moved.dwell == 1 / RATE
-    assert moved.driven_by("displacement").part(0, 2).dwell == 0.0
+    assert moved.driven_by("displacement").part(0, 2).dwell == 1 / RATE
+    still = replace(moved, channels={**moved.channels, "command": np.ones(300)})
+    assert still.dwell == 0.0
 
 
 @pytest.mark.usefixtures("with_delay")
