@@ -89,8 +89,8 @@ def _compared(
 ) -> tuple[tuple[Structure, ...], FitResult | None]:  # fmt: skip
     """The models in question as :func:`compared_structures` has them, and the fit of the first where it was made.
 
-    A loop that nobody stated is the only one where its fit explains the records. Command and output are alike, but not
-    compared, where it explains hardly anything: then it is compared with models without a loop.
+    A loop that nobody stated is the only one where its fit explains the records. Where it explains hardly anything,
+    nothing compares command and output, and models without a loop are in question, too.
     """
     models = in_question(matrix.runs, matrix.machine, matrix.actuator.states_oil)
     fitted: dict[str, _FittedStructure] = {}
