@@ -107,6 +107,7 @@ def _on_one_clock(
     held = "command" if described.labels.hold == "zoh" else ""
     found = on_one_clock(channels, time, numbers, outputs, held, resample, places["time"])
     clock = found.clock
+    check_long_enough(len(found.channels[outputs[0]]), places["time"])
     run = replace(
         described.labels, channels=found.channels, sample_rate=found.rate, clock_jitter=clock.jitter, gaps=clock.gaps,
         evened=found.evened, unbroken=found.unbroken if clock.gaps else None,
@@ -157,6 +158,11 @@ def check_lengths(raw: dict[str, Array], described: RunDescription) -> None:
         count = end - first
     if count == 0:
         raise Unusable("empty-file", "the file has no samples", where, "give a record")
+    check_long_enough(count, where)
+
+
+def check_long_enough(count: int, where: str) -> None:
+    """Raises Unusable: ``too-short``."""
     if count < SHORTEST:
         what = f"the record has {samples(count, 'sample')}"
         raise Unusable("too-short", what, where, f"record at least {SHORTEST}, better some seconds")
@@ -171,7 +177,8 @@ def part(column: Array, described: RunDescription, where: str) -> Array:
 def in_si(raw: Array, scale: Scale, where: str) -> Samples:
     """factor × raw + offset in new memory, NaN where there is no value.
 
-    Raises Unusable: ``not-finite`` with the first bad sample, ``no-values``."""
+    Raises Unusable: ``not-finite`` with the first bad sample, ``no-values``.
+    """
     with np.errstate(all="ignore"):
         values: Samples = np.multiply(raw, scale.factor, dtype=np.float64)
         if scale.offset:

@@ -103,6 +103,13 @@ def test_a_hole_that_is_too_long_to_interpolate_leaves_the_longest_part(tmp_path
     assert "rows 200 to 399 are used" in told(matrix)
 
 
+@pytest.mark.parametrize("given", [(10, 40, 200, 300, 301), (0, 1, 2, 200, 201, 202, 203)])
+def test_a_run_of_fewer_samples_than_a_clock_needs_is_refused(tmp_path, given):
+    with pytest.raises(Unusable) as refused:
+        read(tmp_path, table(None, {n: "" for n in range(COUNT) if n not in given}))
+    assert refused.value.code == "too-short"
+
+
 def test_channels_without_a_common_time_are_refused(tmp_path):
     cells = (dict.fromkeys(range(200, COUNT), ""), dict.fromkeys(range(200), ""))
     with pytest.raises(Unusable) as refused:
