@@ -18,6 +18,9 @@ from threadpoolctl import ThreadpoolController
 from ident.time_budget import check_time
 
 _DEEP = 16  # threads a core: most of them wait for work inside of their work
+LEAST_SHARED = 500_000
+"""Steps of lanes below which one core simulates them: some 10 ms. To share them out costs about as much, since what
+begins and ends a simulation is Python, of which one core works at a time. No answer depends on it."""
 Item = TypeVar("Item")
 Key = TypeVar("Key", bound=Hashable)
 Outcome = TypeVar("Outcome")

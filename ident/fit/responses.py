@@ -88,7 +88,7 @@ class Sensitivities:
             remove = removal(gram, len(strides), totals)
             return [_Columns(*parts) for parts in zip(Z, gram, remove, totals.tolist(), strict=True)]
 
-        todo = list(fitness.together(len(strides) + 1 + len(fitness.chain.begun)))
+        todo = list(fitness.together(len(strides) + 1 + len(fitness.chain.begun), steps))
         parts = zip(todo, each(of_share, todo), strict=True)
         columns = {run.id: found for runs, part in parts for run, found in zip(runs, part, strict=True)}
         return cls(fitness, strides, columns)
@@ -114,7 +114,7 @@ class Sensitivities:
         todo = [
             (share, np.flatnonzero(steps == level), int(level))
             for level in np.unique(steps)
-            for share in fitness.together(1 + int(np.sum(steps == level)), _LANES)
+            for share in fitness.together(1 + int(np.sum(steps == level)), int(level), _LANES)
         ]
 
         def of_share(share: tuple[tuple[Run, ...], NDArray[np.intp], int]) -> None:
@@ -136,7 +136,7 @@ class Sensitivities:
         lanes = {name: np.append(known[name], value) for name, value in values.items()}
         steps = int(fitness.steps(values, kinks=False).max())
         found: dict[str, Array] = {}
-        for runs in fitness.together(1 + len(next(iter(values.values()))), _LANES):
+        for runs in fitness.together(1 + len(next(iter(values.values()))), steps, _LANES):
             shown = fitness.outputs_of(fitness.simulation(runs, lanes, steps))
             with np.errstate(over="ignore", invalid="ignore"):
                 rows = np.concatenate([part[:, :, 1:] - part[:, :, :1] for part, _, _ in shown])

@@ -93,7 +93,7 @@ def _one_round(models: Sequence[_Model]) -> None:
         parts = [model.runs.released(runs, model.values, model.steps) for model in models]
         return first.normal_matrices_of_each(runs, parts, np.empty(0))
 
-    shares = list(first.together(lanes, of=models[0].pending))
+    shares = list(first.together(lanes, models[0].steps, of=models[0].pending))
     found = each(moments, shares)
     for number, model in enumerate(models):
         of_runs = [pair for runs, of in zip(shares, found, strict=True) for pair in zip(runs, of[number], strict=True)]
@@ -110,7 +110,7 @@ def _alike(models: Sequence[_Model]) -> Iterable[list[int]]:
 
 def _outputs(models: Sequence[_Model]) -> Iterator[tuple[Run, Array]]:
     """Each run with the outputs (v, n) of the models, side by side."""
-    for runs in models[0].runs.together(len(models)):
+    for runs in models[0].runs.together(len(models), models[0].steps):
         joint = side_by_side([model.runs.simulation(runs, model.values, model.steps) for model in models])
         outputs = np.concatenate([rows for rows, _, _ in joint.outputs()])
         yield from ((run, outputs[:, number].T) for number, run in enumerate(runs))

@@ -78,7 +78,7 @@ class SimulatedFitness(SimulatedRuns):
                 found = np.sqrt(np.maximum(variance, 0.0)) / size
             return np.where(np.isfinite(found), found, np.inf)
 
-        todo = list(self.together(vectors))
+        todo = list(self.together(vectors, steps))
         by_run, order = np.concatenate(each(of_runs, todo)), [run for runs in todo for run in runs]
         errors = np.where(np.all(np.isfinite(by_run), axis=0), over_runs(by_run, order), UNSTABLE)
         return np.minimum(errors, UNSTABLE)

@@ -28,7 +28,7 @@ from ident.fit.products import add_block_products, add_products, completed
 from ident.fit.reduction import excited_band
 from ident.fit.settling import Least, Settling, better
 from ident.matrix import Matrix
-from ident.parallel import cores, each
+from ident.parallel import LEAST_SHARED, cores, each
 from ident.parameter import AtReversals
 from ident.presets import Preset
 from ident.run import MOTIONS, Run
@@ -89,7 +89,7 @@ class SimulatedRuns:
             blocks = [rows[:, :, 0] for rows, _, _ in self.simulation(runs, vector, steps).outputs()]
             return np.concatenate(blocks).T
 
-        todo = list(self.together(1))
+        todo = list(self.together(1, steps))
         found = zip(todo, each(of_runs, todo), strict=True)
         return {run.id: y for runs, outputs in found for run, y in zip(runs, outputs, strict=True)}
 
@@ -126,7 +126,7 @@ class SimulatedRuns:
         settling, pending = Settling(), self.runs if runs is None else runs
         for number in range(1 if len(strides) else _OF.rounds):
             if number or known is None:
-                todo = list(self.together(len(strides) + 1 + len(self.chain.begun), of=pending))
+                todo = list(self.together(len(strides) + 1 + len(self.chain.begun), steps, of=pending))
                 parts = each(lambda runs: self._normal_matrices(runs, values, strides, steps), todo)
                 for some, part in zip(todo, parts, strict=True):
                     found.update((run.id, moments) for run, moments in zip(some, part, strict=True))
@@ -418,9 +418,13 @@ class SimulatedRuns:
     # Shares ------------------------------------------------------------------------------------------------------
 
     def together(
-        self, vectors: int, lanes: int = _TOGETHER, of: tuple[Run, ...] | None = None
+        self, vectors: int, steps: int, lanes: int = _TOGETHER, of: tuple[Run, ...] | None = None
     ) -> Iterator[tuple[Run, ...]]:
-        """Runs that are simulated in one go: of one length, sample rate, output, kind of start and recorded states."""
+        """Runs that are simulated in one go: of one length, sample rate, output, kind of start and recorded states.
+
+        Each has so many `vectors`, at so many `steps` a sample. At most so many `lanes` are one share; what takes long
+        is shared out to the cores.
+        """
         groups: dict[tuple[object, ...], list[Run]] = {}
         for run in self.runs if of is None else of:
             begun = (run.begins, *self._recorded(run))
@@ -428,7 +432,8 @@ class SimulatedRuns:
         for runs in groups.values():
             most = max(1, lanes // vectors)
             shares = -(-len(runs) // most)
-            shares = min(len(runs), max(shares, cores()))
+            if sum(run.length for run in runs) * vectors * steps >= LEAST_SHARED:
+                shares = min(len(runs), max(shares, cores()))
             for share in np.array_split(np.arange(len(runs)), shares):
                 yield tuple(runs[i] for i in share)
 

@@ -13,7 +13,7 @@ from ident.cached import cached_property
 from ident.chain.chain import INPUT, MEASURED, STEP, Chain
 from ident.chain.channels import READABLE
 from ident.equations.grammar import TIME
-from ident.parallel import cores, each
+from ident.parallel import LEAST_SHARED, cores, each
 from ident.run import Run
 from ident.simulation.filters import pack_filter
 from ident.simulation.inputs import fine, jump_share
@@ -104,7 +104,9 @@ class Simulation:
                         rest, spare = (ends[1], last * self.steps), np.empty(of.count)
                         advance_groups(code, of.wide, some, *given, *rest, 1 << 40, spare, of.count)
 
-            each(advance, np.array_split(np.arange(side_by_side.groups), min(side_by_side.groups, cores())))
+            groups, work = side_by_side.groups, (end - begin) * self.steps * side_by_side.count
+            shares = min(groups, cores()) if work >= LEAST_SHARED else 1
+            each(advance, np.array_split(np.arange(groups), shares))
             rows = out.reshape(-1, side_by_side.count)
             for first in range(begin, end, length):
                 last = min(first + length, end)

@@ -12,7 +12,12 @@ import scipy.linalg  # noqa: F401  brings its own linear algebra, beside numpy's
 from threadpoolctl import ThreadpoolController
 
 from ident.cached import cached_property
-from ident.parallel import Once, cores, each
+from ident.fit import simulated_runs
+from ident.fit.simulated_runs import SimulatedRuns, every_run
+from ident.matrix import Actuator, Matrix
+from ident.parallel import LEAST_SHARED, Once, cores, each
+from ident.presets import preset
+from ident.run import Run
 
 OWN = 2  # threads that a notebook gave to linear algebra, also on a machine of one core
 
@@ -188,3 +193,18 @@ def test_what_failed_is_worked_out_when_it_is_asked_for_again() -> None:
     with pytest.raises(ZeroDivisionError):
         once.of("bar", lambda: 1 // 0)
     assert once.of("bar", lambda: 1) == once.of("bar", lambda: 2) == 1
+
+
+def runs(length: int) -> SimulatedRuns:
+    """Four runs of a motor, of that length each."""
+    record = tuple(
+        Run(f"r{i}", "", 100.0, {"command": np.ones(length), "velocity": np.arange(length)}, output="velocity")
+        for i in range(4)
+    )
+    return every_run(preset("motor"), Matrix(Actuator("A"), record))
+
+
+def test_short_runs_are_simulated_in_one_go_and_long_ones_by_every_core(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(simulated_runs, "cores", lambda: 2)
+    least = LEAST_SHARED // (4 * 5 * 2)  # of four runs, five vectors and two steps a sample
+    assert [len(list(runs(length).together(5, 2))) for length in (least - 1, least + 1)] == [1, 2]
