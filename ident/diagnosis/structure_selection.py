@@ -166,7 +166,8 @@ def _with_an_effect_each(
 
     A model with more parameters and as small an error is among them where, with its effect, it gains half of all that
     can be gained in addition to the first with its own. Only the first, without an effect, is returned where it is the
-    only one or its residual is noise.
+    only one or its residual is noise. Where no model explains the records with its effect, those that were about as
+    good as the best without one are tried with the effects of which little was predicted, too.
     """
     as_good = CRITERIA.equality.practically_equal * min(judged.error for judged in tried)
     simple = [judged for judged in tried if judged.parameters <= first.parameters]
@@ -174,6 +175,10 @@ def _with_an_effect_each(
     if len(simple) + len(larger) == 1 or not first.above_noise:
         return {first.machine: first}
     helped = {judged.machine: judged.helped(report) for judged in simple}
+    if all(judged.above_noise for judged in helped.values()):
+        least = CRITERIA.ranking.near_best * min(judged.error for judged in simple)
+        near = [helped[judged.machine] for judged in simple if judged.error <= least]
+        helped |= {judged.machine: judged.helped_further(report) for judged in near}
     if helped[first.machine].above_noise:
         others = (judged.helped(report) for judged in larger)
         helped |= {judged.machine: judged for judged in others if _gains_half(helped[first.machine], judged)}
@@ -360,6 +365,7 @@ class _JudgedStructure:
     values: Mapping[str, float]
     refit: FittedModel
     with_effect: FittedModel | None = None
+    untried: tuple[str, ...] = ()
 
     @property
     def machine(self) -> str:
@@ -398,8 +404,17 @@ class _JudgedStructure:
         """Whether the data ask for a value of one of its parameters beyond the bound."""
         return bool(self.best.at_bounds)
 
-    def helped(self, report: Report) -> _JudgedStructure:
+    def helped_further(self, report: Report) -> _JudgedStructure:
+        """The same with the effects, too, that were not tried, where the records are short.
+
+        Where a model went far astray for want of an effect, a prediction from there promises little of it.
+        """
+        return self.helped(report, further=True) if self.untried and self.models.is_short(self.refit) else self
+
+    def helped(self, report: Report, further: bool = False) -> _JudgedStructure:
         """The model with the effect of the catalogue that improves it most; unchanged where none does.
+
+        Tried are the effects that promise about as much as the best; `further`, those that were left then.
 
         Effects are added to a machine that integrates about its operating point: see
         :mod:`ident.diagnosis.operating_point`. An effect that no simulation confirms is not taken: it would make a
@@ -412,10 +427,12 @@ class _JudgedStructure:
             report(replace(progress, stage="models with an effect", expected=()))
 
         base = at_operating_point(self.models, self.refit)
-        others = [name for name in self.models.effects if name not in base.effects]
-        ranking = rank(self.models, base, others, told, thorough=False)
+        names = self.untried if further else [name for name in self.models.effects if name not in base.effects]
+        ranking = rank(self.models, base, names, told, thorough=further)
         refits = [one.refit for one in ranking if one.refit is not None and one.worth_adding and one.refit.finite]
-        return replace(self, with_effect=min(refits, key=_held_out, default=base if base.effects else None))
+        known = self.best if further else base
+        best = min([known, *refits] if known.effects else refits, key=_held_out, default=None)
+        return replace(self, with_effect=best, untried=tuple(one.effect for one in ranking if one.trial is None))
 
     def structure(self, over: float | None, more: Message | None, probability: float | None) -> Structure:
         """The facts of the model: its error over the horizon `over` in s, None for whole runs, and `more`, its

@@ -243,13 +243,19 @@ class SimulatedRuns:
     def simulation(
         self, runs: tuple[Run, ...], values: Mapping[str, Array], steps: int, start: Array | None = None
     ) -> Simulation:
-        """A simulation of vectors at runs of a kind, from the first states that are known."""
+        """A simulation of vectors at runs of a kind, from the first states that are known.
+
+        Where none is known of a machine that is not linear each vector stands under the mean command at first. A level
+        that rises from zero would be judged by how fast it does, and not by the record.
+        """
         known = [conditions(run, self.matrix.actuator) for run in runs]
         stacked = {name: np.array([entry[name] for entry in known])[:, None] for name in known[0]}
         vectors = len(next(iter(values.values())))
         at = stacked | {name: value[None] for name, value in values.items()}
         if start is None and runs[0].begins == "standing":
             start = self._standing(runs, at)
+        elif start is None and runs[0].begins == "moving" and self._knows_nothing_of(runs):
+            start = self._standing_under(runs, at, [(r.command.mean(), r.measured.mean()) for r in runs])
         elif start is None and (runs[0].begins == "moving" or self._recorded(runs[0])):
             start = np.repeat(np.array([self.start(run) for run in runs])[:, None], vectors, axis=1)
         return Simulation(self.chain, runs, at, steps, start)
@@ -264,13 +270,23 @@ class SimulatedRuns:
         known = run.begins == "moving" or self._recorded(run)
         return np.repeat(self.start(run)[None, None], vectors, axis=1) if known else None
 
+    def _knows_nothing_of(self, runs: tuple[Run, ...]) -> bool:
+        """Whether no first state of a machine is known that is not linear, and for which a zero state is no guess."""
+        return not (self.preset.is_linear or any(run.id in self.starts for run in runs))
+
     def _standing(self, runs: tuple[Run, ...], values: Mapping[str, Array]) -> Array:
-        """The states in which runs of one kind stand at first, near those of the linear chain, (runs, v, n)."""
+        """The states in which runs of one kind stand at first, under their first command, (runs, v, n)."""
+        return self._standing_under(runs, values, [(run.command[0], run.measured[0]) for run in runs])
+
+    def _standing_under(
+        self, runs: tuple[Run, ...], values: Mapping[str, Array], held: Sequence[tuple[float, float]]
+    ) -> Array:
+        """The states in which runs of one kind stand, near those of the linear chain, (runs, v, n).
+
+        `held` are the command and, of a position that nothing holds, the output of each run.
+        """
         core, output = self.preset.core, runs[0].output
-        u, y = (
-            np.array([[samples[0]] for samples in of])
-            for of in zip(*((r.command, r.measured) for r in runs), strict=True)
-        )
+        u, y = (np.array(of)[:, None] for of in zip(*held, strict=True))
         linear = core.linearise({name: values[name] for name in core.symbols}, output).standing(u, y)
         near = np.zeros((*linear.shape[:-1], len(self.chain.states)))
         near[..., [self.chain.states.index(name) for name in core.states]] = linear

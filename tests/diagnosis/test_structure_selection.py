@@ -25,6 +25,7 @@ from ident.progress import silent
 from ident.run import Run
 from ident.workflows import identify
 from tests.blind.any_machine import Lab, sound
+from tests.blind.various import Various
 from tests.fit.test_windows import cylinder
 from tests.presets.test_machines import motor, specimen
 from tests.short_form import short_form
@@ -384,11 +385,42 @@ def test_a_machine_with_more_parameters_has_to_explain_most_with_its_effect(alon
             residuals_held_out=Residuals((noise + left * shape,), bands),
         )
         of = SimpleNamespace(machine=machine, parameters=parameters, error=alone, best=best, above_noise=left > 0.01)
-        of.helped = lambda _report: of
+        of.helped = of.helped_further = lambda _report: of
         return of
 
     lag, tanks = model("first_order", 2, 0.615, 0.51), model("two_tanks", 3, alone, left)
     assert ("two_tanks" in structure_selection._with_an_effect_each(lag, [lag, tanks], silent)) is named
+
+
+@pytest.mark.parametrize(("alone", "found", "further"), [(0.3, 0.2, True), (0.3, 0.01, False), (0.4, 0.2, False)])
+def test_a_model_about_as_good_as_the_best_is_tried_with_more_effects_where_none_explains_the_records(
+    alone, found, further
+):
+    """The tanks without their overflow lie so far off that a prediction from there promises little of it."""
+
+    def model(machine: str, error: float, left: float) -> SimpleNamespace:
+        of = SimpleNamespace(machine=machine, parameters=3, error=error, above_noise=left > 0.1, asked=False)
+
+        def helped_further(_report: object) -> SimpleNamespace:
+            of.asked = True
+            return of
+
+        of.helped, of.helped_further = (lambda _report: of), helped_further
+        return of
+
+    spring, tanks = model("drive", 0.3, found), model("two_tanks", alone, 0.2)
+    structure_selection._with_an_effect_each(spring, [spring, tanks], silent)
+    assert tanks.asked is further
+
+
+@pytest.mark.full
+def test_tanks_that_overflow_are_no_mass_on_a_spring():
+    of = Various.drawn(168504, hidden=True)
+    assert (of.kind, of.hidden) == ("tanks", "overflow")
+    first, *others = compared_structures(of.measured())
+    assert first.machine == "two_tanks"
+    assert "overflow" in first.why
+    assert "drive" in {one.machine for one in others}
 
 
 @pytest.mark.parametrize("model", short_form(["motor", "open_valve"], "motor"))
@@ -405,7 +437,7 @@ def test_an_effect_that_no_simulation_confirms_helps_no_model(monkeypatch):
     fitted, unsound = (
         SimpleNamespace(finite=finite, effects=(), held_out=SimpleNamespace(error=0.3)) for finite in (True, False)
     )
-    offered = [SimpleNamespace(refit=unsound, worth_adding=True)]
+    offered = [SimpleNamespace(refit=unsound, worth_adding=True, trial=unsound)]
     monkeypatch.setattr(structure_selection, "rank", lambda *_args, **_kwargs: offered)
     models = SimpleNamespace(effects={"dead_zone": None}, horizon=None)
     judged = structure_selection._JudgedStructure(models, 2, {}, fitted)
