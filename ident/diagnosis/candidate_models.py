@@ -175,13 +175,14 @@ class CandidateModels:
         return self.effects[effect].shown
 
     def is_called_for(self, effect: str) -> bool:
-        """Whether the records have the mark that an effect needs, or ring as it does, and its shapes are searched.
+        """Whether the records have the mark that an effect needs, or ring as it does.
 
-        A fit without a spring may lie so far off that none of its shapes promises anything there.
+        A fit without a spring, or without an edge over which a tank runs, may lie so far off that it promises nothing
+        there.
         """
         of = self.effects[effect]
         rings = any(shape.start is Starts.RESONANCE for shape in of.shape) and resonance(self.runs) is not None
-        return of.has_searched_shapes and (of.needs is not None or rings)
+        return of.needs is not None or (of.has_searched_shapes and rings)
 
     def strength(self, effect: str) -> str:
         """The name of an effect's strength in the equations."""

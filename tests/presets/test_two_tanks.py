@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 import scipy
 
+from ident.diagnosis.candidate_models import CandidateModels
 from ident.fit.identification import Identification
 from ident.fit.settings import Settings
 from ident.matrix import Actuator, Matrix
@@ -92,6 +93,13 @@ def test_an_overflow_of_the_upper_tank_is_named(full):
     found = diagnose(matrix, identify(matrix, Settings(model="two_tanks", options=LIGHT, seed=1)), propose=False)
     assert "upper_overflow" in found.verdict.effects
     assert found.ladder[-1].error["verify"] < 0.7 * found.ladder[0].error["verify"]
+
+
+def test_an_overflow_is_tried_whatever_is_predicted_of_it(matrix):
+    """Without it a fit may lie so far off that an edge promises nothing there."""
+    models = CandidateModels.of(matrix, Settings(model="two_tanks"))
+    assert models.is_called_for("overflow")
+    assert not models.is_called_for("dead_zone")
 
 
 def test_tanks_are_thought_of_where_command_and_output_stay_on_one_side_of_zero(matrix):
