@@ -111,6 +111,11 @@ class StructureSelection:
     it is that sure.
     Test: test_criteria_of_comparison.py::
     test_the_most_probable_machine_comes_first_where_the_usual_one_is_improbable"""
+    tried_further: float = 1.3
+    """[ratio of held-out errors] To the best model without an effect, up to which a model is tried with more effects
+    where none explains the records. Why: a machine without what it lacks leaves about as much as what imitates it.
+    Test: test_structure_selection.py::
+    test_a_model_about_as_good_as_the_best_is_tried_with_more_effects_where_none_explains_the_records"""
     longer_gain: float = 10.0
     """[log-likelihood] Gain of longer windows over the fitted ones, beyond the logarithm of the number of models. Why:
     one in 20,000 by chance.

@@ -176,7 +176,7 @@ def _with_an_effect_each(
         return {first.machine: first}
     helped = {judged.machine: judged.helped(report) for judged in simple}
     if all(judged.above_noise for judged in helped.values()):
-        least = CRITERIA.ranking.near_best * min(judged.error for judged in simple)
+        least = CRITERIA.structure.tried_further * min(judged.error for judged in simple)
         near = [helped[judged.machine] for judged in simple if judged.error <= least]
         helped |= {judged.machine: judged.helped_further(report) for judged in near}
     if helped[first.machine].above_noise:
