@@ -126,11 +126,22 @@ def _response_of_each(given: _Sensitivities, base: FittedModel, names: Sequence[
 
 
 def _values_without(models: CandidateModels, base: FittedModel, fitness: SimulatedFitness) -> dict[str, float]:
-    """The values of everything in a space, the effects that are not the model's own off, also what is held of them."""
+    """The values of everything in a space, the effects that are not the model's own off, also what is held of them.
+
+    What is searched of an effect has its usual value, or the middle of its range where the range, which is that of the
+    records, does not hold that: in records of hours, a force that relaxes within a tenth of a second would run away,
+    though it acts by nothing.
+    """
     off = {symbol: value for symbol, value in models.off.items() if symbol not in base.values}
     held = {name: value for name, value in fitness.space.fixed.items() if name not in base.values}
+    bounds = fitness.space.bounds({**off, **base.values, **held})
+    middle = fitness.space.values(np.full((1, len(fitness.space.axes)), 0.5))
+    beyond = [
+        name for name in fitness.space.names if name in off and not bounds[name][0] <= off[name] <= bounds[name][1]
+    ]
+    searched = {name: float(middle[name][0]) for name in beyond}
     strengths = {symbol: 0.0 for symbol in map(models.strength, models.effects) if symbol in off}
-    values = {**off, **base.values, **held, **strengths}
+    values = {**off, **base.values, **held, **searched, **strengths}
     return {name: value for name, value in values.items() if name in fitness.space.order}
 
 

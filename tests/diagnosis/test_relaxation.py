@@ -2,10 +2,15 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 import scipy
 
+from ident.diagnosis.candidate_models import CandidateModels
+from ident.diagnosis.screening import predict
+from ident.fit.settings import Settings
 from ident.matrix import Actuator, Matrix
 from ident.run import Run
 from ident.workflows import diagnose, identify
@@ -38,3 +43,15 @@ def test_a_force_that_relaxes_is_named_with_its_stiffness_and_its_time(monkeypat
     assert values["relaxation.time"].value == pytest.approx(time, rel=0.1)
     assert values["relaxation.stiffness"].value == pytest.approx(share * STIFFNESS, rel=0.1)
     assert found.ladder[-1].error["verify"] < 1.1 * NOISE
+
+
+@pytest.mark.parametrize("slower", [1.0, 1e3, 3e4])
+def test_of_a_slow_record_as_much_is_predicted_of_what_relaxes_as_of_a_quick_one(slower):
+    """By its usual time of a tenth of a second it ran away in a record of hours, and nothing was predicted of it."""
+    quick = rubber(0, 0.5, 0.4)
+    records = Matrix(Actuator("RUBBER"), (replace(quick, sample_rate=quick.sample_rate / slower),))
+    models = CandidateModels.of(records, Settings(model="specimen"))
+    base = models.refit((), identify(records, Settings(model="specimen", seed=1)).values)
+    predicted = predict(models, base, list(models.effects))
+    assert min(predicted, key=lambda one: one.after.error).effect == "relaxation"
+    assert min(one.remaining for one in predicted) < 0.2
