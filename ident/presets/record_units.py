@@ -21,7 +21,8 @@ class RecordUnits:
     """How the units of a chain, in m, N, kg and s, are shown of some runs.
 
     `turning`: a motion was recorded as an angle. `unknown` has what takes the place of a unit that the records do not
-    have, as powers: of records in counts a metre is nothing, {}, or of a speed in counts a second. `clock` is "sample"
+    have, as powers: of records in counts a metre is nothing, {}, or of a speed in counts a second; of a stress, the
+    force for each area, a newton is a pascal. `clock` is "sample"
     where the sample period is unknown. `pressed`: forces are known as pressures alone, and N is shown as Pa. `output`
     and `command` are the units of these channels.
     """
@@ -42,8 +43,9 @@ class RecordUnits:
         unknown: dict[str, Powers] = {}
         if moving and set(moving) == {"1"}:
             unknown["m"] = {} if "displacement" in units else {"s": 1.0}
-        if {units[name] for name in ("force", "drive_force") if name in units} == {"1"}:
-            unknown["N"] = {}
+        forces = {units[name] for name in ("force", "drive_force") if name in units}
+        if forces in ({"1"}, {"Pa"}):
+            unknown["N"] = {} if forces == {"1"} else {"Pa": 1.0}
         if {unit for name, unit in units.items() if "pressure" in name} == {"1"}:
             unknown["Pa"] = {}
         clock = SAMPLE if listed and all(run.time_unit == SAMPLE for run in listed) else "s"

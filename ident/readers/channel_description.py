@@ -15,12 +15,13 @@ PRESSURE, WAY, SPEED, FORCE = ("pressure",), ("length", "angle"), ("velocity", "
 KINDS_OF_UNIT: dict[str, Sequence[str]] = {
     "command": tuple(name for name in DIMENSIONS if name not in ("dimensionless", "per sample")),
     "displacement": WAY, "velocity": SPEED,
-    "force": FORCE, "drive_force": FORCE, "load_pressure": PRESSURE,
+    "force": (*FORCE, *PRESSURE), "drive_force": FORCE, "load_pressure": PRESSURE,
     "pressure_a": PRESSURE, "pressure_b": PRESSURE, "supply_pressure": PRESSURE, "vertical_load": ("force",),
     "flow_disturbance": ("flow",), "load_disturbance": FORCE, "sensor_disturbance": WAY,
     "spool": ("length", "voltage", "current"), "current": ("current", "voltage"), "temperature": ("temperature",),
 }  # fmt: skip
-"""What each channel may be measured in; ``1`` is allowed everywhere, for records in unknown units."""
+"""What each channel may be measured in; ``1`` is allowed everywhere, for records in unknown units. A force that is
+measured as a pressure is a stress, the force for each area of a specimen."""
 _LISTED = 4  # kinds of unit that a message names
 
 

@@ -178,12 +178,15 @@ def measures_time(unit: str) -> bool:
 
 
 def may_measure(channel: str, unit: str) -> bool:
-    """Whether a channel may be measured in a unit."""
+    """Whether a column that seems to be a channel may be measured in a unit.
+
+    A stress is a force only where someone says so: a cylinder's pressure has the same unit.
+    """
     try:
-        channel_scale(unit, channel, "unit")
+        scale = channel_scale(unit, channel, "unit")
     except Unusable:
         return False
-    return True
+    return channel != "force" or scale.unit != "Pa"
 
 
 def said(name: str) -> str:

@@ -146,7 +146,20 @@ def describe_outputs(fields: Fields, kind: str, channels: dict[str, ChannelDescr
         raise Unusable("missing-command", "there is no command", fields.place("channels"), "describe the command")
     if "command" in outputs:
         raise Unusable("unknown-output", "the command cannot be the output", fields.place("output"), "name a response")
+    if outputs != ("force",):
+        _refuse_stress(fields, channels)
     return outputs
+
+
+def _refuse_stress(fields: Fields, channels: dict[str, ChannelDescription]) -> None:
+    """Raises Unusable: ``stress`` where a force that is not the output has the unit of a pressure."""
+    if "force" in channels and channels["force"].scale.unit == "Pa":
+        raise Unusable(
+            "stress",
+            "the force is a stress, the force for each area of a specimen, and it is not the output",
+            fields.place("channels.force"),
+            "name it as the output (output: force), give a unit of force, or say that it is a load_pressure",
+        )
 
 
 def _usual(channels: Collection[str]) -> str:
