@@ -3,7 +3,8 @@
 A machine whose inputs rest stays where it came to rest. Leakage, gravity, creep and bias move it at the same speed from
 the same state. Where it sets out by itself, as fast as it is driven at other times, something else drove it. What
 always sets out the same time after a change of its inputs is a delay. What turns round again and again once it has set
-out is an oscillation.
+out is an oscillation. What stood off the command of its loop and sets out to it is driven by its controller, whose
+integral action grows until friction at rest gives way: hunting (Armstrong-Hélouvry, Dupont and Canudas de Wit 1994).
 """
 
 from __future__ import annotations
@@ -17,7 +18,7 @@ from scipy.ndimage import maximum_filter1d, median_filter
 
 from ident.checks.at_rest import HELD, acting, held, spans
 from ident.checks.finding import Finding
-from ident.checks.setting_out import FAST, QUICK, REST, Motion
+from ident.checks.setting_out import FAST, QUICK, REST, SLOW, Motion
 from ident.resolution import resolution, step_between
 from ident.run import BENCH, Run, Samples
 from ident.words.message import Message, message
@@ -74,6 +75,7 @@ def missing_inputs(run: Run) -> tuple[MissingInput, ...]:
         begins = motion.starts(at_rest)
         begins = [k for k in begins if _turns(motion.way[k : k + AHEAD * samples], FAST * motion.quick) < SWINGS]
         begins = [k for k in begins if _beyond_steps(run.measured, k, samples)]
+        begins = [k for k in begins if not _towards_command(run, motion, k)]
         if _by_itself(changes, begins, longest, samples):
             evidence = _evidence(run, motion, begins, at_rest)
             times = [begin / run.sample_rate for begin in begins]
@@ -126,6 +128,20 @@ def _beyond_steps(measured: Samples, begin: int, samples: int) -> bool:
     around = measured[max(0, begin - REST * samples) : begin + samples]
     low, high = float(np.min(around)), float(np.max(around))
     return high - low >= DIGITS * step_between(measured, low, high)
+
+
+def _towards_command(run: Run, motion: Motion, begin: int) -> bool:
+    """Whether an output of a closed loop stood off its command, by more than what counts as rest, and sets out to it.
+
+    Its controller drives it then: it sums up the deviation until the friction at rest gives way, which may be long
+    after the command has come to rest, and the output may go too far. What another input drives leaves the command.
+    """
+    unit = run.units.get("command", "1")
+    if run.gain is None and (unit == "1" or unit != run.units.get(run.output)):
+        return False
+    begin = min(begin, len(motion.way) - 1)
+    off = float(run.command[begin] - motion.output[begin])
+    return abs(off) > SLOW * motion.quick and off * float(motion.way[begin]) > 0.0
 
 
 def _turns(way: Samples, least: float) -> int:

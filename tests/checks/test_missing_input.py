@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 import pytest
 import scipy
@@ -147,3 +149,61 @@ def drifting(seed: int) -> Run:
 def test_a_drift_about_where_a_command_holds_an_output_misses_no_input(seed):
     """Nine tenths of its motions are the drift, which is far slower than the answers to the command."""
     assert missing_inputs(drifting(seed)) == ()
+
+
+@dataclass(frozen=True)
+class Slide:
+    """A mass of 1 kg under a controller, with dry friction that is larger at rest: it sticks, and slips (own truth).
+
+    x'' = kp e + ki ∫e dt − kd x' − friction + push, e = target − x; semi-implicit Euler, 1 ms; recorded at 50 Hz.
+    """
+
+    kp: float
+    ki: tuple[float, float]
+    kd: float
+    at_rest: tuple[float, float]
+    sliding: float
+
+    def record(self, seed: int, disturbed: bool = False) -> Run:
+        rng, h, at, legs = np.random.default_rng(seed), 1e-3, 0.0, []
+        for _ in range(10):
+            to = at + rng.choice([-1, 1]) * rng.uniform(0.4, 1)
+            moving, still = int(rng.uniform(1000, 2500)), int(8000 * rng.uniform(0.6, 1.4))
+            legs += [np.linspace(at, to, moving), np.full(still, to)]
+            at = to
+        target = np.concatenate(legs)
+        ki, most = rng.uniform(*self.ki), rng.uniform(*self.at_rest)
+        push = np.zeros(len(target))
+        for after in range(4000, len(target) - 2000, 7000) if disturbed else ():
+            begin = after + int(rng.integers(0, 3000))
+            push[begin : begin + 700] = rng.choice([-1, 1]) * (most + 10)
+        x = v = summed = 0.0
+        out = np.empty(len(target))
+        for i in range(len(target)):
+            e = target[i] - x
+            summed += e * h
+            force = self.kp * e + ki * summed - self.kd * v + push[i]
+            if v or abs(force) > most:
+                then = v + h * (force - self.sliding * most * (np.sign(v) or np.sign(force)))
+                v = 0.0 if v and then * v <= 0 and abs(force) <= most else then
+            x += h * v
+            out[i] = x
+        y = out[::20] + rng.normal(0, 1e-3, len(out[::20]))
+        return Run("a", "a.csv", 50.0, {"command": target[::20], "displacement": y}, dict.fromkeys(CLOSED, "m"))
+
+
+CLOSED = ("command", "displacement")
+STIFF = Slide(kp=60.0, ki=(20.0, 40.0), kd=6.0, at_rest=(8.0, 14.0), sliding=0.7)
+SOFT = Slide(kp=15.0, ki=(5.0, 10.0), kd=4.0, at_rest=(5.0, 8.0), sliding=0.75)
+
+
+@pytest.mark.parametrize(("slide", "seed"), [(STIFF, 2), (STIFF, 7), (SOFT, 2), (SOFT, 9)])
+def test_a_loop_that_hunts_misses_no_input(slide, seed):
+    """It sticks away from its command, and slips towards it seconds later, as the integral of its controller says."""
+    assert missing_inputs(slide.record(seed)) == ()
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_a_loop_that_is_pushed_away_from_its_command_misses_an_input(seed):
+    slide = Slide(kp=30.0, ki=(4.0, 8.0), kd=8.0, at_rest=(0.5, 1.0), sliding=0.6)
+    assert len(missing_inputs(slide.record(seed, disturbed=True))) >= 5
