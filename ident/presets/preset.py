@@ -101,7 +101,8 @@ class Preset(Model):
         elif OPENED_BY_COMMAND in preset.chain.stages and matrix.runs:
             unit = matrix.runs[0].units.get("command", "m")
             preset = replace(preset, display=replace(preset.display, drive_unit=unit))
-        preset = replace(preset, display=replace(preset.display, recorded=RecordUnits.of(matrix.runs)))
+        recorded = RecordUnits.of(matrix.runs, preset.data.driven_by)
+        preset = replace(preset, display=replace(preset.display, recorded=recorded))
         if preset.data.area:
             preset = preset._of_area(matrix)
         if preset.search.force_scale and {run.output for run in matrix.runs} == {"load_pressure"}:

@@ -35,15 +35,16 @@ class RecordUnits:
     command: str = "m"
 
     @classmethod
-    def of(cls, runs: Iterable[Run]) -> RecordUnits:
-        """Those of a matrix, by what is stated of its channels."""
+    def of(cls, runs: Iterable[Run], driven_by: str = "") -> RecordUnits:
+        """Those of a matrix, by what is stated of its channels; of what is `driven_by` a force the command is one."""
         listed = tuple(runs)
         units = {name: unit for run in listed for name, unit in run.units.items() if name in run.channels}
         moving = [units[name] for name in MOTIONS if name in units]
         unknown: dict[str, Powers] = {}
         if moving and set(moving) == {"1"}:
             unknown["m"] = {} if "displacement" in units else {"s": 1.0}
-        forces = {units[name] for name in ("force", "drive_force") if name in units}
+        known = ("force", "drive_force", *(("command",) if driven_by == "drive_force" else ()))
+        forces = {units[name] for name in known if name in units}
         if forces in ({"1"}, {"Pa"}):
             unknown["N"] = {} if forces == {"1"} else {"Pa": 1.0}
         if {unit for name, unit in units.items() if "pressure" in name} == {"1"}:

@@ -81,3 +81,14 @@ def test_a_setting_may_have_the_unit_that_is_shown():
     assert in_si("180 deg", "m", "displacement") == pytest.approx(np.pi)
     with pytest.raises(Unusable, match="not a unit of damping"):
         in_si("3 s", "N*s/m", "c0")
+
+
+@pytest.mark.parametrize(("command", "stiffness", "friction"), [("1", "1/rad", "1"), ("N*m", "N*m/rad", "N*m")])
+def test_a_drive_whose_command_is_in_counts_states_no_torque(command, stiffness, friction):
+    """What is taken for the force is in unknown units then, and so is all that is measured by it."""
+    matrix = along(motor(8), "rad/s")
+    runs = (replace(run, units={**run.units, "command": command}) for run in matrix.runs)
+    shown, _ = preset("drive").with_effects((effect("coulomb_friction"),)).for_matrix(replace(matrix, runs=tuple(runs)))
+    found = {parameter.name: shown.unit(parameter) for parameter in shown.parameters}
+    assert (found["k0"], found["coulomb_friction.force"]) == (stiffness, friction)
+    assert found["m0"] == ("kg*m^2" if command != "1" else "s^2/rad")
