@@ -30,12 +30,16 @@ _OUTLIER = 6.0  # times the median deviation from it: the delay of what is limit
 
 @dataclass(frozen=True)
 class Delay:
-    """Samples by which the output lags a model of POLES poles, and the range of delays that fit about as well."""
+    """Samples by which the output lags a model of POLES poles, and the range of delays that fit about as well.
+
+    `by_rate`: what leads may as well answer the rate of the command, by a zero.
+    """
 
     samples: float
     shortest: float
     longest: float
     misfit: float
+    by_rate: bool = False
 
     @property
     def told(self) -> bool:
@@ -55,20 +59,22 @@ def delays(measured: list[tuple[Run, Response | None]]) -> Iterator[Finding]:
     middle = float(np.median(told)) if told else 0.0
     apart = max(APART, _OUTLIER * float(np.median(np.abs(np.array(told) - middle)))) if told else APART
     if abs(middle) >= LEAST and len(told) > 1:
-        yield Finding.of(None, "doubt", "delay", late("check.delay_all", "check.lead_all", middle, count=len(told)))
+        leads = "check.lead_all_or_rate" if any(estimate.by_rate for _, estimate in found) else "check.lead_all"
+        yield Finding.of(None, "doubt", "delay", late("check.delay_all", leads, middle, count=len(told)))
     for run, estimate in found:
         if estimate.told and len(told) > 2 and estimate.apart(middle, apart):
             values = {"run": run.id, "middle": middle}
             yield Finding.of(run.id, "doubt", "skew", late("check.skew", "check.skew_lead", estimate.samples, **values))
         elif estimate.told and len(told) == 1 and estimate.apart(0.0, LEAST):
-            yield alone(run, estimate.samples)
+            yield alone(run, estimate.samples, estimate.by_rate)
         elif not estimate.told and estimate.longest <= -LEAST:
-            yield alone(run, estimate.longest)
+            yield alone(run, estimate.longest, estimate.by_rate)
 
 
-def alone(run: Run, samples: float) -> Finding:
+def alone(run: Run, samples: float, by_rate: bool) -> Finding:
     """The finding for one run that is judged by itself."""
-    return Finding.of(run.id, "doubt", "delay", late("check.delay", "check.lead", samples, run=run.id))
+    leads = "check.lead_or_rate" if by_rate else "check.lead"
+    return Finding.of(run.id, "doubt", "delay", late("check.delay", leads, samples, run=run.id))
 
 
 def late(lags: str, leads: str, samples: float, **values: object) -> Message:
@@ -80,7 +86,10 @@ def late(lags: str, leads: str, samples: float, **values: object) -> Message:
 def delay(run: Run, response: Response | None) -> Delay | None:
     """The delay T of the best H(f) = exp(-i w T) / (a0 + a1 s + ... + a4 s^4); None where there is nothing to fit.
 
-    An actuator lags its command by tens of samples, which its poles explain; T is the rest.
+    An actuator lags its command by tens of samples, which its poles explain; T is the rest. What leads as the rate of
+    the command does, by a zero, is no shift of channels: a mass on a base that moves, with a damper between them, or a
+    loop with a feed-forward of the speed. There is no delay to tell where a zero fits better, and the two are not told
+    apart where it fits about as well.
     """
     if response is None or run.output != "displacement" or run.time_unit != "s" or run.kind in ("sine", "frequency"):
         return None
@@ -91,7 +100,12 @@ def delay(run: Run, response: Response | None) -> Delay | None:
     cost = misfits(measured, trial / run.sample_rate)
     best = int(np.argmin(cost))
     near = np.flatnonzero(cost <= NEAR * cost[best] + FLOOR)
-    return Delay(lowest(trial, cost, best), float(trial[near[0]]), float(trial[near[-1]]), float(cost[best]))
+    by_rate = misfit_with_zero(measured) if trial[best] < 0 else np.inf
+    if cost[best] > NEAR * by_rate + FLOOR:
+        return None
+    alike = by_rate <= NEAR * cost[best] + FLOOR
+    ends = float(trial[near[0]]), float(trial[near[-1]])
+    return Delay(lowest(trial, cost, best), *ends, float(cost[best]), bool(alike))
 
 
 def lowest(trial: Samples, cost: Samples, best: int) -> float:
@@ -101,6 +115,27 @@ def lowest(trial: Samples, cost: Samples, best: int) -> float:
     left, middle, right = cost[best - 1 : best + 2] ** 2
     curve = left - 2 * middle + right
     return float(trial[best] + STEP * 0.5 * (left - right) / curve) if curve > 0 else float(trial[best])
+
+
+def misfit_with_zero(measured: LocalResponse) -> float:
+    """Weighted relative error of the best (1 + b s) / (a0 + a1 s + ... + a4 s^4), by iterated linear least squares.
+
+    A transmissibility has b = c/k (Thomson, Theory of Vibration, support motion); a feed-forward its share.
+    """
+    s, h = 1j * measured.frequency / measured.frequency[-1], measured.gain
+    weight = 1 / np.maximum(measured.scatter, FLOOR * np.abs(h))
+    poles = s[:, None] ** np.arange(POLES + 1)
+    terms = np.column_stack([h[:, None] * poles, -s])
+    inverse: NDArray[np.complex128] = 1 / h
+    modelled = h
+    for _ in range(ITERATIONS):
+        scale = weight / np.abs(inverse)
+        system = scale[:, None] * terms
+        rows, wanted = np.vstack([system.real, system.imag]), np.concatenate([scale, np.zeros_like(scale)])
+        found = np.linalg.lstsq(rows, wanted, rcond=1e-14)[0]
+        inverse = poles @ found[:-1]
+        modelled = (1 + found[-1] * s) / inverse
+    return float(np.linalg.norm(weight * (h - modelled)) / np.linalg.norm(weight * h))
 
 
 def misfits(measured: LocalResponse, seconds: Samples) -> Samples:

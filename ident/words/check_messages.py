@@ -127,6 +127,14 @@ CHECKS: Mapping[str, str] = {
     "check.lead_all":
         "the displacement leads the command by {samples:.1f} samples in all {count} runs that show it, which no "
         "actuator can. The channels are shifted or exchanged: correct columns or rows",
+    "check.lead_or_rate":
+        "the displacement of {run:run} leads the command by {samples:.1f} samples. Either its channels are shifted or "
+        "exchanged: correct columns or rows. Or it answers the rate of the command, too: a feed-forward, or a mass on "
+        "a base that moves",
+    "check.lead_all_or_rate":
+        "the displacement leads the command by {samples:.1f} samples in all {count} runs that show it. Either the "
+        "channels are shifted or exchanged: correct columns or rows. Or it answers the rate of the command, too: a "
+        "feed-forward, or a mass on a base that moves",
     "check.skew":
         "the displacement of {run:run} lags the command by {samples:.1f} samples more than {poles} poles explain; the "
         "median of all runs is {middle:.1f} samples. Look for a shift between its channels (rows, another recorder) or "
