@@ -50,7 +50,7 @@ BINARY = {
 """Endings of names, each with the file that reads what ends so: `read_npz` in npz.py and the like."""
 FOREIGN = {".uff": "uff", ".unv": "uff", ".xlsx": "excel", ".json": "records", ".mf4": "mdf", ".mdf": "mdf"}
 """Endings of names, each with the parser of :mod:`ident.foreign` that reads it in a process of its own."""
-TEXT = (".csv", ".tsv", ".txt")
+TEXT = (".csv", ".tsv", ".txt", ".log")
 PACKED = ".gz"
 """The ending behind that of a text that was compressed."""
 ENDINGS = (*TEXT, *(kind + PACKED for kind in TEXT), *BINARY, *FOREIGN)

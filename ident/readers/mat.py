@@ -10,6 +10,7 @@ from ident.readers.limits import Limits
 from ident.readers.mat4 import variables4
 from ident.readers.mat5 import Damaged, Variable, variables5
 from ident.readers.mat_inflate import byte_order, inflated
+from ident.readers.mat_series import Signal, signals
 from ident.readers.table import Array, Table, column_of, split_columns
 
 _STEP, _INPUT = "Ts", "InputData"
@@ -27,15 +28,29 @@ def read_mat(data: bytes, where: str, limits: Limits) -> Table:
         return read_hdf5(data, where, limits)
     try:
         found = list(variables(data, where, limits))
+        series = _signals(data, where, limits)
     except Damaged as damaged:
         remedy = "copy it or save it again from MATLAB"
         raise Unusable("broken-mat", f"this is not a whole MAT file: {damaged}", where, remedy) from None
     columns = [column for name, array in found for column in columns_of(name, array)]
+    units = [""] * len(columns)
+    for name, samples_of, unit in series:
+        columns += (more := columns_of(name, samples_of))
+        units += [unit] * len(more)
 
     def load(numbers: Sequence[int]) -> list[Array]:
         return [samples(columns[number], where) for number in numbers]
 
-    return Table(tuple(name for name, _, _ in columns), load, rate=_rate(found))
+    return Table(
+        tuple(name for name, _, _ in columns), load, units=tuple(units) if any(units) else (), rate=_rate(found)
+    )
+
+
+def _signals(data: bytes, where: str, limits: Limits) -> list[Signal]:
+    """The signals that were saved as objects, which a v5 file alone holds. Raises Damaged."""
+    if b"\0" in data[:4]:
+        return []
+    return signals(inflated(data, where, limits), byte_order(data, where))
 
 
 def _rate(found: Sequence[Variable]) -> float:

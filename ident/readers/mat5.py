@@ -17,7 +17,7 @@ from ident.readers.table import Array
 
 MATRIX, INT8, INT32, UINT32, UTF8 = 14, 1, 5, 6, 16
 STORED = {1: "i1", 2: "u1", 3: "i2", 4: "u2", 5: "i4", 6: "u4", 7: "f4", 9: "f8", 12: "i8", 13: "u8"}
-CELL, STRUCT, OBJECT, CHARACTERS, OPAQUE = 1, 2, 3, 4, 17
+CELL, STRUCT, OBJECT, CHARACTERS, BYTES, OPAQUE = 1, 2, 3, 4, 9, 17
 LONGEST_LABEL = 200
 NUMBERS = range(6, 16)
 COMPLEX, LOGICAL = 8, 2
@@ -75,12 +75,30 @@ class Elements:
 
 def variables5(data: bytes, order: str) -> Iterator[Variable]:
     """Every variable of the uncompressed elements behind the header. Raises Damaged."""
+    for content in contents(data, order):
+        if not is_subsystem(Elements(content, order)):
+            yield from variable(Elements(content, order), "", DEEPEST)
+
+
+def contents(data: bytes, order: str) -> Iterator[memoryview]:
+    """The bytes of each variable. Raises Damaged."""
     elements = Elements(memoryview(data), order)
     while elements.at < len(data):
         kind, content = elements.following()
         if kind != MATRIX:
             raise Damaged("an element that is no variable")
-        yield from variable(Elements(content, order), "", DEEPEST)
+        yield content
+
+
+def is_subsystem(elements: Elements) -> bool:
+    """Whether a variable is what stands behind them all where some are objects: bytes without a name."""
+    if not len(elements.data):
+        return False
+    flags = elements.values(UINT32)
+    if len(flags) < 1 or int(flags[0]) & 0xFF != BYTES:
+        return False
+    elements.values(INT32)
+    return not elements.text()
 
 
 def variable(elements: Elements, name: str, depth: int) -> Iterator[Variable]:
@@ -92,7 +110,7 @@ def variable(elements: Elements, name: str, depth: int) -> Iterator[Variable]:
         raise Damaged("a variable without flags")
     kind, marks = int(flags[0]) & 0xFF, int(flags[0]) >> 8
     if kind == OPAQUE:
-        return  # an object of a MATLAB class of today
+        return  # an object of a MATLAB class of today: :mod:`ident.readers.mat_series` reads those that are signals
     shape = tuple(int(length) for length in elements.values(INT32))
     own = elements.text()  # empty in a field
     name = name or own
@@ -167,6 +185,11 @@ def label(content: memoryview, order: str) -> str:
         return ""
     elements.values(INT32)
     elements.text()
+    return characters(elements)
+
+
+def characters(elements: Elements) -> str:
+    """The text of the next element, on one line."""
     kind, data = elements.following()
-    encoding = {4: "utf-16-le" if order == "<" else "utf-16-be"}.get(kind, "utf-8")
+    encoding = {4: "utf-16-le" if elements.order == "<" else "utf-16-be"}.get(kind, "utf-8")
     return " ".join(bytes(data).decode(encoding, "replace").split())[:LONGEST_LABEL]

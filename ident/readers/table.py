@@ -18,6 +18,8 @@ Array = NDArray[Any]
 NUMERIC = "iuf"  # dtype kinds: whole numbers and floats
 _LISTED = 12  # names in a message
 MINUS = " - "
+_WIDE = 10
+"""Times the rows of a matrix, so many columns that the rows are its signals."""
 
 
 @dataclass(frozen=True)
@@ -105,14 +107,25 @@ def numeric(array: Array, name: str, where: str) -> Array:
 
 
 def split_columns(name: str, shape: tuple[int, ...]) -> list[str]:
-    """The columns that an array of the given shape is: one for a vector, ``name/0`` and on for a matrix (n, m)."""
+    """The signals that an array of the given shape holds: one of a vector, ``name/0`` and on of a matrix (n, m).
+
+    They are its columns, or its rows where it is far wider than high, as the block *To File* of Simulink saves them.
+    """
     long = [length for length in shape if length != 1]
     if len(long) <= 1 or 0 in shape:
         return [name]
-    return [f"{name}/{number}" for number in range(shape[1])] if len(shape) == 2 and shape[1] <= 1000 else []
+    count = shape[0] if _in_rows(shape) else shape[1]
+    return [f"{name}/{number}" for number in range(count)] if len(shape) == 2 and count <= 1000 else []
 
 
 def column_of(array: Array, number: int) -> Array:
-    """Column `number` of what :func:`split_columns` made of an array."""
+    """Signal `number` of what :func:`split_columns` made of an array."""
     vector = sum(length != 1 for length in array.shape) <= 1 or not array.size
-    return np.ravel(array) if vector else array[:, number]
+    if vector:
+        return np.ravel(array)
+    return array[number] if _in_rows(array.shape) else array[:, number]
+
+
+def _in_rows(shape: tuple[int, ...]) -> bool:
+    """Whether the rows of a matrix are its signals: a record has many more samples than signals."""
+    return len(shape) == 2 and shape[1] >= _WIDE * shape[0]

@@ -84,6 +84,29 @@ def test_columns_of_a_matrix_are_named_by_their_number(matrix, columns, kind):
     assert np.allclose(read_matrix(matrix.path).runs[0].measured, 1e-3 * columns["x"], rtol=1e-14, atol=0)
 
 
+@pytest.mark.parametrize("kind", ["npz", "mat5", "h5"])
+def test_rows_are_signals_where_a_matrix_is_ten_times_as_wide_as_high(matrix, columns, kind):
+    """As the block To File of Simulink saves them, the time first; any number of samples."""
+    rows = np.stack([columns["t"], columns["u"], columns["x"]])
+    matrix.columns = {"data": rows}
+    matrix.change("column: u", "column: data/1").change("column: x", "column: data/2")
+    run = read_matrix(matrix.write(kind)).runs[0]
+    assert np.allclose(run.command, 1e-3 * columns["u"], rtol=1e-14, atol=0)
+
+
+def test_a_text_may_be_called_a_log(matrix, columns):
+    matrix.write("csv")
+    (matrix.path / "runs/first.csv").rename(matrix.path / "runs/first.log")
+    matrix.change("first.csv", "first.log").describe()
+    assert np.allclose(read_matrix(matrix.path).runs[0].command, 1e-3 * columns["u"], rtol=1e-14, atol=0)
+
+
+def test_the_columns_of_a_matrix_are_its_signals_up_to_nine_times_its_height(matrix, columns):
+    matrix.columns = {"data": np.tile(columns["u"][:40], (40, 9))}
+    table = read_table(next((matrix.write("npz") / "runs").iterdir()).read_bytes(), "f.npz", FOUND, LIMITS)
+    assert len(table.names) == 360
+
+
 def test_fields_of_a_structure_and_groups_are_found_by_their_last_name(matrix, columns):
     from nptdms import ChannelObject, TdmsWriter
     from scipy.io import savemat
