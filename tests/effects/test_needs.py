@@ -59,6 +59,16 @@ def lag(back: Callable[[float], float] = lambda x: x, turned: float = 0.0, squar
     return solved(rates, 1)[0]
 
 
+def two_capacities(exchange: float, time: float) -> np.ndarray:
+    """The same with a second level that fills from the first, which it takes from, and empties into it."""
+
+    def rates(t: float, s: np.ndarray) -> list[float]:
+        taken = exchange * (s[0] - s[1])
+        return [(GAIN * at(LEVEL, t) - s[0] - taken) / TAU, (s[0] - s[1]) / time]
+
+    return solved(rates, 2)[0]
+
+
 def mass(resists: Callable[[float, float, float], float]) -> np.ndarray:
     """A mass on a spring and a damper that a force drives, against what else resists: a function of t, x and v."""
 
@@ -177,6 +187,9 @@ CASES = {
     "speed_asymmetry": Case("first_order", {"speed_asymmetry.asymmetry": 0.5}, lambda k: lag(turned=0.5 * k), {}),
     "progressive_drive": Case(
         "first_order", {"progressive_drive.inverse_command": 2.0}, lambda k: lag(squared=2.0 * k), {}),
+    "second_capacity": Case(
+        "first_order", {"second_capacity.exchange": 0.7, "second_capacity.time": 0.9},
+        lambda k: two_capacities(0.7 * k, 0.9), {}),
     "root_outflow": Case(
         "first_order", {"root_outflow.share": 0.7, "root_outflow.level": 0.6},
         lambda k: lag(lambda x: x + 0.7 * k * (np.sign(x) * np.sqrt(0.6 * abs(x)) - x)), {}),
@@ -295,10 +308,12 @@ def test_an_effect_is_looked_for_only_where_the_record_could_show_it():
     of_records, about_zero = {one.name for one in OF_RECORDS}, np.sin(T)
     springs = {"elastic_coupling", "elastic_load"}
     metres = {"command": "m", "displacement": "m"}
-    assert not of_records & candidates("first_order", metres, command=about_zero, displacement=about_zero)
+    found = candidates("first_order", metres, command=about_zero, displacement=about_zero)
+    assert of_records & found == {"second_capacity"}
     level = {"speed_asymmetry", "progressive_drive", "overflow", "sensor_curve"}
     recorded = {"command": LEVEL, "displacement": LEVEL}
-    assert of_records & candidates("first_order", metres, **recorded) == {*level, "root_outflow"}
+    found = candidates("first_order", metres, **recorded)
+    assert of_records & found == {*level, "root_outflow", "second_capacity"}
     assert of_records & candidates("two_tanks", metres, **recorded) == {
         *level,
         "upper_overflow",
