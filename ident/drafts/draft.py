@@ -24,8 +24,9 @@ from ident.units.quantity import shown
 from ident.words.listed import first_of
 from ident.words.message import message
 
-OUTPUTS = ("displacement", "velocity", "force", "load_pressure")
-"""Channels that a model may have to reproduce; the first that there is, unless one is named."""
+OUTPUTS = ("displacement", "velocity", "force", "load_pressure", "temperature")
+"""Channels that a model may have to reproduce; the first that there is, unless one is named. A temperature is one where
+another column is the command."""
 _DRIVES = ("command", "current")
 _TO_REPLACE = ("SERIAL", "COLUMN", "UNIT", "RATE", "=NAME")
 """What stands in an option for what only the user knows."""
@@ -154,13 +155,15 @@ class Draft:
             return [Missing("dialect", f"{question} rows and encoding has it?")]
         known, found = self.known(file), []
         output = next((name for name in OUTPUTS if name in known.channels), "")
+        if output == "temperature" and "command" not in known.channels:
+            output = ""  # a temperature drives, too
         wanted = self.answers.output or output
         bench = self.answers.common.get("kind") in BENCH
         drives = {"command", *(("current",) if bench else ()), *(MOTIONS if wanted == "force" else ())}
         if not drives & known.channels.keys() and self._said(file, "command") != NONE:
             found.append(self._missing_drive(file, known))
         if not wanted or wanted not in known.channels:
-            what = wanted or "displacement, velocity, force or load pressure (load_pressure)"
+            what = wanted or "displacement, velocity, force, load pressure (load_pressure) or temperature"
             found.append(Missing(f"channel {wanted or OUTPUTS[0]}", f"which column of {_listed(file)} is the {what}"))
         for channel, answer in known.channels.items():
             if not answer.unit:

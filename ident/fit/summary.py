@@ -362,7 +362,10 @@ def _read_offsets(offsets: Mapping[str, Offset], matrix: Matrix) -> Iterator[str
     for name, one in offsets.items():
         size, error = (quantity(value, _unit_of(name, matrix)) for value in (abs(one.value), one.std_error))
         side = "above" if one.value >= 0 else "below"
-        yield str(message("transducer_offset", channel=name, offset=size, error=error, side=side))
+        if name == "temperature":
+            yield str(message("transducer_offset.temperature", offset=size, error=error, side=side))
+        else:
+            yield str(message("transducer_offset", channel=name, offset=size, error=error, side=side))
 
 
 def _known_zeros(settings: Settings, runs: Sequence[Run], offsets: Mapping[str, Offset]) -> Iterator[str]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Collection
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 from ident.errors import Unusable
@@ -27,7 +27,9 @@ RUN = (
 
 
 ANSWERS = ("displacement", "velocity", "force", "load_pressure")
-"""Channels of a machine's answer, of which one may be the output without a word."""
+"""Channels of a machine's answer, of which one may be the output without a word; where there is none, a temperature."""
+ZERO_CELSIUS = 273.15
+"""K. A temperature that answers a command is counted from 0 °C: only its rise over the surroundings is the model's."""
 
 
 @dataclass(frozen=True)
@@ -67,6 +69,9 @@ def describe_run(data: Any, where: str) -> RunDescription:
     described = fields.need("channels", "describe command and displacement")
     channels = describe_channels(described, fields.place("channels"), RUN)
     outputs = describe_outputs(fields, kind, channels)
+    if "temperature" in outputs and (answer := channels["temperature"]).scale.unit == "K":
+        counted = replace(answer.scale, offset=answer.scale.offset - ZERO_CELSIUS)
+        channels |= {"temperature": replace(answer, scale=counted)}
     if "disturbance" in fields:
         channels |= describe_disturbance(fields.data["disturbance"], fields.place("disturbance"))
     time, rate, time_unit = describe_clock(fields)
@@ -164,7 +169,7 @@ def _refuse_stress(fields: Fields, channels: dict[str, ChannelDescription]) -> N
 
 def _usual(channels: Collection[str]) -> str:
     """The displacement, or what alone was recorded of the answer to a command."""
-    answers = [name for name in ANSWERS if name in channels]
+    answers = [name for name in ANSWERS if name in channels] or [name for name in ("temperature",) if name in channels]
     return answers[0] if len(answers) == 1 and "command" in channels else "displacement"
 
 

@@ -243,6 +243,9 @@ CAUSES: Mapping[str, str] = {
     "transducer_offset":
         "The transducer of {channel} reads {offset} {side} the model, with a standard error of {error}. This offset is "
         "part of the model in RMSE and in the error with the mean.",
+    "transducer_offset.temperature":
+        "By the model the temperature without a command is {offset} {side} 0 °C, with a standard error of {error}. "
+        "This offset is part of the model in RMSE and in the error with the mean.",
     "known_zero":
         "The runs begin at rest, where {channel} reads {value}, with a standard error of {error}: its mean counts in "
         "the fit.",

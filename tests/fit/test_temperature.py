@@ -1,0 +1,74 @@
+"""A temperature that answers a command, from equations of its own: a lag, its gain in kelvin by the command's unit."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from ident.checks.check import check
+from ident.drafts.answers import Answers
+from ident.drafts.draft import Draft
+from ident.drafts.raw import read_raw
+from ident.readers import read_matrix
+from ident.workflows import identify
+
+GAIN, TAU, ROOM, STEP, COUNT = 0.8, 60.0, 21.0, 2.0, 600
+DESCRIBED = """
+actuator: {{serial: OVEN}}
+runs:
+  - id: a
+    file: run.csv
+    time: {{column: time, unit: s}}
+    hold: zoh
+    channels:
+      command: {{column: power, unit: "%"}}
+      temperature: {{column: heat, unit: {unit}}}
+"""
+
+
+def oven(warm: float = ROOM) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Times, powers in %, and temperatures in °C of a body that cools towards the room."""
+    rng = np.random.default_rng(4)
+    power = np.repeat(rng.integers(0, 100, COUNT // 60), 60).astype(float)
+    heat = np.empty(COUNT)
+    keep = np.exp(-STEP / TAU)
+    for at in range(COUNT):
+        heat[at] = warm
+        warm = keep * warm + (1.0 - keep) * (ROOM + GAIN * power[at])
+    return STEP * np.arange(COUNT), power, heat + 0.05 * rng.standard_normal(COUNT)
+
+
+def written(folder, unit: str = "C", warm: float = ROOM):
+    time, power, heat = oven(warm)
+    shown = {"C": heat, "degC": heat, "F": 1.8 * heat + 32.0, "K": heat + 273.15}[unit]
+    table = np.column_stack([time, power, shown])
+    np.savetxt(folder / "run.csv", table, "%.9g", ",", header="time,power,heat", comments="")
+    (folder / "matrix.yaml").write_text(DESCRIBED.format(unit=unit))
+    return read_matrix(folder)
+
+
+@pytest.mark.parametrize("unit", ["C", "degC", "F", "K"])
+def test_it_is_the_output_and_counts_from_0_degrees_celsius(tmp_path, unit):
+    (run,) = written(tmp_path, unit).runs
+    assert run.output == "temperature"
+    assert run.units["temperature"] == "K"
+    np.testing.assert_allclose(run.measured, oven()[2], atol=1e-5)
+
+
+def test_a_lag_is_taken_for_it_with_its_gain_its_time_and_the_room(tmp_path):
+    fit = identify(written(tmp_path, warm=50.0))
+    assert fit.model == "first_order"
+    assert fit.parameters["gain"].value == pytest.approx(100 * GAIN, rel=0.02)
+    assert fit.parameters["tau"].value == pytest.approx(TAU, rel=0.02)
+    assert fit.transducer_offset["temperature"].value == pytest.approx(ROOM, abs=0.5)
+
+
+def test_nobody_asks_for_the_specimen_of_an_oven(tmp_path):
+    codes = {finding.code for finding in check(written(tmp_path))}
+    assert not codes & {"no-specimen", "one-condition", "no-piston-area", "no-gain"}
+
+
+def test_a_column_of_that_name_is_taken_for_the_output():
+    rows = "time [s];command [%];temperature [degC]\n" + "".join(f"{n};{n % 7};{20 + n % 5}\n" for n in range(30))
+    draft = Draft([read_raw(rows.encode(), "run.csv")], Answers(serial="OVEN"))
+    assert not draft.missing
