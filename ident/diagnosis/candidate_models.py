@@ -32,7 +32,7 @@ from ident.fit.settings import Settings
 from ident.fit.simulated_fitness import SimulatedFitness, shortened
 from ident.fit.simulated_runs import SimulatedRuns
 from ident.fit.space import search_space
-from ident.fit.wider_bounds import reaching, wider_at
+from ident.fit.wider_bounds import WIDENED, reaching, wider_at
 from ident.matrix import Matrix
 from ident.noise.floor import Floors, noise_floors
 from ident.parallel import Once, each
@@ -228,12 +228,23 @@ class CandidateModels:
     def reaching(
         self, effects: Iterable[str], fitness: SimulatedFitness, starts: Sequence[Mapping[str, float]]
     ) -> SimulatedFitness:  # fmt: skip
-        """The objective, its strengths reaching as far as those of some starts, where nobody set how far."""
+        """The objective, its strengths reaching as far as those of some starts, where nobody set how far.
+
+        So do its masses, lags and delays, which a fit searches beyond their ranges (:mod:`ident.fit.wider_bounds`).
+        """
         names = [name for name in effects if name in self.effects and self.may_reach_farther(fitness, name)]
-        strengths, space = [self.strength(name) for name in names], fitness.space
+        reached, space = [*map(self.strength, names), *self._widened(fitness)], fitness.space
         for start in starts:
-            space = reaching(space, start, strengths)
+            space = reaching(space, start, reached)
         return fitness if space is fitness.space else replace(fitness, space=space)
+
+    def _widened(self, fitness: SimulatedFitness) -> list[str]:
+        """The model's own parameters that a fit searches beyond their ranges, where nobody set these."""
+        if not fitness.space.scale_free:
+            return []
+        given = {*self.given.fixed, *self.given.bounds}
+        own = (fitness.preset.parameter(axis.name) for axis in fitness.space.axes)
+        return [p.in_equations for p in own if not p.of and p.unit in WIDENED and not {p.name, p.in_equations} & given]
 
     def fitness(self, effects: tuple[str, ...], samples: int = 0) -> SimulatedFitness:
         """The objective of the model with these effects, on records of at most `samples` in all where that is given."""
