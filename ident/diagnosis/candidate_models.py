@@ -32,7 +32,7 @@ from ident.fit.settings import Settings
 from ident.fit.simulated_fitness import SimulatedFitness, shortened
 from ident.fit.simulated_runs import SimulatedRuns
 from ident.fit.space import search_space
-from ident.fit.wider_bounds import WIDENED, reaching, wider_at
+from ident.fit.wider_bounds import reaching, searched_beyond, wider_at
 from ident.matrix import Matrix
 from ident.noise.floor import Floors, noise_floors
 from ident.parallel import Once, each
@@ -226,25 +226,14 @@ class CandidateModels:
         return refit.stable and self.at_bound(refit, effect) and self.may_reach_farther(refit.fitness, effect)
 
     def reaching(
-        self, effects: Iterable[str], fitness: SimulatedFitness, starts: Sequence[Mapping[str, float]]
+        self, effects: Iterable[str], fitness: SimulatedFitness, starts: Sequence[Mapping[str, float]], *found: str
     ) -> SimulatedFitness:  # fmt: skip
-        """The objective, its strengths reaching as far as those of some starts, where nobody set how far.
-
-        So do its masses, lags and delays, which a fit searches beyond their ranges (:mod:`ident.fit.wider_bounds`).
-        """
+        """The objective, reaching as far as some starts where nobody set how far: strengths, and those `found`."""
         names = [name for name in effects if name in self.effects and self.may_reach_farther(fitness, name)]
-        reached, space = [*map(self.strength, names), *self._widened(fitness)], fitness.space
+        own, space = searched_beyond(fitness, {*self.given.fixed, *self.given.bounds}, found), fitness.space
         for start in starts:
-            space = reaching(space, start, reached)
+            space = reaching(space, start, [*map(self.strength, names), *own])
         return fitness if space is fitness.space else replace(fitness, space=space)
-
-    def _widened(self, fitness: SimulatedFitness) -> list[str]:
-        """The model's own parameters that a fit searches beyond their ranges, where nobody set these."""
-        if not fitness.space.scale_free:
-            return []
-        given = {*self.given.fixed, *self.given.bounds}
-        own = (fitness.preset.parameter(axis.name) for axis in fitness.space.axes)
-        return [p.in_equations for p in own if not p.of and p.unit in WIDENED and not {p.name, p.in_equations} & given]
 
     def fitness(self, effects: tuple[str, ...], samples: int = 0) -> SimulatedFitness:
         """The objective of the model with these effects, on records of at most `samples` in all where that is given."""
@@ -407,7 +396,7 @@ class CandidateModels:
         fitness = self.fitness(effects, samples)
         usual = {p.in_equations: p.value for p in fitness.preset.parameters}
         values = {**usual, **start, **fitness.space.fixed}
-        fitness = self.reaching(effects, fitness, [values])
+        fitness = self.reaching(effects, fitness, [values], *start)
         point = self.resting.held(fitness.space, fitness.space.point(values))
         free = way or (CRITERIA.estimation.trial if samples else CRITERIA.estimation.full)
         way = replace(free, within=self.resting.bounds(fitness.space)) if self.resting.places else free
@@ -491,7 +480,7 @@ class CandidateModels:
         """
         fitness = self.fitness(effects, CRITERIA.estimation.trial_samples)
         values = [{**self.off, **start, **fitness.space.fixed} for start in starts]
-        fitness = self.reaching(effects, fitness, values)
+        fitness = self.reaching(effects, fitness, values, *set(starts[0]).intersection(*starts[1:]))
         errors = fitness.errors(
             self.resting.held(fitness.space, np.array([fitness.space.point(one) for one in values]))
         )

@@ -75,6 +75,17 @@ def reaching(space: Space, values: Mapping[str, float], names: Collection[str]) 
     return space
 
 
+def searched_beyond(fitness: Fitness, given: Collection[str], found: Collection[str]) -> list[str]:
+    """Those of the parameters that were `found` which a fit searches beyond their ranges, by the equations' names.
+
+    They are masses, lags and delays of the machine itself that nobody has `given`. A usual value is not found.
+    """
+    if not fitness.space.scale_free:
+        return []
+    own = (fitness.preset.parameter(axis.name) for axis in fitness.space.axes if axis.name in found)
+    return [p.in_equations for p in own if not p.of and p.unit in WIDENED and not {p.name, p.in_equations} & {*given}]
+
+
 def _is_beyond(value: float, lower: float, upper: float) -> bool:
     """Whether a value lies outside of its bounds, but for rounding."""
     least = EPSILON * (upper - lower)
