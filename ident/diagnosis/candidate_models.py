@@ -177,8 +177,7 @@ class CandidateModels:
     def is_called_for(self, effect: str) -> bool:
         """Whether the records have the mark that an effect needs, or ring as it does.
 
-        A fit without a spring, or without an edge over which a tank runs, may lie so far off that it promises nothing
-        there.
+        A fit without a spring, or an edge that a tank runs over, may lie so far off that it promises nothing there.
         """
         of = self.effects[effect]
         rings = any(shape.start is Starts.RESONANCE for shape in of.shape) and resonance(self.runs) is not None

@@ -128,9 +128,9 @@ def _response_of_each(given: _Sensitivities, base: FittedModel, names: Sequence[
 def _values_without(models: CandidateModels, base: FittedModel, fitness: SimulatedFitness) -> dict[str, float]:
     """The values of everything in a space, the effects that are not the model's own off, also what is held of them.
 
-    What is searched of an effect has its usual value, or the middle of its range where the range, which is that of the
-    records, does not hold that: in records of hours, a force that relaxes within a tenth of a second would run away,
-    though it acts by nothing.
+    A searched parameter of an effect has its usual value, or the middle of its range where the range, which is that of
+    the records, does not hold that: in records of hours, a force that relaxes within a tenth of a second would run
+    away, though it acts by nothing.
     """
     off = {symbol: value for symbol, value in models.off.items() if symbol not in base.values}
     held = {name: value for name, value in fitness.space.fixed.items() if name not in base.values}

@@ -430,8 +430,8 @@ class _JudgedStructure:
         names = self.untried if further else [name for name in self.models.effects if name not in base.effects]
         ranking = rank(self.models, base, names, told, thorough=further)
         refits = [one.refit for one in ranking if one.refit is not None and one.worth_adding and one.refit.finite]
-        known = self.best if further else base
-        best = min([known, *refits] if known.effects else refits, key=_held_out, default=None)
+        before = self.best if further else base
+        best = min([before, *refits] if before.effects else refits, key=_held_out, default=None)
         return replace(self, with_effect=best, untried=tuple(one.effect for one in ranking if one.trial is None))
 
     def structure(self, over: float | None, more: Message | None, probability: float | None) -> Structure:

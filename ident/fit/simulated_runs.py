@@ -27,12 +27,12 @@ from ident.fit.normal_matrices import NormalMatrices, at_point, block_length, fi
 from ident.fit.products import add_block_products, add_products, completed
 from ident.fit.reduction import excited_band
 from ident.fit.settling import Least, Settling, better
+from ident.fit.standing import Held, standing
 from ident.matrix import Matrix
 from ident.parallel import LEAST_SHARED, cores, each
 from ident.parameter import AtReversals
 from ident.presets import Preset
 from ident.run import MOTIONS, Run
-from ident.simulation.equilibrium import equilibrium
 from ident.simulation.simulate import Simulation, side_by_side
 from ident.simulation.steps import Modes, steps_needed, steps_where_reversed
 
@@ -245,8 +245,8 @@ class SimulatedRuns:
     ) -> Simulation:
         """A simulation of vectors at runs of a kind, from the first states that are known.
 
-        Where none is known of a machine that is not linear each vector stands under the mean command at first. A level
-        that rises from zero would be judged by how fast it does, and not by the record.
+        Where none is known yet of a machine that is not linear, each vector stands under the mean command at first: a
+        level that rises from zero would be judged by how fast it does.
         """
         known = [conditions(run, self.matrix.actuator) for run in runs]
         stacked = {name: np.array([entry[name] for entry in known])[:, None] for name in known[0]}
@@ -254,8 +254,8 @@ class SimulatedRuns:
         at = stacked | {name: value[None] for name, value in values.items()}
         if start is None and runs[0].begins == "standing":
             start = self._standing(runs, at)
-        elif start is None and runs[0].begins == "moving" and self._knows_nothing_of(runs):
-            start = self._standing_under(runs, at, [(r.command.mean(), r.measured.mean()) for r in runs])
+        elif start is None and runs[0].begins == "moving" and not (self.preset.is_linear or self.starts):
+            start = self._standing(runs, at, [(run.command.mean(), run.measured.mean()) for run in runs])
         elif start is None and (runs[0].begins == "moving" or self._recorded(runs[0])):
             start = np.repeat(np.array([self.start(run) for run in runs])[:, None], vectors, axis=1)
         return Simulation(self.chain, runs, at, steps, start)
@@ -270,27 +270,9 @@ class SimulatedRuns:
         known = run.begins == "moving" or self._recorded(run)
         return np.repeat(self.start(run)[None, None], vectors, axis=1) if known else None
 
-    def _knows_nothing_of(self, runs: tuple[Run, ...]) -> bool:
-        """Whether no first state of a machine is known that is not linear, and for which a zero state is no guess."""
-        return not (self.preset.is_linear or any(run.id in self.starts for run in runs))
-
-    def _standing(self, runs: tuple[Run, ...], values: Mapping[str, Array]) -> Array:
-        """The states in which runs of one kind stand at first, under their first command, (runs, v, n)."""
-        return self._standing_under(runs, values, [(run.command[0], run.measured[0]) for run in runs])
-
-    def _standing_under(
-        self, runs: tuple[Run, ...], values: Mapping[str, Array], held: Sequence[tuple[float, float]]
-    ) -> Array:
-        """The states in which runs of one kind stand, near those of the linear chain, (runs, v, n).
-
-        `held` are the command and, of a position that nothing holds, the output of each run.
-        """
-        core, output = self.preset.core, runs[0].output
-        u, y = (np.array(of)[:, None] for of in zip(*held, strict=True))
-        linear = core.linearise({name: values[name] for name in core.symbols}, output).standing(u, y)
-        near = np.zeros((*linear.shape[:-1], len(self.chain.states)))
-        near[..., [self.chain.states.index(name) for name in core.states]] = linear
-        found = equilibrium(self.chain, output, values, u, runs[0].sample_rate, near)
+    def _standing(self, runs: tuple[Run, ...], values: Mapping[str, Array], held: Sequence[Held] = ()) -> Array:
+        """The states in which runs of one kind stand, (runs, v, n): at what is `held`, or as they do at first."""
+        found = standing(self.preset, runs, values, held or [(run.command[0], run.measured[0]) for run in runs])
         for i, run in enumerate(runs):
             for state, value in self._recorded(run).items():
                 found[i, :, state] = value
@@ -436,11 +418,7 @@ class SimulatedRuns:
     def together(
         self, vectors: int, steps: int, lanes: int = _TOGETHER, of: tuple[Run, ...] | None = None
     ) -> Iterator[tuple[Run, ...]]:
-        """Runs that are simulated in one go: of one length, sample rate, output, kind of start and recorded states.
-
-        Each has so many `vectors`, at so many `steps` a sample. At most so many `lanes` are one share; what takes long
-        is shared out to the cores.
-        """
+        """Runs to simulate in one go, alike in length, rate, output, start and recorded states; cores share long ones."""
         groups: dict[tuple[object, ...], list[Run]] = {}
         for run in self.runs if of is None else of:
             begun = (run.begins, *self._recorded(run))
