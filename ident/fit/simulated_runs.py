@@ -418,7 +418,7 @@ class SimulatedRuns:
     def together(
         self, vectors: int, steps: int, lanes: int = _TOGETHER, of: tuple[Run, ...] | None = None
     ) -> Iterator[tuple[Run, ...]]:
-        """Runs to simulate in one go, alike in length, rate, output, start and recorded states; cores share long ones."""
+        """Runs to simulate in one go, of one length, rate, output, start and recorded states; cores share long ones."""
         groups: dict[tuple[object, ...], list[Run]] = {}
         for run in self.runs if of is None else of:
             begun = (run.begins, *self._recorded(run))

@@ -172,6 +172,7 @@ def test_the_kept_record_shows_the_reference(service, simulation):
     assert followed == pytest.approx(1, abs=simulation["scores"]["reference_peak"] + 0.01)
 
 
+@pytest.mark.full
 def test_other_motions_effects_and_controllers(service, fitted, controller):
     """Live compensation against noise, a controller's own JSON against a sine, with an effect switched on."""
     file = service.get(f"{API}/controllers/{controller['id']}.json").json()
@@ -401,6 +402,7 @@ def test_a_target_of_one_s_own_and_one_that_no_loop_can_be(service, fitted):
     refused_by_service(service.post(f"{API}/controllers", json=late), "too-late")
 
 
+@pytest.mark.full
 def test_two_actuators_over_http_have_their_own_fits_and_controllers(service, fitted, controller):
     """A part with a stored controller, one with a stored fit: scores, figures of each, the map, and the page."""
     case = {

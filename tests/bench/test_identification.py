@@ -38,6 +38,7 @@ def test_a_search_that_was_cut_ends_the_same(matrix, full):
     assert identification(matrix, SHORT).finish(state).values == whole.values
 
 
+@pytest.mark.full
 def test_search_and_procedures_agree(matrix):
     """From anywhere in the bounds to where the procedures end: T, B and every speed within 1 %."""
     by_search, by_steps = identify(matrix, SHORT), identify(matrix, replace(SHORT, method="gradient", options={}))

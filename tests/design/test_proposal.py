@@ -85,6 +85,7 @@ def separation(experiment: Experiment, seed: int) -> float:
     return float(np.sqrt(max(apart(recorded(experiment, seed)) - apart(), 0.0)))
 
 
+@pytest.mark.full
 def test_the_proposed_run_separates_confused_models():
     """Friction and dead zone after two runs: the proposal tells them apart, three times better than the median run."""
     few, models = confused()

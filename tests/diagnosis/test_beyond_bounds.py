@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+import pytest
 
 from ident.diagnosis.candidate_models import CandidateModels
 from ident.diagnosis.screening import predict
@@ -27,6 +28,7 @@ def matrix() -> Matrix:
     return Matrix(Actuator("A"), (run,))
 
 
+@pytest.mark.full
 def test_a_strength_beyond_its_range_is_found():
     record = matrix()
     models = CandidateModels.of(record, Settings(model=LOOP))

@@ -10,6 +10,7 @@ from ident.matrix import Actuator, Matrix
 from ident.run import Run
 from ident.workflows import diagnose, identify
 from tests.conftest import rank_only
+from tests.short_form import short_form
 
 RATE, COUNT = 200.0, 800
 MASS, DAMPING, SPRING = 2.0, 12.0, 4e3
@@ -47,7 +48,7 @@ def _few_effects(monkeypatch, full):
         rank_only(monkeypatch, FEW)
 
 
-@pytest.mark.parametrize("share", [-1.4, 0.2])
+@pytest.mark.parametrize("share", short_form([-1.4, 0.2], 0.2))
 def test_an_oscillator_that_hardens_is_named_with_the_shape_of_its_loop(share, full):
     """γ = −1.4 β, that of the benchmark, whose force grows ever faster along its way; and nearly Dahl's loop.
 

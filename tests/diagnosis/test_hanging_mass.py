@@ -13,6 +13,7 @@ FEW = ("elastic_load", "elastic_coupling")
 LIGHT = {"population": 24.0, "generations": 8.0, "elite": 4.0}
 
 
+@pytest.mark.full
 def test_a_spring_whose_resonance_lies_beyond_the_command_is_found(monkeypatch):
     """Straight commands excite up to 24.5 rad/s; the load swings at 27.5 rad/s. SciPy integrates the machine."""
     rank_only(monkeypatch, FEW)

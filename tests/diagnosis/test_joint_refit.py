@@ -5,6 +5,7 @@ from __future__ import annotations
 from math import tanh
 
 import numpy as np
+import pytest
 from scipy.integrate import solve_ivp
 
 from ident.diagnosis.candidate_models import CandidateModels
@@ -34,6 +35,7 @@ def motor(seed: int) -> Run:
     return Run(f"r{seed}", "", RATE, {"command": u, "velocity": w}, units, output="velocity", hold="zoh")
 
 
+@pytest.mark.full
 def test_two_effects_are_found_at_once_and_what_is_not_needed_is_left_out():
     models = CandidateModels.of(Matrix(Actuator("M"), (motor(1), motor(2))), Settings(model="motor"))
     base = models.refit((), {})

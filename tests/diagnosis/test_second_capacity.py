@@ -10,6 +10,7 @@ from ident.matrix import Actuator, Matrix
 from ident.run import Run
 from ident.workflows import diagnose, identify
 from tests.conftest import rank_only
+from tests.short_form import short_form
 
 NOISE, COUNT = 0.005, 900
 FEW = (
@@ -50,7 +51,7 @@ def recorded(seed: int, step: float, system: tuple[object, ...], hold: int) -> R
     return Run(f"run-{seed}", "", 1.0 / step, channels, units, use=use, hold="zoh")
 
 
-@pytest.mark.parametrize(("machine", "step"), [(heated, 2.0), (regulated, 0.004)])
+@pytest.mark.parametrize(("machine", "step"), short_form([(heated, 2.0), (regulated, 0.004)], (regulated, 0.004)))
 def test_an_answer_that_is_quick_and_then_slow_has_a_second_capacity(monkeypatch, machine, step):
     rank_only(monkeypatch, FEW)
     records = Matrix(Actuator("PLATE"), (machine(0, step), machine(1, step)))

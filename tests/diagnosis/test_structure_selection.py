@@ -212,6 +212,7 @@ def test_what_was_compared_is_kept_with_the_fit():
     assert "structures" not in replace(fit, structures=()).to_json()
 
 
+@pytest.mark.full
 @pytest.mark.usefixtures("few_effects")
 def test_structures_are_compared_over_one_time():
     """A cylinder that disturbances moved: over whole runs a slow lag would leave less of it than what it is."""

@@ -31,6 +31,7 @@ from ident.workflows import identification, identify
 from tests.bench.sets import as_matrix
 from tests.presets.test_composed import RATE, UNITS, drawn, smooth, with_own_outputs
 from tests.reference import kononykhin_reference as reference
+from tests.short_form import short_form
 from tests.simulation.plain_kernel import plain_kernels
 
 MACHINES = tuple(drawn(np.random.default_rng([50, seed])) for seed in range(10))
@@ -76,7 +77,7 @@ def prepared(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
 
 
 @pytest.mark.usefixtures("prepared")
-@pytest.mark.parametrize("model", MODELS)
+@pytest.mark.parametrize("model", short_form(MODELS, *(name for name in MODELS if name != "kononykhin")))
 def test_an_effect_is_searched_within_bounds_and_simulated_or_refused_in_one_line(model, full):
     """Refused are those that the model has no place for, and those that read what the model is to show; no others.
 

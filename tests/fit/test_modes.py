@@ -25,6 +25,7 @@ def test_what_a_search_finds_is_followed_by_the_diagnosis():
     assert found.ladder[0].error["fit"] == pytest.approx(fit.error["fit"], rel=1e-4)
 
 
+@pytest.mark.full
 def test_a_mode_that_nothing_follows_is_looked_for_only_where_the_user_says_so():
     matrix = Lab.drawn(317, hidden=True).measured()
     free = Identification(matrix, Settings(model="qian2014")).objective

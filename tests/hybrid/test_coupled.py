@@ -53,6 +53,7 @@ def assert_alike(found, loop):
             assert np.std(shown - truth) < within * np.std(truth)
 
 
+@pytest.mark.full
 def test_the_critical_delay_of_coupled_parts_is_that_of_the_determinant():
     """Within 1 %, of parts apart and joined, by Newton's method for both unknowns."""
     for joined in (False, True):

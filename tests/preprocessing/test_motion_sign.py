@@ -58,6 +58,7 @@ def test_a_motion_that_the_drive_does_not_explain_tells_no_sign() -> None:
     assert against_its_drive(Run("r", "", RATE, channels, units)) is None
 
 
+@pytest.mark.full
 def test_a_muscle_that_contracts_under_pressure_is_a_mass_on_a_spring():
     """As recorded, its motion is counted against the pressure, and its spring would be negative."""
     muscle = Matrix(Actuator("MUSCLE"), (driven(SWINGING, -1.0), driven(SWINGING, -1.0, seed=1)))

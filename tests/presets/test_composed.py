@@ -69,6 +69,7 @@ def smooth(rng: np.random.Generator, n: int, hertz: float) -> np.ndarray:
     return (u / u.std()) * np.minimum(1.0, np.arange(n) / 40)
 
 
+@pytest.mark.full
 def test_a_force_loop_is_taken_for_one_and_fitted_to_the_noise():
     matrix = force_loop(1)
     assert [model.name for model in in_question(matrix.runs)] == ["force_loop"]

@@ -361,7 +361,7 @@ def lagging(seed: int, gain: float = 1.0, beside: float = 0.0, wander: float = 0
     return Matrix(Actuator("UNKNOWN"), (run,))
 
 
-@pytest.mark.parametrize("seed", [1, 2, 3])
+@pytest.mark.parametrize("seed", short_form([1, 2, 3], 1))
 def test_in_unknown_units_a_loop_is_known_by_where_its_output_is(seed):
     matrix = lagging(seed)
     assert [model.name for model in in_question(matrix.runs)] == ["qian2014"]

@@ -86,6 +86,7 @@ def throttle(seed: int) -> Matrix:
     return Matrix(Actuator("THROTTLE"), tuple(runs))
 
 
+@pytest.mark.full
 def test_a_throttle_that_friction_keeps_from_ringing_is_a_motor_against_a_spring(full):
     matrix = throttle(1)
     assert "sprung_motor" not in named(matrix)

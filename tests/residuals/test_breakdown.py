@@ -61,7 +61,7 @@ def test_parameters_follow_the_amplitude_where_a_dead_zone_is_hidden():
 @pytest.mark.parametrize(
     ("name", "strength", "changed", "part"),
     [
-        ("coulomb_friction", None, {"all_amplitudes": True}, "nonlinear"),
+        pytest.param("coulomb_friction", None, {"all_amplitudes": True}, "nonlinear", marks=pytest.mark.full),
         ("dead_zone", 0.0, {"tau": 4.6e-3}, "linear"),
         ("dead_zone", 0.0, {}, "noise"),
     ],
