@@ -7,6 +7,7 @@ the hash of what it holds: a change of one equation is another file, and what wa
 from __future__ import annotations
 
 import hashlib
+import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from functools import cache
@@ -14,6 +15,9 @@ from pathlib import Path
 
 from ident.simulation.cache import cache_folder, tidy_daily, used, write
 
+LONGEST_TURN = 20.0
+"""s that a process waits for another one that compiles the same: several times what the slowest text takes."""
+_LOOK = 0.02  # s between two looks whether it is its turn
 _MARK = hashlib.sha256().digest_size  # bytes before the code: its hash
 
 
@@ -52,7 +56,8 @@ def keep(text: str, code: bytes) -> None:
 def in_turn(text: str) -> Iterator[None]:
     """One process at a time compiles a text: the others find then what it kept.
 
-    Whoever ends gives up its turn. Where the system cannot lock a file, each goes on by itself.
+    Whoever ends gives up its turn. Where the system cannot lock a file, each goes on by itself, and so does who has
+    waited for long: a process that was interrupted while it compiled may never end.
     """
     try:
         import fcntl  # noqa: PLC0415 - not on every system
@@ -62,8 +67,16 @@ def in_turn(text: str) -> Iterator[None]:
         yield
         return
     with lock:
-        with suppress(OSError):
-            fcntl.flock(lock, fcntl.LOCK_EX)
+        until = time.monotonic() + LONGEST_TURN
+        while time.monotonic() < until:
+            try:
+                fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            except BlockingIOError:
+                time.sleep(_LOOK)
+                continue
+            except OSError:
+                pass
+            break
         try:
             yield
         finally:  # by name: a process that was forked meanwhile has the file open, too

@@ -116,6 +116,18 @@ def test_one_process_at_a_time_compiles_a_function(folder):
     assert is_free()
 
 
+def test_who_has_waited_for_long_compiles_by_itself(folder, monkeypatch):
+    """A process that was interrupted while it compiled, and never ended, kept all others waiting."""
+    monkeypatch.setattr(kept, "LONGEST_TURN", 0.1)
+    with kept.in_turn("text"):
+        (file,) = folder.glob("*.lock")
+        with file.open("rb") as other, pytest.raises(BlockingIOError):
+            fcntl.flock(other, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        with kept.in_turn("text"):
+            went_on = True
+    assert went_on
+
+
 def test_it_is_compiled_where_nothing_can_be_kept(monkeypatch):
     monkeypatch.setattr(kept, "cache_folder", lambda: Path("/nowhere"))
     assert calling()(1.5) == 3.5
