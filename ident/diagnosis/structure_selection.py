@@ -100,10 +100,10 @@ def _compared(
         if matrix.machine or not is_assumed_loop(only, matrix.runs):
             return (structure,), None
         fitted = _all_fitted(models, matrix, report, preprocessing)
-        fit, others = fitted[only.name].fit, without_loop(matrix.runs, matrix.actuator.states_oil)
-        if (fit.error["fit"] or 0.0) < HARDLY or not others:
+        fit, open_loop = fitted[only.name].fit, without_loop(matrix.runs, matrix.actuator.states_oil)
+        if (fit.error["fit"] or 0.0) < HARDLY or not open_loop:
             return (structure,), fit
-        models = (only, *others)
+        models = (only, *open_loop)
     fitted |= _all_fitted([model for model in models if model.name not in fitted], matrix, report, preprocessing)
     over, tried = _judged(list(fitted.values()))
     springs = on_a_spring(models, matrix.runs, matrix.actuator.states_oil)
