@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 
 from ident.errors import Unusable
 from ident.readers.hdf5 import SIGNATURE, read_hdf5
@@ -27,8 +27,7 @@ def read_mat(data: bytes, where: str, limits: Limits) -> Table:
     if SIGNATURE in (data[:8], data[512:520]):
         return read_hdf5(data, where, limits)
     try:
-        found = list(variables(data, where, limits))
-        series = _signals(data, where, limits)
+        found, series = contents(data, where, limits)
     except Damaged as damaged:
         remedy = "copy it or save it again from MATLAB"
         raise Unusable("broken-mat", f"this is not a whole MAT file: {damaged}", where, remedy) from None
@@ -46,13 +45,6 @@ def read_mat(data: bytes, where: str, limits: Limits) -> Table:
     )
 
 
-def _signals(data: bytes, where: str, limits: Limits) -> list[Signal]:
-    """The signals that were saved as objects, which a v5 file alone holds. Raises Damaged."""
-    if b"\0" in data[:4]:
-        return []
-    return signals(inflated(data, where, limits), byte_order(data, where))
-
-
 def _rate(found: Sequence[Variable]) -> float:
     """The sample rate in Hz of MATLAB's ``iddata``, which states the step Ts in s; 0 where there is none."""
     held = dict(found)
@@ -63,11 +55,15 @@ def _rate(found: Sequence[Variable]) -> float:
     return 0.0
 
 
-def variables(data: bytes, where: str, limits: Limits) -> Iterator[Variable]:
-    """Every variable of a v4 or v5 file: the first is marked by a zero among its first four bytes."""
+def contents(data: bytes, where: str, limits: Limits) -> tuple[list[Variable], list[Signal]]:
+    """Every variable of a v4 or v5 file, and the signals that a v5 file holds as objects. Raises Damaged.
+
+    A v4 file is marked by a zero among its first four bytes.
+    """
     if b"\0" in data[:4]:
-        return variables4(data)
-    return variables5(inflated(data, where, limits), byte_order(data, where))
+        return list(variables4(data)), []
+    elements, order = inflated(data, where, limits), byte_order(data, where)
+    return list(variables5(elements, order)), signals(elements, order)
 
 
 def columns_of(name: str, array: Array | str) -> list[Column]:

@@ -79,18 +79,27 @@ class Objects:
         of_class = self.objects[number][0] if 0 < number < len(self.objects) else 0
         return self.classes[of_class] if 0 < of_class < len(self.classes) else ""
 
-    def series(self, value: Value, name: str, depth: int = _DEEPEST) -> Iterator[Series]:
-        """Every signal that a value refers to, under `name`, or under its own where it is one of several."""
+    def series(self, value: Value, name: str) -> Iterator[Series]:
+        """Every signal that a value refers to, under `name`, or under its own where it is one of several.
+
+        Each object is looked at once: in a file that was made to do harm, all may refer to all.
+        """
+        yield from self._series(value, name, _DEEPEST, set())
+
+    def _series(self, value: Value, name: str, depth: int, seen: set[int]) -> Iterator[Series]:
         if not depth:
             return
         if isinstance(value, tuple):
             for number, each in enumerate(value):
-                yield from self.series(each, f"{name}.{number}" if len(value) > 1 else name, depth - 1)
+                yield from self._series(each, f"{name}.{number}" if len(value) > 1 else name, depth - 1, seen)
         elif isinstance(value, dict):
             for field, each in value.items():
-                yield from self.series(each, f"{name}.{field}", depth - 1)
+                yield from self._series(each, f"{name}.{field}", depth - 1, seen)
         elif isinstance(value, Reference):
             for number in value.objects:
+                if number in seen:
+                    continue
+                seen.add(number)
                 held = self.properties(number)
                 own = held.get("Name")
                 called = own if isinstance(own, str) and own and depth < _DEEPEST else name
@@ -98,7 +107,7 @@ class Objects:
                     yield from self._signal(held, called)
                     continue
                 for each in held.values():
-                    yield from self.series(each, called, depth - 1)
+                    yield from self._series(each, called, depth - 1, seen)
 
     def _signal(self, held: dict[str, Value], name: str) -> Iterator[Series]:
         """The signal of a ``timeseries``, whose data have the time first or last; nothing where one is missing."""

@@ -11,6 +11,7 @@ import pytest
 
 from ident.drafts.raw import read_raw
 from ident.errors import Unusable
+from ident.readers import mat_objects
 from ident.readers.limits import LIMITS
 from ident.readers.mat import read_mat
 
@@ -189,3 +190,13 @@ def test_a_damaged_table_of_objects_is_refused_or_read(seed):
     with suppress(Unusable):
         table = read_mat(file(variable, bytes(behind)), "f", LIMITS)
         table.load(range(len(table.names)))
+
+
+def test_objects_that_all_refer_to_all_are_looked_at_once():
+    """Each way through forty of them to the depth of eight would be followed: more than there are seconds."""
+    count = 40
+    everyone = mat_objects.Reference(tuple(range(1, count + 1)))
+    objects = mat_objects.Objects(("p",), ("", "thing"), ((0, 0, 0), *[(1, 1, 0)] * count), ((), ((1, 1, 0),)), ((),),
+                      (None, None, everyone))  # fmt: skip
+    assert objects.properties(1) == {"p": everyone}
+    assert list(objects.series(everyone, "x")) == []
