@@ -67,6 +67,7 @@ OF_RECORDS = _of_files(
     "speed_asymmetry",
     "progressive_drive",
     "root_outflow",
+    "drive_hysteresis",
     "second_capacity",
     "upper_overflow",
     "overflow",

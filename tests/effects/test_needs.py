@@ -41,9 +41,11 @@ def at(samples: np.ndarray, t: float) -> float:
     return float(np.interp(t, T, samples))
 
 
-def solved(rates: Callable[[float, np.ndarray], list[float]], states: int) -> np.ndarray:
-    """The states at the samples, (states, n), from rest."""
-    found = scipy.integrate.solve_ivp(rates, (0.0, T[-1]), np.zeros(states), "LSODA", T, rtol=1e-8, atol=1e-10,
+def solved(
+    rates: Callable[[float, np.ndarray], list[float]], states: int, start: list[float] | None = None
+) -> np.ndarray:
+    """The states at the samples, (states, n), from rest or from where they start."""
+    found = scipy.integrate.solve_ivp(rates, (0.0, T[-1]), start or np.zeros(states), "LSODA", T, rtol=1e-8, atol=1e-10,
                                       max_step=0.5 / RATE)  # fmt: skip
     return np.asarray(found.y)
 
@@ -67,6 +69,18 @@ def two_capacities(exchange: float, time: float) -> np.ndarray:
         return [(GAIN * at(LEVEL, t) - s[0] - taken) / TAU, (s[0] - s[1]) / time]
 
     return solved(rates, 2)[0]
+
+
+def driven_with_hysteresis(share: float, inverse_way: float) -> np.ndarray:
+    """The same fed by what lags behind the command by its way, after Coleman and Hodgdon, once the command has come."""
+    fed, slopes = GAIN * LEVEL, GAIN * np.diff(LEVEL, append=LEVEL[-1]) * RATE
+
+    def rates(t: float, s: np.ndarray) -> list[float]:
+        slope = slopes[min(int(t * RATE), len(T) - 1)]
+        missing = share * s[1] / inverse_way
+        return [(at(fed, t) - missing - s[0]) / TAU, inverse_way * (slope - abs(slope) * s[1])]
+
+    return solved(rates, 2, [0.0, 1.0 - np.exp(-inverse_way * fed[0])])[0]
 
 
 def mass(resists: Callable[[float, float, float], float]) -> np.ndarray:
@@ -187,6 +201,9 @@ CASES = {
     "speed_asymmetry": Case("first_order", {"speed_asymmetry.asymmetry": 0.5}, lambda k: lag(turned=0.5 * k), {}),
     "progressive_drive": Case(
         "first_order", {"progressive_drive.inverse_command": 2.0}, lambda k: lag(squared=2.0 * k), {}),
+    "drive_hysteresis": Case(
+        "first_order", {"drive_hysteresis.share": 0.6, "drive_hysteresis.inverse_way": 4.0},
+        lambda k: driven_with_hysteresis(0.6 * k, 4.0), {}),
     "second_capacity": Case(
         "first_order", {"second_capacity.exchange": 0.7, "second_capacity.time": 0.9},
         lambda k: two_capacities(0.7 * k, 0.9), {}),
@@ -309,11 +326,11 @@ def test_an_effect_is_looked_for_only_where_the_record_could_show_it():
     springs = {"elastic_coupling", "elastic_load"}
     metres = {"command": "m", "displacement": "m"}
     found = candidates("first_order", metres, command=about_zero, displacement=about_zero)
-    assert of_records & found == {"second_capacity"}
+    assert of_records & found == {"drive_hysteresis", "second_capacity"}
     level = {"speed_asymmetry", "progressive_drive", "overflow", "sensor_curve"}
     recorded = {"command": LEVEL, "displacement": LEVEL}
     found = candidates("first_order", metres, **recorded)
-    assert of_records & found == {*level, "root_outflow", "second_capacity"}
+    assert of_records & found == {*level, "root_outflow", "drive_hysteresis", "second_capacity"}
     assert of_records & candidates("two_tanks", metres, **recorded) == {
         *level,
         "upper_overflow",
