@@ -97,6 +97,7 @@ class Run(Shown):
     closed_loop: bool | None = None  # whether a controller made the command of the output; None: nobody said
     zeroed: Mapping[str, bool] = field(default_factory=dict)  # by channel, whether its zero was set for this run alone
     assumed_beginning: Beginning | None = None  # how it is taken to begin, whatever its samples show; None: as they do
+    every: int = 1  # samples of the record for one of these, where it is decimated
 
     @property
     def command(self) -> Samples:
@@ -245,6 +246,22 @@ class Run(Shown):
         channels = {name: samples[first:last] for name, samples in self.channels.items()}
         return replace(self, channels=channels, past=past, assumed_beginning=None if first else self.assumed_beginning)
 
+    def decimated(self, count: int) -> Run:
+        """One sample of each `count` as a run of its own: a held command is then its mean until the next one.
+
+        What was measured stays as it is at its samples. Of other commands the line between two of them is taken.
+        """
+        first = np.arange(0, self.length, count)
+        channels = {name: samples[first] for name, samples in self.channels.items()}
+        past = None if self.past is None else self.past[len(self.past) % count :]
+        if self.hold == "zoh" and "command" in channels:
+            channels["command"] = _means(self.command, first)
+            past = None if past is None else _means(past, np.arange(0, len(past), count))
+        elif past is not None:
+            past = past[::count]
+        rate, every = self.sample_rate / count, self.every * count
+        return replace(self, channels=channels, sample_rate=rate, past=past, every=every, assumed_beginning=self.begins)
+
     @cached_property
     def begins(self) -> Beginning:
         """How the measured output begins: a model may start at rest, in its equilibrium, or in a state to be found."""
@@ -304,6 +321,13 @@ class Run(Shown):
 def output_id(record: str, output: str) -> str:
     """The id of one of several outputs of a record."""
     return f"{record}.{output}"
+
+
+def _means(samples: Samples, first: NDArray[np.intp]) -> Samples:
+    """The mean of the samples from each of `first` to the next one."""
+    if not len(first):
+        return samples
+    return np.asarray(np.add.reduceat(samples, first) / np.diff(np.append(first, len(samples))))
 
 
 class Shared(Protocol):

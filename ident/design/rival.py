@@ -12,8 +12,9 @@ from ident.cached import cached_property
 from ident.comparison.compare import modelled
 from ident.fit.normal_matrices import NormalMatrices
 from ident.fit.settings import Settings
-from ident.fit.simulated_fitness import SimulatedFitness, shortened
+from ident.fit.simulated_fitness import SimulatedFitness
 from ident.fit.space import search_space
+from ident.fit.trial_runs import shortened
 from ident.matrix import Matrix
 from ident.noise.floor import by_spectrum, like_transducer
 from ident.presets import Preset

@@ -14,7 +14,7 @@ from ident.diagnosis.compared_records import ComparedRecords
 from ident.diagnosis.criteria import CRITERIA
 from ident.diagnosis.fitted_model import FittedModel
 from ident.diagnosis.objectives import Objectives
-from ident.diagnosis.offered_effects import offered_effects, place_in_words
+from ident.diagnosis.offered_effects import in_words, offered_effects
 from ident.diagnosis.resting import Resting
 from ident.diagnosis.tie_breaking import stable_minimum, stable_ranking
 from ident.diagnosis.verdict import Residual, is_noise
@@ -29,9 +29,10 @@ from ident.fit.levenberg_marquardt import Way
 from ident.fit.recent_moments import RecentMoments
 from ident.fit.reduction import excited_band
 from ident.fit.settings import Settings
-from ident.fit.simulated_fitness import SimulatedFitness, shortened
+from ident.fit.simulated_fitness import SimulatedFitness
 from ident.fit.simulated_runs import SimulatedRuns
 from ident.fit.space import search_space
+from ident.fit.trial_runs import decimated, shortened
 from ident.fit.wider_bounds import reaching, searched_beyond, wider_at
 from ident.matrix import Matrix
 from ident.noise.floor import Floors, noise_floors
@@ -42,7 +43,6 @@ from ident.presets import Preset
 from ident.presets import preset as preset_named
 from ident.run import Run
 from ident.simulation.steps import MOST
-from ident.words.titles import title
 
 Array = NDArray[np.float64]
 _EFFECTS_A_CHAIN = 8
@@ -88,14 +88,7 @@ class CandidateModels:
 
     def described(self, name: str) -> str:
         """An effect in words; of one of a part that nobody described also what it does, and where."""
-        effect = self.effects[name]
-        of, runs = self.matrix.actuator, self.matrix.runs
-        if effect.place == "load":
-            described = any(run.specimen for run in runs)
-        else:
-            described = bool(of.piston_area or of.servo_valve or of.supply_pressure or any(run.gain for run in runs))
-        place = place_in_words(effect, self.preset, self.matrix)
-        return title(name) if described or not effect.does else f"{title(name)} ({effect.does}, at the {place})"
+        return in_words(self.effects[name], self.preset, self.matrix)
 
     @property
     def runs(self) -> tuple[Run, ...]:
@@ -258,7 +251,12 @@ class CandidateModels:
 
     def _shortened(self, samples: int) -> tuple[Run, ...]:
         """The records at that length, the same ones for every model: what is known of a record is found once."""
-        return self._records.setdefault(samples, self._records.get(samples) or shortened(self.runs, samples))
+        return self._records.setdefault(samples, self._records.get(samples) or shortened(self._decimated, samples))
+
+    @cached_property
+    def _decimated(self) -> tuple[Run, ...]:
+        """The records, decimated where they are finely sampled."""
+        return decimated(self.runs, self.band)
 
     @cached_property
     def floors(self) -> Floors:

@@ -11,6 +11,7 @@ from ident.matrix import Matrix
 from ident.presets import Preset
 from ident.presets.middle import about
 from ident.run import MOTIONS
+from ident.words.titles import title
 
 _OF_DRIVE = ("valve", "spool", "flow", "pressure")
 """Places with the names of hydraulic parts, which an electric drive does not have."""
@@ -30,6 +31,21 @@ def offered_effects(
         and effect.suits(matrix)
         and effect.unless not in preset.core.symbols
     }
+
+
+def in_words(effect: Effect, preset: Preset, matrix: Matrix) -> str:
+    """An effect in words; of one of a part that nobody described also its action and its place."""
+    of, runs = matrix.actuator, matrix.runs
+    if effect.place == "load":
+        described = any(run.specimen for run in runs)
+    else:
+        described = bool(of.piston_area or of.servo_valve or of.supply_pressure or any(run.gain for run in runs))
+    name = title(effect.name)
+    return (
+        name
+        if described or not effect.does
+        else f"{name} ({effect.does}, at the {place_in_words(effect, preset, matrix)})"
+    )
 
 
 def place_in_words(effect: Effect, preset: Preset, matrix: Matrix) -> str:

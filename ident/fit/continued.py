@@ -26,9 +26,10 @@ from ident.fit.reduction import Basis, excited_band
 from ident.fit.result import FitResult
 from ident.fit.search import State
 from ident.fit.settings import Settings
-from ident.fit.simulated_fitness import SimulatedFitness, shortened
+from ident.fit.simulated_fitness import SimulatedFitness
 from ident.fit.space import Space
 from ident.fit.start import Start
+from ident.fit.trial_runs import trial_runs
 from ident.fit.wider_bounds import reaching
 from ident.matrix import Matrix
 from ident.noise.floor import noise_floors
@@ -67,7 +68,8 @@ class ContinuedIdentification(Identification):
                            "fit without a start, or mark further runs use: fit")  # fmt: skip
         self.objective = self.searched = self._over(fitted)
         if isinstance(self.objective, SimulatedFitness):
-            self.searched = replace(self.objective, roughly=True).fresh(shortened(fitted, FIT_CRITERIA.search.samples))
+            few = trial_runs(fitted, self.objective.band, FIT_CRITERIA.search.samples)
+            self.searched = replace(self.objective, roughly=True).fresh(few)
         self.search = replace(self.search, errors=self.searched.errors)
         self.floors = noise_floors(self.matrix.runs, excited_band(self._runs), left_out)
 

@@ -28,10 +28,11 @@ from ident.fit.reduction import Basis, excited_band
 from ident.fit.result import FitResult
 from ident.fit.search import Search, State, options_of
 from ident.fit.settings import GENERAL, Settings
-from ident.fit.simulated_fitness import SimulatedFitness, shortened
+from ident.fit.simulated_fitness import SimulatedFitness
 from ident.fit.simulated_runs import is_simulated
 from ident.fit.space import search_space
 from ident.fit.summary import noticed, summarise
+from ident.fit.trial_runs import trial_runs
 from ident.fit.wider_bounds import beyond_bounds
 from ident.fit.windows import in_longer_windows, in_windows
 from ident.matrix import Matrix
@@ -79,7 +80,8 @@ class Identification:
         if is_simulated(self.preset, matrix):
             absolute = self.preset.absolute
             self.objective = SimulatedFitness(self.preset, matrix, self._runs, band, space, absolute=absolute)
-            self.searched: Fitness = replace(self.objective, roughly=True).fresh(shortened(self._runs, _OF.samples))
+            few = trial_runs(self._runs, band, _OF.samples)
+            self.searched: Fitness = replace(self.objective, roughly=True).fresh(few)
         else:
             self.objective = self.searched = LinearFitness(self.preset, matrix, self._runs, space, Basis(band))
         options = options_of(settings, self.preset)

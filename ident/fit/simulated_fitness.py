@@ -11,7 +11,6 @@ from numpy.typing import NDArray
 
 from ident.cached import cached_property
 from ident.effects.effect import Effect
-from ident.fit.criteria import FIT_CRITERIA
 from ident.fit.fitness import STEP, Local, Steps, Worth, local
 from ident.fit.levenberg_marquardt import Way, levenberg_marquardt
 from ident.fit.normal_matrices import NormalMatrices
@@ -187,19 +186,3 @@ class SimulatedFitness(SimulatedRuns):
     def _is_on(self, effect: Effect, values: Mapping[str, Array]) -> bool:
         """Whether an effect is searched, or held at a strength that is not zero."""
         return effect.added[0].in_equations in self.space.names or super()._is_on(effect, values)
-
-
-def shortened(runs: Sequence[Run], samples: int) -> tuple[Run, ...]:
-    """The runs for a search, at most about `samples` in all: noise is cut after its first part, other runs are kept.
-
-    The first part of a sweep would not show what the rest does.
-    """
-    total = sum(run.length for run in runs)
-    if total <= samples:
-        return tuple(runs)
-    return tuple(
-        run.part(0, max(FIT_CRITERIA.search.shortest_part, run.length * samples // total))
-        if run.kind == "blwn"
-        else run
-        for run in runs
-    )

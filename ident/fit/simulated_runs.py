@@ -26,15 +26,15 @@ from ident.fit.modes import extreme, fastest, motion
 from ident.fit.normal_matrices import NormalMatrices, at_point, block_length, first_state, normal_matrices_of
 from ident.fit.products import add_block_products, add_products, completed
 from ident.fit.reduction import excited_band
+from ident.fit.reversals import Reversals
 from ident.fit.settling import Least, Settling, better
 from ident.fit.standing import Held, standing
 from ident.matrix import Matrix
 from ident.parallel import LEAST_SHARED, cores, each
-from ident.parameter import AtReversals
 from ident.presets import Preset
-from ident.run import MOTIONS, Run
+from ident.run import Run
 from ident.simulation.simulate import Simulation, side_by_side
-from ident.simulation.steps import Modes, steps_needed, steps_where_reversed
+from ident.simulation.steps import Modes, steps_needed
 
 Array = NDArray[np.float64]
 BegunOver = tuple[float, float | None]
@@ -432,35 +432,29 @@ class SimulatedRuns:
                 yield tuple(runs[i] for i in share)
 
     def steps(self, values: Mapping[str, Array], kinks: bool = True, of: Chain | None = None) -> NDArray[np.int64]:
-        """Steps a sample for each vector; `of` a chain that shows more than the own, where one is given."""
-        found, kinds = self.fastest(values, of), {(run.hold, self.band / run.sample_rate) for run in self.matrix.runs}
+        """Steps a sample for each vector; `of` a chain that shows more than the own, where one is given.
+
+        Of decimated runs it is a sample of theirs, and modes are as much faster in it.
+        """
+        every = min((run.every for run in self.runs), default=1)
+        found = every * self.fastest(values, of)
+        kinds = {(run.hold, every * self.band / run.sample_rate) for run in self.matrix.runs}
         on = [effect for effect in self.preset.effects if kinks and self._is_on(effect, values)]
         least = self.preset.steps if kinks and not self.roughly else 1
-        needed = [steps_needed(of or self.chain, found, hold, on, band, least) for hold, band in kinds]
+        needed = [steps_needed(of or self.chain, found, hold, on, band, least, every) for hold, band in kinds]
         if not self.roughly:
             needed += [
-                self._at_reversals(p.at_reversals, values[p.in_equations], values)
+                self._reversals.steps(p.at_reversals, values[p.in_equations], values.get("m0"), every)
                 for effect in on
                 for p in effect.added
                 if p.at_reversals is not None
             ]
         return np.asarray(np.max(needed, axis=0))
 
-    def _at_reversals(self, of: AtReversals, size: Array, values: Mapping[str, Array]) -> NDArray[np.int64]:
-        """Steps a sample that a way, a speed or a force (v,) asks for where the motion reverses."""
-        rate, moves = min(run.sample_rate for run in self.matrix.runs), self._motion.get("x", 0.0)
-        force = values["m0"] * rate**2 * moves if moves > 0 and "m0" in values else None
-        return steps_where_reversed(of, size, self._way_in_a_sample, rate, force)
-
     @cached_property
-    def _way_in_a_sample(self) -> float:
-        """The way, m, that the largest acceleration of any run covers in a sample: that of a sine up to the band."""
-        speeds = [
-            (run.speed if "velocity" in run.channels else self.band * run.motion) / run.sample_rate**2
-            for run in self.matrix.runs
-            if not run.channels.keys().isdisjoint(MOTIONS)
-        ]
-        return float(np.sqrt(2.0) * self.band * max(speeds, default=0.0))
+    def _reversals(self) -> Reversals:
+        """What the records tell of the reversals of their motion."""
+        return Reversals.of(self.matrix.runs, self.band, self._motion.get("x", 0.0))
 
     def fastest(self, values: Mapping[str, Array], of: Chain | None = None) -> Modes:
         """Each vector's fastest mode in radians a sample, of the linear core and the effects at small signals.

@@ -27,7 +27,7 @@ _OVER = 4  # steps a sample from which on a jump is over before the next sample
 _RINGING = 14.4  # times its damping: the fifth power of the step of a Runge-Kutta scheme that adds a tenth to it
 _FOLLOWING = 4.0  # times the band of the commands: where such modes begin
 _KINKED = 0.3  # radians a sample of the band for which an effect says how many steps its kinks ask for
-MOST = 32  # steps a sample
+MOST = 32  # steps a sample of a record
 _CURVED = 0.8
 """Radians a step of the band's edge of a command that is band-limited between its samples. Why: its lines have the
 area of the curve but for (ω h)⁴/240; 0.8 loses 2e-3 of what reaches the machine at the edge, and a tenth of that
@@ -50,47 +50,48 @@ FASTEST = FINE * MOST  # radians a sample of the fastest mode that is followed c
 
 
 def steps_where_reversed(
-    of: AtReversals, size: Array, turned: float, rate: float, force: Array | None
+    of: AtReversals, size: Array, turned: float, rate: float, force: Array | None, every: int = 1
 ) -> NDArray[np.int64]:  # fmt: skip
     """Steps a sample that a way, a speed or a force (v,) asks for where the motion reverses.
 
     `turned` is that of :func:`steps_at_reversals`, `rate` the sample rate, Hz. `force` (v,) would move the mass by the
-    amplitude of its motion in a sample; None where it has no mass, or does not move.
+    amplitude of its motion in a sample; None where it has no mass, or does not move. `every` is how many samples of the
+    record there are for one that is simulated.
     """
     if of is AtReversals.WAY:
-        return steps_at_reversals(turned, size)
+        return steps_at_reversals(turned, size, every)
     if of is AtReversals.SPEED:
-        return steps_at_passages(turned * rate, size)
+        return steps_at_passages(turned * rate, size, every)
     jumps = np.zeros(len(size)) if force is None else 2.0 * np.abs(size) / np.maximum(force, TINY)
-    return steps_at_jumps(jumps)
+    return steps_at_jumps(jumps, every)
 
 
-def steps_at_reversals(turned: float, ways: Array) -> NDArray[np.int64]:
+def steps_at_reversals(turned: float, ways: Array, every: int = 1) -> NDArray[np.int64]:
     """Steps a sample, a power of two, for ways (m, v) over which forces build up.
 
     `turned` is the way a T² that the motion's largest acceleration a covers in a sample T. In n steps a reversal is
     missed by a T²/n² at most.
     """
-    return _at_reversals(np.sqrt(turned / (_SHARE * np.maximum(np.abs(ways), 1e-300))))
+    return _at_reversals(np.sqrt(turned / (_SHARE * np.maximum(np.abs(ways), 1e-300))), every)
 
 
-def steps_at_jumps(jumps: Array) -> NDArray[np.int64]:
+def steps_at_jumps(jumps: Array, every: int = 1) -> NDArray[np.int64]:
     """Steps a sample, a power of two, for jumps J (v,) of the acceleration where a motion of amplitude x̂ reverses.
 
     They are given as J T²/x̂, in a sample T. In n steps, which take such a force at its mean, the way is put off by
     J T²/8n² at most.
     """
-    return _at_reversals(np.sqrt(jumps / (8.0 * _MISSED)))
+    return _at_reversals(np.sqrt(jumps / (8.0 * _MISSED)), every)
 
 
-def steps_at_passages(passed: float, speeds: Array) -> NDArray[np.int64]:
+def steps_at_passages(passed: float, speeds: Array, every: int = 1) -> NDArray[np.int64]:
     """Steps a sample, a power of two, for speeds (v,) over which a force falls; `passed` is the speed's rise in it."""
-    return _at_reversals(passed / (_PASSED * np.maximum(np.abs(speeds), 1e-300)))
+    return _at_reversals(passed / (_PASSED * np.maximum(np.abs(speeds), 1e-300)), every)
 
 
-def _at_reversals(needed: Array) -> NDArray[np.int64]:
+def _at_reversals(needed: Array, every: int) -> NDArray[np.int64]:
     """As many steps as are needed, as a power of two within what samples tell."""
-    return np.asarray(2 ** np.ceil(np.log2(np.clip(needed, 1.0, _AT_REVERSALS))), dtype=np.int64)
+    return np.asarray(2 ** np.ceil(np.log2(np.clip(needed, 1.0, _AT_REVERSALS * every))), dtype=np.int64)
 
 
 def fastest_mode(
@@ -136,7 +137,13 @@ def _fastest(jacobian: Array) -> Modes:
 
 
 def steps_needed(
-    chain: Chain, fastest: Modes, hold: str, on: Sequence[Effect], band: float = np.pi / 2, kinks: int = 1
+    chain: Chain,
+    fastest: Modes,
+    hold: str,
+    on: Sequence[Effect],
+    band: float = np.pi / 2,
+    kinks: int = 1,
+    every: int = 1,
 ) -> NDArray[np.int64]:
     """Steps a sample, a power of two up to :data:`MOST`, for eigenvalues `fastest`, (v,).
 
@@ -145,7 +152,7 @@ def steps_needed(
     where it tends to. Not one that rings: a step z of it takes off |z|⁶/144 by itself, which is kept to a tenth of what
     its damping ζ does, 0.1 ζ|z|. Kinks of effects that are on, and those of the core, `kinks`, ask for more, the fewer
     the slower the motion is for the samples, and so does a held command whose jumps act at once or between the samples,
-    and a curve that is drawn in lines.
+    and a curve that is drawn in lines. `every` is how many samples of the record there are for one that is simulated.
     """
     least = max(kinks, *(effect.steps for effect in on), 1) * min(band / _KINKED, 1.0)
     if hold == "band-limited":
@@ -161,4 +168,9 @@ def steps_needed(
     )
     closely = np.maximum(np.minimum(size, following) / FINE, stiff)
     ratio = np.maximum(closely, max(least, 1.0))
-    return np.asarray(np.minimum(2 ** np.ceil(np.log2(ratio)), MOST).astype(np.int64))
+    return np.asarray(np.minimum(2 ** np.ceil(np.log2(ratio)), _most(every)).astype(np.int64))
+
+
+def _most(every: int) -> int:
+    """Most steps for as many samples of a record, a power of two."""
+    return MOST << (every.bit_length() - 1)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from types import SimpleNamespace
 from typing import Any
 
@@ -16,7 +17,7 @@ from ident.fit.genetic import around, begin, default_step
 from ident.fit.identification import Identification
 from ident.fit.search import Search, options_of
 from ident.fit.settings import Settings
-from ident.fit.simulated_fitness import shortened
+from ident.fit.trial_runs import decimated, trial_runs
 from ident.matrix import Actuator, Matrix
 from ident.presets import PRESETS
 from ident.run import Run
@@ -102,16 +103,31 @@ def test_a_search_takes_the_beginnings_of_long_records_of_noise(monkeypatch):
     """65 536 samples of all runs, 512 of one at least."""
     lengths: list[int] = []
 
-    def known(runs: tuple[Run, ...], samples: int) -> Any:
-        lengths.extend(run.length for run in shortened(runs, samples))
+    def known(runs: tuple[Run, ...], band: float, samples: int) -> Any:
+        lengths.extend(run.length for run in trial_runs(runs, band, samples))
         raise Known
 
-    monkeypatch.setattr(identification, "shortened", known)
+    monkeypatch.setattr(identification, "trial_runs", known)
     runs = (noise("long", 120_000), noise("short", 600))
     with pytest.raises(Known):
         Identification(Matrix(Actuator("A", piston_area=1e-3), runs), Settings(effects=("dead_zone",)))
     assert lengths[0] == pytest.approx(65_536, rel=0.02)
     assert lengths[1] == 512
+
+
+@pytest.mark.parametrize(
+    ("samples", "period", "every"),
+    [(8192, 160.0, 1), (8193, 160.0, 2), (30_000, 160.0, 4), (200_000, 160.0, 10), (200_000, 31.9, 1)],
+)
+def test_finely_sampled_records_are_decimated_for_a_search(samples, period, every):
+    """To 8192 samples of all runs where 16 remain of a period of the band's edge."""
+    rate = 1000.0
+    run = replace(noise("long", samples), kind="other")
+    found = decimated((run, run), 2.0 * np.pi * rate / period)
+    two = decimated((run,), 2.0 * np.pi * rate / period)
+    assert [one.every for one in two] == [every]
+    assert {one.length for one in two} == {-(-samples // every)}
+    assert {one.every for one in found} == {min(-(-2 * samples // 8192), max(1, int(period / 16)))}
 
 
 def starts_of(monkeypatch: pytest.MonkeyPatch) -> tuple[int, int]:

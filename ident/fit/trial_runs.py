@@ -1,0 +1,43 @@
+"""Fewer samples of long records, for searches and trials: finely sampled records are decimated, noise is cut.
+
+What a search finds is refined on every sample. A machine is simulated in as many steps as its modes ask for, whatever
+the distance of two samples: where the samples are decimated, only the command between two of them is no longer known.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from ident.fit.criteria import FIT_CRITERIA
+from ident.run import Run
+
+_OF = FIT_CRITERIA.search
+
+
+def trial_runs(runs: Sequence[Run], band: float, most: int) -> tuple[Run, ...]:
+    """The runs for a search or a trial, at most about `most` samples in all; `band` (rad/s) is what commands excite."""
+    return shortened(decimated(runs, band), most)
+
+
+def decimated(runs: Sequence[Run], band: float) -> tuple[Run, ...]:
+    """The runs with one sample of each `count`, the same of all: as few as are enough, and as the band allows."""
+    total, slowest = sum(run.length for run in runs), min(run.sample_rate for run in runs)
+    allowed = int(2.0 * np.pi * slowest / (band * _OF.samples_of_a_period))
+    count = min(-(-total // _OF.enough_samples), allowed)
+    return tuple(run.decimated(count) for run in runs) if count > 1 else tuple(runs)
+
+
+def shortened(runs: Sequence[Run], samples: int) -> tuple[Run, ...]:
+    """The runs for a search, at most about `samples` in all: noise is cut after its first part, other runs are kept.
+
+    The first part of a sweep would not show what the rest does.
+    """
+    total = sum(run.length for run in runs)
+    if total <= samples:
+        return tuple(runs)
+    return tuple(
+        run.part(0, max(_OF.shortest_part, run.length * samples // total)) if run.kind == "blwn" else run
+        for run in runs
+    )
