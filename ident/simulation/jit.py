@@ -28,6 +28,7 @@ from numba.core.extending import _Intrinsic
 
 from ident.cached import cached_property
 from ident.simulation.kept import found, in_turn, keep
+from ident.simulation.uninterrupted import uninterrupted
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 _bytes_of: Callable[[Any], bytes] = serialize.dumps
@@ -77,7 +78,7 @@ def shared(function: Any) -> Any:
     kept = function._cache = _Kept(function)
 
     def compile_in_turn(signature: Any) -> Any:
-        with global_compiler_lock, in_turn(kept.made_of):
+        with uninterrupted(), global_compiler_lock, in_turn(kept.made_of):
             return Dispatcher.compile(function, signature)
 
     function.compile = compile_in_turn

@@ -28,6 +28,7 @@ from numpy.typing import NDArray
 
 from ident.equations.grammar import statement_of
 from ident.simulation.kept import kept
+from ident.simulation.uninterrupted import uninterrupted
 
 LANES = 16
 WIDE = 8
@@ -311,6 +312,11 @@ def written_by(*files: str) -> str:
 
 def engine(program: Callable[[], str], written: Sequence[str]) -> llvm.ExecutionEngine:
     """The program, compiled, as long as the engine lives; all that it is `written` from says which one it is."""
+    with uninterrupted():
+        return _engine(program, written)
+
+
+def _engine(program: Callable[[], str], written: Sequence[str]) -> llvm.ExecutionEngine:
     processor, features = _processor()
     machine = _target().create_target_machine(cpu=processor, features=features, opt=2, jit=True)
     decides = (".".join(map(str, llvm.llvm_version_info)), machine.triple, processor, features, *written)
