@@ -67,11 +67,11 @@ class GeneticSearch:
     Test: test_criteria_of_search.py::test_a_search_takes_the_beginnings_of_long_records_of_noise"""
     enough_samples: int = 8_192
     """[samples] Of all runs, to which finely sampled records are decimated for a search or a trial. Why: at so many
-    samples a period they are 500 periods of the highest frequency that the commands excite.
+    samples a period they are 250 periods of the highest frequency that the commands excite.
     Test: test_criteria_of_search.py::test_finely_sampled_records_are_decimated_for_a_search"""
-    samples_of_a_period: float = 16.0
-    """[samples] That then remain of a period of that frequency. Why: the line between two samples takes 1.3 % off a
-    sine at the edge of the band, and a quarter of that off one in its middle.
+    samples_of_a_period: float = 32.0
+    """[samples] That then remain of a period of that frequency. Why: the line between two samples takes 0.3 % off a
+    sine at the edge of the band, and a step has a hundredth of its power beyond the band.
     Test: test_criteria_of_search.py::test_finely_sampled_records_are_decimated_for_a_search"""
     shortest_part: int = 512
     """[samples] Least of a run in such a search. Why: fewer are over before the machine has answered.

@@ -13,6 +13,8 @@ import numpy as np
 from tests.blind.campaign import OUT, rows
 from tests.blind.fresh_table import FRESH, fresh
 from tests.blind.interval import interval
+from tests.blind.lags_table import ROWS as LAGS
+from tests.blind.lags_table import lag_rates
 from tests.blind.noises import NOISES
 from tests.blind.various_table import ROWS as VARIOUS
 from tests.blind.various_table import rates
@@ -181,6 +183,7 @@ def page(everything: Sequence[Row]) -> str:
         ("Unreachable", unreachable, everything), ("Machines that nobody described", labs, rows(LABS)),
         ("Periodic tests", periodic, rows(PERIODIC)),
         ("Machines of many kinds, missing inputs and oscillations", rates, rows(VARIOUS)),
+        ("What follows like a lag", lag_rates, rows(LAGS)),
     ]  # fmt: skip
     head = (
         "# Blind trials\n\nWritten by `python -m tests.blind.table` from blind-trials.jsonl. Data come from the "
@@ -201,7 +204,8 @@ def page(everything: Sequence[Row]) -> str:
         "kinds, some of which lack an input or oscillate by themselves, are drawn by `python -m "
         "tests.blind.various_trial`; their rows stand in blind-various.jsonl. What a record shows is decided before "
         "the program runs: the machine without the effect, refitted, leaves d² ≥ 60 and 1.1 floors of a run that it "
-        "never saw; the missing input sets out six times while all else has settled; the record holds ten periods.\n"
+        "never saw; the missing input sets out six times while all else has settled; the record holds ten periods. "
+        "What follows its command like a lag is drawn by `python -m tests.blind.lags`: blind-lags.jsonl.\n"
     )
     return head + "\n".join(f"\n## {title}\n\n" + "\n".join(make(of)) + "\n" for title, make, of in parts)
 
