@@ -66,7 +66,7 @@ class Lag:
         return levels[np.searchsorted(times, k, "right") - 1] if self.held else np.interp(k, times, levels)
 
     def answer(self, command: Array, hidden: bool = True) -> Array:
-        """The output of a command, without noise: Euler's steps, many a sample."""
+        """The output of a command, without noise, by Heun's steps, many a sample."""
         k = np.arange(self.count * FINE) / FINE
         fine = command[k.astype(int)] if self.held else np.interp(k, np.arange(self.count), command)
         what, s = (self.hidden if hidden else ""), self.strength
@@ -76,12 +76,17 @@ class Lag:
             fine = _played(fine, 0.2 + 0.8 * s)
         elif what == "dead_zone":
             fine = np.sign(fine) * np.maximum(np.abs(fine) - 0.2 - s, 0.0)
-        own, other, ways, share = 0.0, 0.0, np.empty(len(fine)), (s if what == "second_capacity" else 0.0)
-        for i, u in enumerate(fine):
+        share = s if what == "second_capacity" else 0.0
+        quick, slow, later = 1.0 / (self.tau * FINE), 1.0 / (self.slow * self.tau * FINE), fine
+        if not self.held:
+            later = np.append(fine[1:], fine[-1])
+        own, other, ways = 0.0, 0.0, np.empty(len(fine))
+        for i, (u, then) in enumerate(zip(fine, later, strict=True)):
             ways[i] = own
-            exchanged = share * (own - other)
-            own, other = own + (u - own - exchanged) / (self.tau * FINE), other + exchanged / share / (
-                self.slow * self.tau * FINE) if share else 0.0  # fmt: skip
+            a, b = quick * (u - own - share * (own - other)), slow * (own - other)
+            there, beside = own + a, other + b
+            own += 0.5 * (a + quick * (then - there - share * (there - beside)))
+            other += 0.5 * (b + slow * (there - beside))
         return self.gain * ways[::FINE]
 
     def run(self, number: int) -> Run:

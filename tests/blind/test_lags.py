@@ -16,7 +16,7 @@ def test_with_nothing_hidden_it_answers_as_scipy_s_own_simulation_does():
     of = replace(Lag.drawn(169804), held=False)
     u = of.command(0)
     _, wanted, _ = lsim(([of.gain], [of.tau, 1.0]), u, np.arange(of.count))
-    np.testing.assert_allclose(of.answer(u), wanted, atol=2e-2 * wanted.std())
+    np.testing.assert_allclose(of.answer(u), wanted, atol=1e-4 * wanted.std())
 
 
 @pytest.mark.parametrize("number", range(4))
