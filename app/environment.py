@@ -24,6 +24,9 @@ WINDOWS = os.name == "nt"
 PYTHON = VENV / ("Scripts/python.exe" if WINDOWS else "bin/python")
 LOG = VENV / "setup.log"
 OLDEST = (3, 11)
+OWN = ("ident", "schemas", "app", "tests")
+"""The project's own folders of modules, in the order in which they are needed."""
+_compiling: list[subprocess.Popen[bytes]] = []  # processes that go on beside this one
 
 
 class SetupFailed(Exception):
@@ -72,6 +75,7 @@ def prepare(lock: str) -> None:
         say("preparing .venv (first start, or the lock file has changed)")
         stamp.unlink(missing_ok=True)
         LOG.write_text("", encoding="utf-8")
+        compile_meanwhile()
         if not has_pip():
             create()
         install(lock)
@@ -108,6 +112,18 @@ def only_one() -> Iterator[None]:
             say("waiting for another process that is preparing .venv")
             fcntl.flock(handle, fcntl.LOCK_EX)
         yield
+
+
+def compile_meanwhile() -> None:
+    """Begin to compile the project's modules to bytecode: a core is idle while packages are fetched and unpacked.
+
+    The bytecode is of this Python's version, as `.venv` will be. Nobody waits for it: what is not compiled yet is
+    compiled where it is imported.
+    """
+    folders = [str(ROOT / name) for name in OWN if (ROOT / name).is_dir()]
+    if folders:
+        command, nothing = [sys.executable, "-m", "compileall", "-q", *folders], subprocess.DEVNULL
+        _compiling.append(subprocess.Popen(command, stdin=nothing, stdout=nothing, stderr=nothing))
 
 
 def has_pip() -> bool:

@@ -45,6 +45,18 @@ def test_the_second_start_does_nothing(place):
     assert place == []
 
 
+def test_the_first_start_compiles_the_projects_modules_meanwhile(place):
+    """Those of its own folders alone."""
+    for folder in ("ident", "elsewhere"):
+        (environment.ROOT / folder).mkdir()
+        (environment.ROOT / folder / "chapter.py").write_text("NAME = 1\n")
+    environment.prepare("some.lock")
+    assert place
+    assert environment._compiling.pop().wait(timeout=60) == 0
+    assert [path.parent.parent.name for path in environment.ROOT.rglob("*.pyc")] == ["ident"]
+    assert not environment._compiling
+
+
 @pytest.mark.parametrize("changed", ["some.lock", "pyproject.toml"])
 def test_a_changed_file_renews_the_environment(place, changed):
     """A new lock or project file installs again, into the same environment."""
