@@ -9,6 +9,7 @@ from typing import Any
 
 from ident.errors import Unusable
 from ident.readers.hdf5_chunks import read_dataset
+from ident.readers.hdf5_series import REFERENCES, SUBSYSTEM, is_object, signals73
 from ident.readers.limits import Limits, check_size
 from ident.readers.table import NUMERIC, Array, Table, column_of, split_columns
 
@@ -25,7 +26,12 @@ def read_hdf5(data: bytes, where: str, limits: Limits) -> Table:
 
     try:
         file = h5py.File(io.BytesIO(data), "r")
-        datasets = [(name, dataset, dataset.shape or ()) for name, dataset in walk(file, "", where, {}, DEEPEST)]
+        found = list(walk(file, "", where, {}, DEEPEST))
+        objects = {name: dataset for name, dataset in found if is_object(dataset)}
+        series = signals73(file, objects, lambda thing: checked(thing, thing.name, where, limits)) if objects else []
+        datasets = [
+            (name, dataset, dataset.shape or ()) for name, dataset in found if not series or name not in objects
+        ]
         matlab = {name: "MATLAB_class" in dataset.attrs for name, dataset, _ in datasets}
     except Unusable:
         raise
@@ -37,15 +43,27 @@ def read_hdf5(data: bytes, where: str, limits: Limits) -> Table:
         for number, column in enumerate(split_columns(name, shape[::-1] if matlab[name] else shape))
     ]
 
+    signals = [
+        (column, number, array, unit)
+        for name, array, unit in series
+        for number, column in enumerate(split_columns(name, array.shape))
+    ]
+
     def load(numbers: Sequence[int]) -> list[Array]:
         found = []
         for n in numbers:
+            if n >= len(columns):
+                _, number, array, _ = signals[n - len(columns)]
+                found.append(column_of(array, number))
+                continue
             _, number, name, dataset = columns[n]
             array = checked(dataset, name, where, limits)
             found.append(column_of(array.T if matlab[name] else array, number))
         return found
 
-    return Table(tuple(column for column, _, _, _ in columns), load)
+    names = (*(column for column, _, _, _ in columns), *(column for column, _, _, _ in signals))
+    units = (*("" for _ in columns), *(unit for _, _, _, unit in signals))
+    return Table(names, load, units=units if any(units) else ())
 
 
 def walk(group: Any, path: str, where: str, seen: dict[Any, None], depth: int) -> Iterator[tuple[str, Any]]:
@@ -63,7 +81,7 @@ def walk(group: Any, path: str, where: str, seen: dict[Any, None], depth: int) -
         if isinstance(thing, h5py.Dataset):
             refuse_elsewhere(thing, place, where)
             yield place, thing
-        elif isinstance(thing, h5py.Group) and key not in seen and depth and name != "#refs#":
+        elif isinstance(thing, h5py.Group) and key not in seen and depth and name not in (REFERENCES, SUBSYSTEM):
             seen[key] = None
             yield from walk(thing, place + "/", where, seen, depth - 1)
         if len(seen) > OBJECTS:

@@ -333,10 +333,15 @@ def _on_thousands(form: Form, rows: Sequence[Sequence[str]], where: str) -> tupl
 def _end(
     text: bytes, below: int, form: Form, shape: _Shape, head: Sequence[Sequence[str]], where: str
 ) -> tuple[int, tuple[str, ...]]:
-    """Where the rows end: before a last row that was cut off, which is told with its number."""
+    """Where the rows end: above lines that are no rows, or before a last row that was cut off; both are told."""
     last = len(text)
     while last > below and text[last - 1] in b" \t\r\n":
         last -= 1
+    foot = _foot(text, below, last, form, shape)
+    if foot is not None:
+        lines = text.count(b"\n", 0, foot) + 1, text.count(b"\n", 0, last) + 1
+        some = f"line {lines[0]}" if lines[0] == lines[1] else f"lines {lines[0]} to {lines[1]}"
+        return foot, (f"{where}: {some}, below the table, are not of it and were left out",)
     begin = text.rfind(b"\n", below, last) + 1
     if begin <= below or last - begin > LONGEST_LINE:
         return len(text), ()
@@ -348,6 +353,31 @@ def _end(
     number = text.count(b"\n", 0, begin) + 1
     some = f"{_trimmed(fields)} of {shape.columns} fields"
     return begin, (f"{where}: line {number}, the last one, is cut off ({some}) and was left out",)
+
+
+def _foot(text: bytes, below: int, last: int, form: Form, shape: _Shape) -> int | None:
+    """Where the lines below the last row begin: a result, a remark, another table; None where the last line is a row.
+
+    The first of them begins with a word, which no row does, and none of them is a row. So a row with a flaw is not
+    taken for a foot, and loading says what is wrong with it.
+    """
+    if 0 not in shape.numbers | shape.stamps:
+        return None
+    end, foot = last, None
+    for _ in range(HEAD_LINES):
+        begin = text.rfind(b"\n", below, end) + 1
+        if begin <= below or end - begin > LONGEST_LINE:
+            return None
+        line = text[begin:end].decode("utf-8", "replace").rstrip("\r")
+        fields = form.fields(line)
+        if line.strip() and shape.is_full(fields, bool(form.comma)):
+            return foot
+        if line.strip():
+            first = fields[0].strip(QUOTES)
+            word = is_label(first) and first.strip()[0] not in "+-.,0123456789"
+            foot = begin if word and not has_no_value(first) and not is_stamp(first) else None
+        end = begin - 1
+    return None
 
 
 def _is_cut(fields: Sequence[str], rows: Sequence[Sequence[str]], shape: _Shape, form: Form, closed: bool) -> bool:

@@ -111,8 +111,10 @@ class Objects:
 
     def _signal(self, held: dict[str, Value], name: str) -> Iterator[Series]:
         """The signal of a ``timeseries``, whose data have the time first or last; nothing where one is missing."""
-        data, clock = held.get("Data_", held.get("Data")), self._part(held.get("TimeInfo"))
-        if not isinstance(data, np.ndarray):
+        clock, storage = self._part(held.get("TimeInfo")), self._part(held.get("Storage_"))
+        places = (held.get("Data_"), held.get("Data"), storage.get("Data"))
+        data = next((place for place in places if isinstance(place, np.ndarray) and place.size), None)
+        if data is None:
             return
         length = _number(clock.get("Length"), float(max(data.shape, default=0)))
         time = next((t for t in (held.get("Time_"), clock.get("Time_")) if isinstance(t, np.ndarray) and t.size), None)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from ident.readers.mat5 import (
@@ -24,7 +26,7 @@ from ident.readers.mat5 import (
     field_names,
     is_subsystem,
 )
-from ident.readers.mat_objects import Objects, Value, objects_of, reference
+from ident.readers.mat_objects import Objects, Series, Value, objects_of, reference
 from ident.readers.table import Array
 
 _TIME = "time"
@@ -45,7 +47,13 @@ def signals(data: bytes, order: str) -> list[Signal]:
     objects = next(filter(None, (objects_behind(Elements(content, order)) for content in variables)), None)
     if objects is None:
         return []
-    found = [series for content in variables for series in objects.series(*_named(Elements(content, order)))]
+    return columns_of_series(
+        [series for content in variables for series in objects.series(*_named(Elements(content, order)))]
+    )
+
+
+def columns_of_series(found: Sequence[Series]) -> list[Signal]:
+    """The columns of some signals, and their time: once where all have the same."""
     clocks = {series.time.tobytes() for series in found}
     columns: list[Signal] = [(_TIME, found[0].time, "s")] if len(clocks) == 1 else []
     for series in found:

@@ -197,3 +197,42 @@ def test_commas_that_may_all_part_thousands_are_read_as_decimal_signs_and_it_is_
     assert doubted.load([0])[0][0] == 1.101
     assert any("separates thousands" in notice for notice in doubted.notices)
     assert not sure.notices
+
+
+SECOND = ["Data Acquisition\t\tTime:\t12.5\ts", "Force", "kN", "1.5", "-3.5"]
+"""Another table, of fewer columns."""
+
+
+@pytest.mark.parametrize(
+    ("foot", "said"),
+    [(["Maximum\t29.5\t31.25"], "line 42,"), (["", "End of test", "approved by:\tthe laboratory"], "lines 43 to 44,"),
+     (["", *SECOND], "lines 43 to 47,")],
+)  # fmt: skip
+def test_a_result_a_remark_or_another_table_below_the_table_is_told_and_left_out(foot, said):
+    """Testing machines write them there; no row begins with a word."""
+    table = read("\n".join(["u\tx", *lines(delimiter="\t"), *foot, ""]))
+    np.testing.assert_allclose(table.load([0, 1]), ROWS.T, atol=1e-4)
+    assert any(said in notice and "below the table" in notice for notice in table.notices)
+
+
+@pytest.mark.parametrize("bad", ["oops\t1.5", "1.5\toops"])
+def test_a_word_among_the_rows_is_no_foot(bad):
+    """A row follows: which line is wrong is said when the column is loaded."""
+    some = lines(delimiter="\t")
+    table = read("\n".join(["u\tx", *some[:20], bad, *some[20:], ""]))
+    assert not any("below the table" in notice for notice in table.notices)
+    with pytest.raises(Unusable, match="line 22"):
+        table.load([0, 1])
+
+
+@pytest.mark.parametrize("first", ["2,1080e+01", "1.5x"])
+def test_a_last_row_that_begins_with_a_number_is_no_foot(first):
+    some = [line.replace(".", ",") for line in lines(delimiter="\t")]
+    table = read("\n".join(["u\tx", *some, first]))
+    assert not any("below the table" in notice for notice in table.notices)
+
+
+def test_a_last_row_with_a_word_for_a_number_is_a_row_with_a_flaw():
+    table = read("\n".join(["u\tx", *lines(delimiter="\t"), "1.5\toops", ""]))
+    with pytest.raises(Unusable, match="line 42"):
+        table.load([1])
