@@ -22,7 +22,10 @@ WORDS = {
         "position demand", "desired position", "desired displacement", "displacement command",
         "command displacement", "pos cmd", "cmd pos", "pos ref", "ref pos", "pos set", "x cmd", "x ref", "x set",
         "x des", "xref", "xcmd", "xdes", "xd", "x d",
-        "soll", "sollwert", "sollweg", "sollposition", "sollkraft", "x soll", "s soll", "xsoll", "ssoll", "y soll",
+        "force command", "force cmd", "force setpoint", "force set point", "force demand", "load command",
+        "axial force command", "axial load command", "kraft soll", "soll kraft", "kraft sollwert", "kraftsollwert",
+        "sollwert kraft", "soll", "sollwert", "sollweg", "sollposition", "sollkraft", "x soll", "s soll", "xsoll",
+        "ssoll", "y soll",
         "pos soll", "soll pos", "position soll", "soll position", "weg soll", "soll weg", "wegsollwert",
         "lagesollwert", "positionssollwert", "sollwert position", "sollwert weg", "fuehrungsgroesse",
         "fuhrungsgrosse", "vorgabe", "consigne", "consigne position", "position consigne", "consigne de position",
@@ -102,6 +105,8 @@ _LETTERS = "mstAKlLhgNVWJ"
 _BETWEEN_WORDS = r"[_\s.:-]+"
 _NO_LETTERS = r"[^0-9a-z\u4e00-\u9fff]+"  # nor digits; Latin, and Chinese (Unicode's unified ideographs)
 _KEPT = 4096  # names whose meaning is kept: the files of a matrix have the same columns
+_CONTROLLED = re.compile(r"^(?:ch|chan|channel|kanal) ?\d+ (?=\S)")
+"""The number of a testing machine's channel before what it controls or measures: Ch 1 Force, Kanal 2 Weg."""
 _SPEEDS = ("m/s", "rad/s", "m^3/s")
 
 
@@ -207,7 +212,8 @@ def _channel_of(name: str) -> str:
                 return channel
         if way in MEASURED:
             return way
-    return ""
+    controlled = _CONTROLLED.sub("", said(name))
+    return next((channel for channel, words in WORDS.items() if controlled in words), "")
 
 
 @lru_cache(_KEPT)
@@ -248,7 +254,7 @@ def without_common_words(names: Sequence[str]) -> tuple[str, ...]:
     """
     others = [name for name in names if not is_time(name)]
     shorter = dict(zip(others, _shortened(others), strict=True))
-    known = [name for name in others if is_known(name)]
+    known = [name for name in others if is_known(name) and not _CONTROLLED.match(said(name))]
     if known or len(others) < len(names):
         kept = all(channel_of(name) == channel_of(shorter[name]) for name in known)
         if not kept or sum(map(is_known, shorter.values())) <= len(known):

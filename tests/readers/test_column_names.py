@@ -28,7 +28,9 @@ CHANNELS = {
     "mesure [mm/s]": "velocity", "Force_kN": "force", "Kraft": "force", "Drehzahl": "velocity", "vitesse": "velocity",
     "Druckdifferenz": "load_pressure", "p_A": "pressure_a", "yout [m]": "displacement", "y_m": "displacement",
     "Ventilstrom": "current", "Öltemperatur": "temperature", "位移": "displacement", "力值(kN)": "force",
-    "指令_mm": "command", "阻尼力\uff08N\uff09": "force",
+    "Ch 1 Kraft Sollwert": "command", "Ch 1 Kraft": "force", "Kanal 2 Weg [mm]": "displacement",
+    "Axial Force Command": "command", "force_setpoint_kN": "command", "指令_mm": "command",
+    "阻尼力\uff08N\uff09": "force",
 }  # fmt: skip
 NONE = (
     "u",
@@ -41,6 +43,8 @@ NONE = (
     "AI7",
     "Status",
     "Weg der Last",
+    "Ch 1",
+    "CH1 y",
     "t_command",
     "p_s",
     "in",
