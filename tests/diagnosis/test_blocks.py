@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from ident.diagnosis.evidence.blocks import block_mean
+from ident.diagnosis.evidence.blocks import block_mean, correlation_time
 from ident.diagnosis.evidence.criteria import EVIDENCE_CRITERIA
 from tests.diagnosis.test_evidence import slow, white
 
@@ -47,3 +47,12 @@ def test_a_record_of_forty_correlation_times_has_more_blocks_than_ten_of_them_wo
     short, of_ten = np.median(found, axis=0)
     assert short >= 8
     assert of_ten <= 5
+
+
+def test_the_series_of_a_run_that_nearly_left_all_numbers_has_the_blocks_of_any_other() -> None:
+    """Its squares are no numbers, and a diagnosis ended there: cannot convert float NaN to integer. Seed 7."""
+    series = slow(np.random.default_rng(7), 500, 0.8)
+    for scale in (2.0**-500, 2.0**500, 2.0**1000):
+        assert correlation_time(scale * series) == correlation_time(series)
+    assert block_mean([2.0**500 * series], EVIDENCE_CRITERIA).blocks == block_mean([series], EVIDENCE_CRITERIA).blocks
+    assert correlation_time(np.zeros(10)) == 1.0

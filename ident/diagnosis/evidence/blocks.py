@@ -45,8 +45,12 @@ def block_ratio(part: Sequence[Array], whole: Sequence[Array], criteria: Evidenc
 
 
 def correlation_time(series: Array) -> float:
-    """1 + 2 Σ ρ_k in samples, at least 1: the sum ends at `correlation_window` times itself (Sokal 1997)."""
+    """1 + 2 Σ ρ_k in samples, at least 1: the sum ends at `correlation_window` times itself (Sokal 1997).
+
+    A power of two scales the series, since the squares of a run that nearly left all numbers are none.
+    """
     n, centred = len(series), series - np.mean(series)
+    centred = np.ldexp(centred, -np.frexp(np.max(np.abs(centred)))[1])
     length = 1 << (2 * n - 1).bit_length()
     correlation = np.fft.irfft(np.abs(np.fft.rfft(centred, length)) ** 2, length)[: max(n // 2, 1)]
     if not correlation[0] > 0:
