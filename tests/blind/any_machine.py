@@ -9,6 +9,7 @@ from zero; and, where one is hidden, an effect in its plainest form. Records are
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -193,21 +194,29 @@ def _lag(lab: Lab, fine: Array) -> Array:
 
 def _loop(lab: Lab, fine: Array) -> Array:
     """Gain into a valve's lag, an integrating cylinder on a spring of oil with its mass; in samples."""
-    dt = 1.0 / _PARTS
-    state, held = np.zeros(4), 0.0
-    out = []
-    for now in fine:
-        out.append(float(state[3]))
-        if lab.hidden == "backlash":
-            half = 0.25 * lab.strength
-            held = min(max(held, state[0] - half), state[0] + half)
+    dt, play = 1.0 / _PARTS, lab.hidden == "backlash"
+    half, zone, turn, held, out = 0.25 * lab.strength, 0.0, 0.0, 0.0, []
+    if lab.hidden == "dead_zone":
+        zone = 0.6 * lab.strength
+    elif lab.hidden == "gain_asymmetry":
+        turn = 0.6 * lab.strength
 
-        def rates(s: Array, now: float = float(now), held: float = held) -> Array:
-            w = held if lab.hidden == "backlash" else float(lab.acts(np.array(2.0 * s[0]))) / 2.0
-            return np.array([(now - s[3] - s[0]) / 1.5, (0.12 * w - s[2] - 0.02 * s[1]) * 1.2, s[1] - 0.5 * s[2], s[2]])
+    def rates(now: float, q: float, p: float, v: float, x: float) -> tuple[float, float, float, float]:
+        if play:
+            w = held
+        else:  # as `acts`, of one number
+            u = 2.0 * q
+            w = math.copysign(max(abs(u) - zone, 0.0), u) * (1 + turn if u > 0 else 1 - turn) / 2.0
+        return (now - x - q) / 1.5, (0.12 * w - v - 0.02 * p) * 1.2, p - 0.5 * v, v
 
-        first = rates(state)
-        state = state + dt * rates(state + 0.5 * dt * first)  # the midpoint rule
+    q = p = v = x = 0.0
+    for now in fine.tolist():
+        out.append(x)
+        if play:
+            held = min(max(held, q - half), q + half)
+        a, b, c, d = rates(now, q, p, v, x)
+        a, b, c, d = rates(now, q + 0.5 * dt * a, p + 0.5 * dt * b, v + 0.5 * dt * c, x + 0.5 * dt * d)
+        q, p, v, x = q + dt * a, p + dt * b, v + dt * c, x + dt * d  # the midpoint rule
     return 0.01 * np.array(out)
 
 

@@ -73,8 +73,8 @@ class PlayedDamper(Damper):
 
     def rubbing(self, x: Array, v: Array) -> Array:  # noqa: ARG002  what a slider carries hangs on the way alone
         """What the slider carries, over its friction."""
-        place, reach, stretch = x[0], self.half_width + self.contact, np.zeros(len(x))
-        for i, here in enumerate(x):
+        place, reach, stretch = float(x[0]), self.half_width + self.contact, np.zeros(len(x))
+        for i, here in enumerate(x.tolist()):
             place = min(max(place, here - reach), here + reach)
             stretch[i] = here - place
         return np.sign(stretch) * np.maximum(np.abs(stretch) - self.half_width, 0.0) / self.contact
@@ -82,8 +82,8 @@ class PlayedDamper(Damper):
 
 def dahl(x: Array, displacement: float) -> Array:
     """z of z' = (v − |v| z)/xs along a way, exact from one step to the next, from z = 0."""
-    z, moved = np.zeros(len(x)), np.diff(x)
+    z, moved = [0.0], np.diff(x)
     kept, towards = np.exp(-np.abs(moved) / displacement), np.sign(moved)
-    for i in range(len(moved)):
-        z[i + 1] = towards[i] + (z[i] - towards[i]) * kept[i]
-    return z
+    for share, end in zip(kept.tolist(), towards.tolist(), strict=True):
+        z.append(end + (z[-1] - end) * share)
+    return np.array(z)

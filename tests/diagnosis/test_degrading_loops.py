@@ -41,7 +41,7 @@ def column(seed: int, degrades: bool) -> Matrix:
         return [pinched * turn / (1.0 + eta * energy) / yields, z * v / yields]
 
     t = np.arange(COUNT) * PERIOD / SAMPLES
-    z = scipy.integrate.solve_ivp(rates, (0.0, t[-1]), [0.0, 0.0], t_eval=t, rtol=1e-6, atol=1e-8, max_step=0.5).y[0]
+    z = scipy.integrate.odeint(rates, [0.0, 0.0], t, tfirst=True, rtol=1e-7, atol=1e-8, hmax=0.5)[:, 0]
     x, f = way(t), stiffness * way(t) + force * z
     f = f + 0.01 * f.std() * rng.standard_normal(COUNT)
     cut = COUNT * 2 // 3

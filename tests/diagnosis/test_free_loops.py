@@ -34,10 +34,8 @@ def oscillator(gamma: float, seed: int, use: str) -> Run:
         return [v, (float(force(t)) - DAMPING * v - SPRING * x - z) / MASS, turn]
 
     t = np.arange(COUNT) / RATE
-    found = scipy.integrate.solve_ivp(
-        rates, (0.0, t[-1]), np.zeros(3), "LSODA", t, rtol=1e-8, atol=1e-11, max_step=1e-2
-    )
-    x = found.y[0] + 2e-3 * found.y[0].std() * rng.standard_normal(COUNT)
+    x = scipy.integrate.odeint(rates, np.zeros(3), t, tfirst=True, rtol=1e-8, atol=1e-11, hmax=1e-2)[:, 0]
+    x = x + 2e-3 * x.std() * rng.standard_normal(COUNT)
     return Run(use, "", RATE, {"command": force(t), "displacement": x}, {"command": "N", "displacement": "m"}, use=use)
 
 

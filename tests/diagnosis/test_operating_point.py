@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 import pytest
 
@@ -23,15 +25,15 @@ def rail(constant: float, seed: int, use: str = "fit") -> Run:
     n = round(RATE * SECONDS)
     u = np.repeat(rng.uniform(-4.0, 4.0, n // 50), 50) + constant / GAIN
     v = x = 0.0
-    out, dt = np.zeros(n), 1.0 / RATE / FINE
-    for k in range(n):
-        out[k] = x
+    places, dt = [], 1.0 / RATE / FINE
+    for command in u.tolist():
+        places.append(x)
         for _ in range(FINE):
-            driven = GAIN * u[k] - DAMPING * v - constant
+            driven = GAIN * command - DAMPING * v - constant
             after = v + dt * driven
-            v = np.sign(after) * max(abs(after) - dt * FRICTION, 0.0)
+            v = math.copysign(max(abs(after) - dt * FRICTION, 0.0), after)
             x += dt * v
-    out += 2e-5 * rng.standard_normal(n)
+    out = np.array(places) + 2e-5 * rng.standard_normal(n)
     units = {"command": "V", "displacement": "m"}
     return Run(use, "", RATE, {"command": u, "displacement": out}, units, hold="zoh", use=use)
 

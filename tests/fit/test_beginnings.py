@@ -10,7 +10,7 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
-from scipy.integrate import solve_ivp
+from scipy.integrate import odeint
 from scipy.signal import lfilter
 
 from ident.beginning import beginning
@@ -53,10 +53,10 @@ def run_of(command: np.ndarray, rates, start, shown: int, output: str, use: str 
     states, z = [], np.asarray(start, dtype=float)
     for begin, end in pairwise(edges):
         at = np.arange(end - begin + 1) / RATE
-        found = solve_ivp(lambda _, z, u=command[begin]: rates(z, u), (0, at[-1]), z, t_eval=at, rtol=1e-9, atol=1e-11)
-        states.append(found.y[:, :-1])
-        z = found.y[:, -1]
-    record = np.concatenate(states, axis=1)[shown]
+        found = odeint(lambda z, _, u=command[begin]: rates(z, u), z, at, rtol=1e-9, atol=1e-11)
+        states.append(found[:-1])
+        z = found[-1]
+    record = np.concatenate(states)[:, shown]
     record = record + noise * record.std() * np.random.default_rng(len(use)).standard_normal(len(record))
     units = {"command": "V", output: {"velocity": "rad/s", "displacement": "m"}[output]}
     return Run(use, "", RATE, {"command": command, output: record}, units, hold="zoh", output=output, use=use)

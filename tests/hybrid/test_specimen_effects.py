@@ -42,9 +42,7 @@ def test_the_reference_with_hysteresis_is_that_of_scipy():
         a = -np.interp(t, times, ground) - (3.5e3 * v + 87.5e3 * x + YIELD * z) / 87.5
         return [v, a, bouc_wen(z, v)]
 
-    truth = scipy.integrate.solve_ivp(
-        rates, (0, times[-1]), [0, 0, 0], t_eval=times, rtol=1e-8, atol=1e-12, max_step=2 / RATE
-    ).y[0]
+    truth = scipy.integrate.odeint(rates, [0, 0, 0], times, tfirst=True, rtol=1e-8, atol=1e-12, hmax=2 / RATE)[:, 0]
     found = reference_of(machine(FIT, case, ON), case, ground)
     assert rms(found, truth) < 1e-4
     assert rms(reference(case, ground), truth) > 20 * rms(found, truth)

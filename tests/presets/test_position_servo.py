@@ -40,8 +40,8 @@ def servo(seed: int, limit: float = np.inf) -> Matrix:
             return [at[1], STIFF * error - DAMPED * at[1]]
 
         t = np.arange(COUNT) / RATE
-        found = scipy.integrate.solve_ivp(rates, (0.0, t[-1]), [0.0, 0.0], t_eval=t, rtol=1e-7, max_step=1 / RATE)
-        y = found.y[0] + 0.005 * found.y[0].std() * rng.standard_normal(COUNT)
+        y = scipy.integrate.odeint(rates, [0.0, 0.0], t, tfirst=True, rtol=1e-8, atol=1e-9, hmax=1 / RATE)[:, 0]
+        y = y + 0.005 * y.std() * rng.standard_normal(COUNT)
         runs.append(Run(f"r{number}", "", RATE, {"command": r, "displacement": y}, TURNING, hold="zoh", use=use))
     return Matrix(Actuator("SERVO"), tuple(runs))
 
@@ -120,8 +120,8 @@ def beam(seed: int, use: str) -> Run:
         drive = rigid * (r[min(int(now * 2 * RATE + 1e-9), len(r) - 1)] - at[0]) - 14.0 * at[1]
         return [at[1], (drive - mu * swing) / (1.0 - mu), at[3], swing]
 
-    found = scipy.integrate.solve_ivp(rates, (0.0, t[-1]), np.zeros(4), t_eval=t, rtol=1e-7, max_step=0.01)
-    y = found.y[0] + 0.005 * found.y[0].std() * rng.standard_normal(len(t))
+    y = scipy.integrate.odeint(rates, np.zeros(4), t, tfirst=True, rtol=1e-8, atol=1e-9, hmax=0.01)[:, 0]
+    y = y + 0.005 * y.std() * rng.standard_normal(len(t))
     return Run(use, "", 2 * RATE, {"command": r, "displacement": y}, TURNING, hold="zoh", use=use)
 
 

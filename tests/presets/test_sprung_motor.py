@@ -32,8 +32,8 @@ def machine(seed: int, weight: float = 0.0, units: dict[str, str] = TURNING, ome
             back = weight * np.sin(at[0]) if weight else omega**2 * at[0]
             return [at[1], PUSH * u[min(int(now * RATE + 1e-9), COUNT - 1)] - DAMPED * at[1] - back]
 
-        found = scipy.integrate.solve_ivp(rates, (0.0, t[-1]), [0.0, 0.0], t_eval=t, rtol=1e-7, max_step=1 / RATE)
-        y = found.y[0] + 0.01 * found.y[0].std() * rng.standard_normal(COUNT)
+        y = scipy.integrate.odeint(rates, [0.0, 0.0], t, tfirst=True, rtol=1e-8, atol=1e-9, hmax=1 / RATE)[:, 0]
+        y = y + 0.01 * y.std() * rng.standard_normal(COUNT)
         runs.append(Run(f"r{number}", "", RATE, {"command": u, "displacement": y}, units, hold="zoh", use=use))
     return Matrix(Actuator("COIL"), tuple(runs))
 

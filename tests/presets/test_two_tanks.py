@@ -39,8 +39,8 @@ def tanks(seed: int, use: str, edge: float = np.inf, bend: float = 0.0) -> Run:
         pumped = PUMP * u[min(int(now / PERIOD + 1e-9), COUNT - 1)]
         return [pumped - first - over, first + 0.5 * over - second]
 
-    found = scipy.integrate.solve_ivp(rates, (0.0, t[-1]), [8.0, 20.0], t_eval=t, rtol=1e-8, max_step=PERIOD)
-    level = found.y[1] * (1.0 + bend * (found.y[1] - 25.0))
+    level = scipy.integrate.odeint(rates, [8.0, 20.0], t, tfirst=True, rtol=1e-8, atol=1e-8, hmax=PERIOD)[:, 1]
+    level = level * (1.0 + bend * (level - 25.0))
     level = level + READS + 0.005 * level.std() * rng.standard_normal(COUNT)
     return Run(use, "", 1.0 / PERIOD, {"command": u, "displacement": level}, {"command": "V", "displacement": "m"},
                hold="zoh", use=use)  # fmt: skip

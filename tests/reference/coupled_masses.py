@@ -41,6 +41,6 @@ class Coupled:
             back = self.of_load * other + self.dry_load * np.tanh(other / _STEEP)
             return [one - other, (force(now) - spring - against) / self.drive, (spring - back) / self.load]
 
-        found = scipy.integrate.solve_ivp(rates, (t[0], t[-1]), np.zeros(3), t_eval=t, method="LSODA", rtol=1e-8,
-                                          atol=1e-9, max_step=0.5 * (t[1] - t[0]))  # fmt: skip
-        return found.y[1], found.y[2]
+        step = 0.5 * (t[1] - t[0])
+        found = scipy.integrate.odeint(rates, np.zeros(3), t, tfirst=True, rtol=1e-8, atol=1e-9, hmax=step)
+        return found[:, 1], found[:, 2]

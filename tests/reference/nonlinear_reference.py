@@ -99,6 +99,10 @@ def effects(**values: float) -> Effects:
     return Effects(**values)
 
 
+_RECORD = np.dtype([(name, np.float64) for name in Effects._fields])
+"""Effects as the compiled functions take them: by their address, not fifty values in each call."""
+
+
 # ------------------------------------------------------------------------------------------------ the equations
 
 Q, P, V, X, EPS, ZD, ZF, ZH, Y, YR, Q2, DQ2, X2, V2 = range(14)
@@ -115,19 +119,19 @@ def sign(value):
     return 1.0 if value > 0 else (-1.0 if value < 0 else 0.0)
 
 
-@njit(cache=True)
+@njit(cache=True, no_cfunc_wrapper=True)
 def specimen_reaction(f, cell, x, v, z):
     stretch = x - clipped(x, -f.specimen_free_play_g, f.specimen_free_play_g)
     return cell.stiffness * stretch + cell.damping * v + f.cubic_stiffness_k3 * x**3 + f.specimen_hysteresis_fy * z
 
 
-@njit(cache=True)
+@njit(cache=True, no_cfunc_wrapper=True)
 def force_on_specimen(f, s):
     """The force in the joint (N); only with a joint."""
     return (s[X] - s[X2]) / f.specimen_joint_s
 
 
-@njit(cache=True)
+@njit(cache=True, no_cfunc_wrapper=True)
 def follow(f, cell, s):
     """Motion of a specimen without mass: of its damper, or at the position where the joint's force is its reaction."""
     if cell.damping > 0:
@@ -143,7 +147,7 @@ def follow(f, cell, s):
         s[X2] -= miss * step / (moved - miss)
 
 
-@njit(cache=True)
+@njit(cache=True, no_cfunc_wrapper=True)
 def rod_force(plant, f, cell, s):
     """All forces on the rod but those with the sign of its speed (N), and the mass that they move (kg)."""
     own = plant.A * s[P] - plant.c0 * s[V] - f.quadratic_damping_c2 * s[V] * abs(s[V]) + f.static_load_F0
@@ -155,22 +159,23 @@ def rod_force(plant, f, cell, s):
     return own - specimen_reaction(f, cell, s[X], s[V], s[ZH]), plant.m0 + cell.mass
 
 
-@njit(cache=True)
+@njit(cache=True, no_cfunc_wrapper=True)
 def friction_limit(plant, f, s):
     """What opposes the motion whichever way it goes (N): dry friction, less what unequal areas help."""
     dry = f.coulomb_friction_Fc + f.position_friction_Fx * s[X] ** 2
-    dry += f.stribeck_friction_dF * np.exp(-((s[V] / f.stribeck_friction_vs) ** 2))
+    if f.stribeck_friction_dF != 0:
+        dry += f.stribeck_friction_dF * np.exp(-((s[V] / f.stribeck_friction_vs) ** 2))
     return dry - f.unequal_areas_a * plant.A * s[P]
 
 
-@njit(cache=True)
+@njit(cache=True, no_cfunc_wrapper=True)
 def holding_limit(plant, f, s):
     """The same at standstill, where nothing helps yet."""
     dry = f.coulomb_friction_Fc + f.position_friction_Fx * s[X] ** 2 + f.stribeck_friction_dF
     return dry + max(-f.unequal_areas_a * plant.A * s[P], 0.0)
 
 
-@njit(cache=True)
+@njit(cache=True, no_cfunc_wrapper=True)
 def reading(f, cell, s, acceleration):
     """What the transducer is fixed to (m)."""
     if f.frame_compliance_s == 0:
@@ -182,29 +187,32 @@ def reading(f, cell, s, acceleration):
     return s[X] + f.frame_compliance_s * force
 
 
-@njit(cache=True)
+@njit(cache=True, no_cfunc_wrapper=True)
 def opening(f, q, play):
     w = clipped(play, q - f.backlash_b, q + f.backlash_b) + f.null_bias_b
     h, a = f.dead_zone_h, f.dead_zone_a
     w -= clipped(w, -h * (1 - a), h * (1 + a))
     w += clipped(w, -f.underlap_h, f.underlap_h)
     w *= 1 + f.gain_asymmetry_a * sign(w)
-    return w / np.sqrt(1 + (f.flow_saturation_a * w) ** 2)
+    return w / np.sqrt(1 + (f.flow_saturation_a * w) ** 2) if f.flow_saturation_a != 0 else w
 
 
-@njit(cache=True)
+@njit(cache=True, no_cfunc_wrapper=True)
 def pressure_rate(plant, f, flow, t, s):
     flow *= 1 + f.pressure_dependent_gain_g * abs(s[P])
-    flow *= 1 + f.supply_ripple_r * np.sin(2 * np.pi * f.supply_ripple_f * t + f.supply_ripple_phi)
+    if f.supply_ripple_r != 0:
+        flow *= 1 + f.supply_ripple_r * np.sin(2 * np.pi * f.supply_ripple_f * t + f.supply_ripple_phi)
     soft = plant.Ka * (1 + f.entrained_air_alpha / (1 + (s[P] / f.entrained_air_Pr) ** 2))
     soft *= 1 - f.stroke_dependent_volume_kappa * s[X] ** 2
-    leak = plant.Cl * s[P] + f.orifice_leakage_C * s[P] / (s[P] ** 2 + f.orifice_leakage_P0**2) ** 0.25
+    leak = plant.Cl * s[P]
+    if f.orifice_leakage_C != 0:
+        leak += f.orifice_leakage_C * s[P] / (s[P] ** 2 + f.orifice_leakage_P0**2) ** 0.25
     leak += f.one_way_leakage_c * abs(s[P])
     area = plant.A * (1 + f.unequal_areas_a * sign(s[V]))
     return (flow - leak - area * s[V]) / soft
 
 
-@njit(cache=True)
+@njit(cache=True, no_cfunc_wrapper=True)
 def derivative(plant, f, cell, t, u, du, y_late, v_late, mode, play, s, out):
     """Rates of all states; `mode` is the sign of the sliding speed, 0 while the rod sticks. Returns the reading."""
     if f.specimen_joint_s > 0 and cell.mass == 0:
@@ -246,8 +254,9 @@ def derivative(plant, f, cell, t, u, du, y_late, v_late, mode, play, s, out):
     out[EPS] = eps
     out[ZF] = (s[V] - abs(s[V]) * s[ZF]) / f.presliding_friction_xs
     own_v = s[V2] if f.specimen_joint_s > 0 else s[V]
-    bent = f.specimen_hysteresis_gamma + 0.5 * sign(own_v * s[ZH])
-    out[ZH] = own_v / f.specimen_hysteresis_xy * (1 - abs(s[ZH]) ** f.specimen_hysteresis_n * bent)
+    if f.specimen_hysteresis_fy != 0:
+        bent = f.specimen_hysteresis_gamma + 0.5 * sign(own_v * s[ZH])
+        out[ZH] = own_v / f.specimen_hysteresis_xy * (1 - abs(s[ZH]) ** f.specimen_hysteresis_n * bent)
     out[Y] = (position - s[Y]) / f.sensor_lag_T if f.sensor_lag_T > 0 else 0.0
     out[YR] = (seen - s[YR]) / f.acquisition_lag_T if f.acquisition_lag_T > 0 else 0.0
     if f.specimen_joint_s > 0 and cell.mass + cell.damping > 0:
@@ -261,10 +270,10 @@ def derivative(plant, f, cell, t, u, du, y_late, v_late, mode, play, s, out):
 # ------------------------------------------------------------------------------------------------ the integrator
 
 
-@njit(cache=True)
-def kutta(plant, f, cell, t, h, u0, slope, history, mode, play, s, k, trial):
-    """One step of Kutta's third-order rule from s, in place."""
-    for stage in range(3):
+@njit(cache=True, no_cfunc_wrapper=True)
+def kutta(plant, f, cell, t, h, u0, slope, history, mode, play, s, k, trial, known):
+    """One step of Kutta's third-order rule from s, in place; `known` where k[0] has the rates at s already."""
+    for stage in range(1 if known else 0, 3):
         c = (0.0, 0.5, 1.0)[stage]
         for i in range(STATES):
             if stage == 0:
@@ -279,7 +288,7 @@ def kutta(plant, f, cell, t, h, u0, slope, history, mode, play, s, k, trial):
         s[i] += h / 6 * (k[0, i] + 4 * k[1, i] + k[2, i])
 
 
-@njit(cache=True)
+@njit(cache=True, no_cfunc_wrapper=True)
 def late(history, t):
     """Reading and its rate at an earlier time, from rows (reading, rate) a sub-step; `history[-1, 0]` is the step."""
     if t <= 0:
@@ -293,7 +302,7 @@ def late(history, t):
     return y, (1 - c) * a[1] + c * b[1]
 
 
-@njit(cache=True)
+@njit(cache=True, no_cfunc_wrapper=True)
 def held_mean(command, t, h, rate):
     """Mean of a held command over a sub-step: a delayed command may jump inside it."""
     edge = np.ceil(t * rate - 1e-9) / rate
@@ -302,7 +311,7 @@ def held_mean(command, t, h, rate):
     return share * command_at(command, t, rate, False) + (1 - share) * late_side
 
 
-@njit(cache=True)
+@njit(cache=True, no_cfunc_wrapper=True)
 def jump_of(command, t, h, rate, linear_hold, late):
     """By how much a command jumps in a sub-step, and when: as a share of it.
 
@@ -318,7 +327,7 @@ def jump_of(command, t, h, rate, linear_hold, late):
     return command[n] - (command[n - 1] if n > 0 else 0.0), max(share, 0.0)
 
 
-@njit(cache=True)
+@njit(cache=True, no_cfunc_wrapper=True)
 def command_at(command, t, rate, linear_hold):
     if t < 0:
         return 0.0
@@ -328,7 +337,7 @@ def command_at(command, t, rate, linear_hold):
     return command[n] + (t * rate - n) * (command[n + 1] - command[n])
 
 
-@njit(cache=True)
+@njit(cache=True, no_cfunc_wrapper=True)
 def mode_of(plant, f, cell, s):
     """The sign of sliding, 0 for sticking, 2 where there is no dry friction."""
     if f.coulomb_friction_Fc + f.position_friction_Fx + f.stribeck_friction_dF + abs(f.unequal_areas_a) == 0:
@@ -341,14 +350,14 @@ def mode_of(plant, f, cell, s):
     return 1 if force > 0 else -1
 
 
-@njit(cache=True)
+@njit(cache=True, no_cfunc_wrapper=True)
 def copy(source, target):
     """Value by value: what a whole array's assignment could raise would take seconds to compile."""
     for i in range(len(source)):
         target[i] = source[i]
 
 
-@njit(nogil=True, cache=True)
+@njit(nogil=True, cache=True, error_model="numpy")
 def integrate(  # noqa: PLR0912, PLR0915  the whole story of a step in one place
     plant, f, cell, command, rate, substeps, linear_hold, outputs
 ):
@@ -393,10 +402,14 @@ def integrate(  # noqa: PLR0912, PLR0915  the whole story of a step in one place
                     outputs[1, sample] = reaction + cell.mass * k[0, V]
                 outputs[2, sample] = s[P]
             left = h
+            # The rates at s are those of the reading, unless they hang on t or a massless specimen has followed s.
+            known = f.loop_delay_T == 0 and f.supply_ripple_r == 0 and (f.specimen_joint_s == 0 or cell.mass > 0)
             for _ in range(4):
                 copy(s, keep)
                 begun = t + h - left
-                kutta(plant, f, cell, begun, left, u0 + slope * (h - left), slope, history, mode, play, s, k, trial)
+                u = u0 + slope * (h - left)
+                kutta(plant, f, cell, begun, left, u, slope, history, mode, play, s, k, trial, known)
+                known = False
                 if abs(mode) != 1 or s[V] * mode > 0:
                     break
                 # It stops inside the step: find when, go there, and see what it does next.
@@ -409,7 +422,7 @@ def integrate(  # noqa: PLR0912, PLR0915  the whole story of a step in one place
                     continue
                 part = left * before / (before - reached)
                 copy(keep, s)
-                kutta(plant, f, cell, begun, part, u0 + slope * (h - left), slope, history, mode, play, s, k, trial)
+                kutta(plant, f, cell, begun, part, u, slope, history, mode, play, s, k, trial, True)
                 s[V] = 0.0
                 left -= part
                 mode = mode_of(plant, f, cell, s)
@@ -435,7 +448,8 @@ def respond(
     rate: float = linear.SAMPLE_RATE, substeps: int = SUBSTEPS,
 ) -> Outputs:  # fmt: skip
     """One run from rest, without noise."""
-    found = integrate(plant, f, cell, command, rate, substeps, hold == "linear", np.empty((3, len(command))))
+    given = np.array([tuple(f)], _RECORD)[0]
+    found = integrate(plant, given, cell, command, rate, substeps, hold == "linear", np.empty((3, len(command))))
     return Outputs(*found)
 
 

@@ -84,7 +84,7 @@ def sign(value):
     return 1.0 if value > 0 else (-1.0 if value < 0 else 0.0)
 
 
-@njit(cache=True)
+@njit(cache=True, no_cfunc_wrapper=True)
 def dahl(z, way, xs):
     """z' = (v - |v| z)/xs over a way without a turning point: exact."""
     if way == 0.0:
@@ -93,7 +93,7 @@ def dahl(z, way, xs):
     return s + (z - s) * np.exp(-abs(way) / xs)
 
 
-@njit(cache=True)
+@njit(cache=True, no_cfunc_wrapper=True)
 def bouc_wen(z, way, xy, n):
     """z' = (v/xy)(1 - |z|^n (1/2 + sgn(v z)/2)) over a way without a turning point: exact for n = 1."""
     if way == 0.0:
@@ -119,7 +119,7 @@ def bouc_wen(z, way, xy, n):
     return s * min(grown, 1.0)
 
 
-@njit(cache=True)
+@njit(cache=True, no_cfunc_wrapper=True)
 def dahl_along(x, xs):
     """z along the places x, in which every turning point stands; it begins at 0."""
     out = np.zeros(len(x))
@@ -128,7 +128,7 @@ def dahl_along(x, xs):
     return out
 
 
-@njit(cache=True)
+@njit(cache=True, no_cfunc_wrapper=True)
 def bouc_wen_along(x, xy, n):
     """z along the places x, in which every turning point stands; it begins at 0."""
     out = np.zeros(len(x))
@@ -143,7 +143,7 @@ X, V, Q, DQ, YS, YR, EI = range(7)
 STATES = 7
 
 
-@njit(cache=True)
+@njit(cache=True, no_cfunc_wrapper=True)
 def command_at(command, t, linear):
     """The command at a time in samples, zero before the record."""
     if t < 0:
@@ -154,7 +154,7 @@ def command_at(command, t, linear):
     return command[n] + (t - n) * (command[n + 1] - command[n])
 
 
-@njit(cache=True)
+@njit(cache=True, no_cfunc_wrapper=True)
 def slope_at(command, t, linear):
     """Its rate (1/sample)."""
     n = int(np.floor(t + 1e-9))
@@ -163,7 +163,7 @@ def slope_at(command, t, linear):
     return command[n + 1] - command[n]
 
 
-@njit(cache=True)
+@njit(cache=True, no_cfunc_wrapper=True)
 def opening(f, e, play):
     """What of the drive signal reaches the motor, and where the play stands."""
     if f.command_limit_a > 0:
@@ -171,7 +171,7 @@ def opening(f, e, play):
     return e, clipped(play, e - f.backlash_b, e + f.backlash_b)
 
 
-@njit(cache=True)
+@njit(cache=True, no_cfunc_wrapper=True)
 def spool(f, w):
     """Dead zone, underlap, asymmetry, saturation, in this order."""
     h, a = f.dead_zone_h, f.dead_zone_a
@@ -181,7 +181,7 @@ def spool(f, w):
     return w / np.sqrt(1.0 + (f.flow_saturation_a * w) ** 2)
 
 
-@njit(cache=True)
+@njit(cache=True, no_cfunc_wrapper=True)
 def limit(f, x, v):
     """The largest dry friction (N)."""
     dry = f.coulomb_friction_Fc + f.position_friction_Fx * x * x
@@ -190,14 +190,14 @@ def limit(f, x, v):
     return dry
 
 
-@njit(cache=True)
+@njit(cache=True, no_cfunc_wrapper=True)
 def reading(f, s):
     """What the controller sees of the position."""
     y = s[YS] if f.sensor_lag_T > 0 else s[X]
     return y * (1.0 + f.sensor_nonlinearity_s * y * y)
 
 
-@njit(cache=True)
+@njit(cache=True, no_cfunc_wrapper=True)
 def late_reading(history, t, h):
     """The reading so many steps before, straight between two steps; zero before the record."""
     if t <= 0:
@@ -207,7 +207,7 @@ def late_reading(history, t, h):
     return history[n] * (1 - c) + history[n + 1] * c
 
 
-@njit(cache=True)
+@njit(cache=True, no_cfunc_wrapper=True)
 def rates(  # noqa: PLR0912  all equations in one place
     f, command, linear, rate, t, mode, s, play, x0, zd, zh, history, h, out
 ):
@@ -256,7 +256,7 @@ def rates(  # noqa: PLR0912  all equations in one place
     return push, p
 
 
-@njit(cache=True)
+@njit(cache=True, no_cfunc_wrapper=True)
 def kutta(f, command, linear, rate, t, h, mode, s, play, zd, zh, history, step, k, trial, out):
     """One step of Kutta's third-order rule from s into out."""
     x0 = s[X]
@@ -272,7 +272,7 @@ def kutta(f, command, linear, rate, t, h, mode, s, play, zd, zh, history, step, 
         out[i] = s[i] + h / 6 * (k[0, i] + 4 * k[1, i] + k[2, i])
 
 
-@njit(cache=True)
+@njit(cache=True, no_cfunc_wrapper=True)
 def drive(  # noqa: PLR0912, PLR0915  the whole story of a step in one place
     f, command, linear, rate, substeps, speed, outputs
 ):

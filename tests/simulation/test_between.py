@@ -80,19 +80,23 @@ def test_the_simulation_converges_to_the_exact_response():
 
 def test_a_spring_that_stiffens_is_moved_as_by_the_sines_themselves():
     """Against small steps of a Runge-Kutta scheme that knows the force at every time."""
-    parts, state, expected = 40, np.zeros(2), []
+    parts, expected, x, v = 40, [], 0.0, 0.0
+    h, force = 1.0 / parts, sines(np.arange(2 * SAMPLES * parts + 1) / (2 * parts)).tolist()  # at every half step
 
-    def rate(t: float, s: np.ndarray) -> np.ndarray:
-        force = sines(np.array(t)) - DAMPING * s[1] - STIFFNESS * s[0] - CUBE * s[0] ** 3
-        return np.array([s[1], force / MASS])
+    def rate(driven: float, x: float, v: float) -> float:
+        return (driven - DAMPING * v - STIFFNESS * x - CUBE * x**3) / MASS
 
     for k in range(SAMPLES * parts):
-        expected += [state[0]] if k % parts == 0 else []
-        h, t = 1.0 / parts, k / parts
-        a = rate(t, state)
-        b = rate(t + h / 2, state + h / 2 * a)
-        c = rate(t + h / 2, state + h / 2 * b)
-        state = state + h / 6 * (a + 2 * b + 2 * c + rate(t + h, state + h * c))
+        expected += [x] if k % parts == 0 else []
+        before, middle, after = force[2 * k : 2 * k + 3]
+        a = rate(before, x, v)
+        vb = v + h / 2 * a
+        b = rate(middle, x + h / 2 * v, vb)
+        vc = v + h / 2 * b
+        c = rate(middle, x + h / 2 * vb, vc)
+        vd = v + h * c
+        d = rate(after, x + h * vc, vd)
+        x, v = x + h / 6 * (v + 2 * vb + 2 * vc + vd), v + h / 6 * (a + 2 * b + 2 * c + d)
     model = preset("drive", ("cubic_stiffness",))
     known = {p.in_equations: np.array([[p.value]]) for p in model.parameters} | values()
     known |= {p.in_equations: np.array([[CUBE]]) for p in model.parameters if p.of == "cubic_stiffness"}
