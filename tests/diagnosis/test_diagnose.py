@@ -41,8 +41,8 @@ ON_THE_WAY: list[Diagnosis] = []
 
 @pytest.fixture(scope="module")
 def dead_zone() -> Diagnosis:
-    """A dead zone of 0.25 mm is hidden; nine runs."""
-    return diagnose(measured(every=4, dead_zone=2.5e-4), found=ON_THE_WAY.append)
+    """A dead zone of 0.25 mm is hidden; nine runs of 0.2 s."""
+    return diagnose(measured(0.2, 4, dead_zone=2.5e-4), found=ON_THE_WAY.append)
 
 
 @cache
