@@ -249,10 +249,22 @@ def huge(file: Any) -> None:
     file.create_dataset("x", (1 << 40,), "f8", chunks=(1 << 20,), compression="gzip")
 
 
+@cache
+def swollen(first: bytes = b"") -> bytes:
+    """What zlib unpacks to some bytes and 200 MB of zeros, of which a megabyte is packed: all take a second."""
+    packer, megabyte, count = zlib.compressobj(9, zlib.DEFLATED, -15), bytes(1 << 20), 200
+    begun = packer.compress(first) + packer.flush(zlib.Z_FULL_FLUSH)
+    packed = packer.compress(megabyte) + packer.flush(zlib.Z_FULL_FLUSH)
+    check = zlib.adler32(first)
+    for _ in range(count):
+        check = zlib.adler32(megabyte, check)
+    return b"\x78\xda" + begun + count * packed + b"\x03\x00" + struct.pack(">I", check)
+
+
 def swollen_chunk(file: Any) -> None:
     """A chunk that unpacks to 200 MB where 3 kB are declared."""
     data = file.create_dataset("x", (400,), "f8", chunks=(400,), compression="gzip")
-    data.id.write_direct_chunk((0,), zlib.compress(bytes(200 << 20), 9))
+    data.id.write_direct_chunk((0,), swollen())
 
 
 # Parquet and MATLAB
@@ -289,15 +301,10 @@ def compressed_mat5(inside: bytes) -> Make:
     return with_mat5(struct.pack("<II", 15, len(packed)) + packed)
 
 
-@cache
-def swollen_mat5() -> Make:
-    """One that holds 200 MB of zeros: to pack them takes a second, so it is done once it is wanted."""
-    return compressed_mat5(struct.pack("<II", 14, 1000) + bytes(200 << 20))
-
-
 def mat5_bomb(matrix: MatrixFolder) -> Path:
-    """Some kilobytes that swell when they are read."""
-    return swollen_mat5()(matrix)
+    """Some kilobytes that swell to 200 MB when they are read."""
+    packed = swollen(struct.pack("<II", 14, 1000))
+    return with_mat5(struct.pack("<II", 15, len(packed)) + packed)(matrix)
 
 
 BAD_MATRICES = (

@@ -83,7 +83,7 @@ def known(fit: FitResult) -> dict[str, tuple[float, float]]:
     return found | {entry.expression: (entry.value, entry.std_error) for entry in fit.determined}
 
 
-@pytest.mark.parametrize("case", short_form(CASES, "qian2014 with an effect", "drive under its loop"))
+@pytest.mark.parametrize("case", short_form(CASES, "qian2014 with an effect"))
 def test_copies_of_the_data_give_the_same_values(case, full):
     """Within a tenth of a standard error of the fit to the data as they are; ten copies in the full form, else one."""
     make, settings = CASES[case]

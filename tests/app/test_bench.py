@@ -69,7 +69,7 @@ def test_the_values_and_the_procedures_beside_them(service, fit):
 FIGURES, SHEET = [name for name in PRESETS["kononykhin"].display.figures if name != "evolution"], "acceptance-sheet"
 
 
-@pytest.mark.parametrize("name", short_form(FIGURES, *(name for name in FIGURES if name != SHEET)))
+@pytest.mark.parametrize("name", short_form(FIGURES, *FIGURES[:2]))
 def test_every_figure_is_served(service, fit, name):
     """As SVG for the page and PDF for the file; the sheet says whether the limits of the set are kept."""
     drawn = service.get(f"{API}/fits/{fit}/figures/{name}.svg")

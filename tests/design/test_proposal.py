@@ -53,6 +53,13 @@ def question(models: list[tuple[Preset, dict[str, float]]]) -> Rivals:
     return Rivals(tuple(models), NOISE)
 
 
+@cache
+def proposed() -> Experiment:
+    """The run that tells them apart."""
+    few, models = confused()
+    return propose(question(models), few, seed=7)
+
+
 def recorded(experiment: Experiment, seed: int) -> Run:
     """What the machine with the friction does in a run, by the independent reference."""
     s, u = experiment.specimen, experiment.command()
@@ -102,7 +109,7 @@ def test_the_proposed_run_separates_confused_models():
 def test_the_proposal_is_the_same_again_and_fits_the_bench():
     """Specimen and gain of the matrix, amplitude at most 1.5 times its largest, the command as promised."""
     few, models = confused()
-    proposal = propose(question(models), few, seed=7)
+    proposal = proposed()
     assert proposal == propose(question(models), few, seed=7)
     assert proposal.specimen in {run.specimen for run in few.runs}
     assert 5 <= proposal.gain <= 10
@@ -232,10 +239,10 @@ def test_where_no_run_could_be_made_that_is_said(monkeypatch):
 def test_a_proposal_stays_inside_the_limits_of_the_rig():
     """The speed that the models predict bounds its amplitude; played on the reference it keeps the limit."""
     few, models = confused()
-    free = propose(question(models), few)
+    free = proposed()
     fastest = float(np.abs(np.diff(recorded(free, 3).measured)).max()) * free.sample_rate
     rig = RigLimits(speed=0.5 * fastest)
-    proposal = propose(question(models), replace(few, actuator=replace(few.actuator, rig=rig)))
+    proposal = propose(question(models), replace(few, actuator=replace(few.actuator, rig=rig)), seed=7)
     assert proposal.text.startswith("Inside the limits of the rig: speed")
     smooth = np.convolve(recorded(proposal, 3).measured, np.ones(8) / 8, "valid")
     assert np.abs(np.diff(smooth)).max() * proposal.sample_rate < rig.speed

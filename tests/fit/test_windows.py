@@ -17,6 +17,7 @@ from ident.fit.windows import unforeseen
 from ident.matrix import Actuator, Matrix
 from ident.run import Run
 from ident.workflows import compare, diagnose, identify
+from tests.short_form import short_form
 
 RATE, GAIN, LAG = 20.0, 0.05, 0.15
 MOTOR = Settings(model="motor", options={"population": 24.0, "generations": 6.0, "elite": 3.0})
@@ -65,7 +66,7 @@ def test_what_an_integrator_sums_up_does_not_move_its_gain(seed):
     assert fit.window.error["verify"] < 0.5 * fit.error["verify"]
 
 
-@pytest.mark.parametrize("dead", [0.15, 0.6])
+@pytest.mark.parametrize("dead", short_form([0.15, 0.6], 0.6))
 def test_a_fit_with_an_effect_is_made_over_the_windows_of_the_fit_without(dead):
     """One objective from the search to the result, and that of a diagnosis; a dead zone may take most of the command.
 

@@ -12,6 +12,7 @@ from ident.fit.settings import Settings
 from ident.matrix import Matrix
 from ident.readers import read_matrix
 from ident.workflows import compare, identify
+from tests.short_form import short_form
 
 RATE, LAG, GAIN, LATE = 100.0, 0.08, 0.7, 0.93
 FIRST, END = 700, 1300
@@ -48,7 +49,7 @@ def record(folder: Path, hold: str, rows: tuple[int, int] | None, uneven: bool =
     return read_matrix(folder)
 
 
-@pytest.mark.parametrize("hold", ["zoh", "linear"])
+@pytest.mark.parametrize("hold", short_form(["zoh", "linear"], "zoh"))
 def test_a_delay_brings_in_what_was_commanded_before_the_rows(tmp_path, hold):
     matrix = record(tmp_path, hold, (FIRST, END))
     settings = Settings(model="first_order", effects=("command_delay",), bounds={"command_delay.delay": (0.0, 2.0)})
