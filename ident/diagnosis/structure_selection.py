@@ -6,7 +6,8 @@ more parameters then comes before the first where the first is improbable among 
 parameters and as small an error. A model with more parameters comes before it only where that is as small an error
 without an effect, and with one gains half of all that can be gained in addition to the first with its effect: a
 missing effect may hide the machine. A first model with a parameter at its bound is the wrong machine: a model with a
-smaller error that is as probable comes before it.
+smaller error that is as probable comes before it. A first model that no effect improves may have made up for one: a
+model that has fewer parameters together with its effect, and is more probable, comes before it.
 """
 
 from __future__ import annotations
@@ -201,7 +202,8 @@ def _preferred(
     """The chosen one of models with an effect each, and the reason: the first, or another that explains as much or
     more.
 
-    Where the first is improbable among them, the simplest of the most probable models comes before it. Where a
+    Where the first is improbable among them, the simplest of the most probable models comes before it. Where no effect
+    improves the first, a more probable model with fewer parameters, those of its effect counted, does. Where a
     parameter of the first is at its bound, a model that is as probable, with a smaller error and no parameter at a
     bound, comes before it. So does a simpler model whose error is not larger beyond chance, unless that model alone is
     unusual; of models that are as simple, one that is about as probable as any of them. It is no simpler where an
@@ -210,6 +212,16 @@ def _preferred(
     if probable.get(first.machine, 1.0) < CRITERIA.structure.improbable:
         return min(_as_probable(others, probable), key=_parameters), message("structure.more_probable")
     as_likely = [model for model in others if probable.get(model.machine, 0.0) >= probable.get(first.machine, 0.0)]
+    if first.with_effect is None and probable:
+        fewer = [
+            model
+            for model in as_likely
+            if model.with_effect is not None
+            and model.count < first.parameters
+            and (model.machine in strange) <= (first.machine in strange)
+        ]
+        if fewer:
+            return _as_probable(fewer, probable)[0], message("structure.fewer")
     within = [model for model in as_likely if model.error < first.error and not model.at_bound]
     if first.at_bound and within:
         return _simplest(within), message("structure.within")
@@ -392,6 +404,11 @@ class _JudgedStructure:
     def above_noise(self) -> bool:
         """Whether a simulation confirms it and its residual is above the noise."""
         return self.best.finite and self.models.residual_above_noise(self.best)
+
+    @property
+    def count(self) -> int:
+        """The number of its parameters, with those of its effect that a fit finds."""
+        return self.parameters + len(self.best.space.names) - len(self.refit.space.names)
 
     @property
     def irreplaceable(self) -> int:

@@ -51,7 +51,8 @@ def jit(**options: Any) -> Callable[[Function], Function]:
     """As ``numba.njit(**options)``; compiled once for all processes of this user."""
 
     def decorated(function: Function) -> Function:
-        made: Function = shared(numba.njit(**options)(function))
+        with uninterrupted():  # the first of a process loads what numba's compiler calls
+            made: Function = shared(numba.njit(**options)(function))
         return made
 
     return decorated

@@ -288,6 +288,7 @@ STRUCTURES: Mapping[str, str] = {
     "structure.more_probable": "with one effect it is far more probable than the usual model",
     "structure.within": "the error is smaller with one effect, and no parameter is at its bound",
     "structure.simpler": "the error is as small with one effect, and the model is simpler",
+    "structure.fewer": "with one effect it is more probable, and has fewer parameters",
     "structure.simplest": "the simplest whose error is not larger",
     "structure.rather": "more probable than the first: if the machine is one, name it by --model {machine}",
     "structure.described": "the data set describes the machine",

@@ -340,6 +340,30 @@ def test_an_improbable_machine_gives_way_to_the_most_probable(probabilities, tak
     assert _preferred(first, [first, lag, motor], set(), probable)[0].machine == taken
 
 
+@pytest.mark.parametrize(
+    ("count", "probability", "helped", "taken"),
+    [
+        (3, 0.6, False, "first_order"),
+        (5, 0.6, False, "open_valve"),
+        (3, 0.4, False, "open_valve"),
+        (3, 0.6, True, "open_valve"),
+    ],
+)
+def test_a_model_that_no_effect_improves_gives_way_to_a_smaller_one_with_its_effect(count, probability, helped, taken):
+    """What a valve and a cylinder explain by five parameters, a lag behind a delay explains by three."""
+
+    def model(machine: str, parameters: int, effect: object) -> SimpleNamespace:
+        return SimpleNamespace(
+            machine=machine, parameters=parameters, irreplaceable=1, error=0.1, best=None, with_effect=effect,
+            at_bound=False, count=count,
+        )  # fmt: skip
+
+    first, lag = model("open_valve", 5, "effect" if helped else None), model("first_order", 2, "effect")
+    probable = {"open_valve": 1.0 - probability, "first_order": probability}
+    assert _preferred(first, [first, lag], set(), probable)[0].machine == taken
+    assert _preferred(first, [first, lag], {"first_order"}, probable)[0].machine == "open_valve"
+
+
 @pytest.mark.parametrize(("probability", "said"), [(0.28, True), (0.72, False)])
 def test_a_machine_that_is_more_probable_than_the_first_is_said_with_how_to_name_it(probability, said):
     """As a motor on a way beside a valve that has the smaller error: only the user knows which of them it is."""
