@@ -215,7 +215,7 @@ def _preferred(
     if first.with_effect is None and probable:
         fewer = [
             model
-            for model in as_likely
+            for model in _as_probable(as_likely, probable)
             if model.with_effect is not None
             and model.count < first.parameters
             and (model.machine in strange) <= (first.machine in strange)
