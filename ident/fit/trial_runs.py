@@ -22,10 +22,13 @@ def trial_runs(runs: Sequence[Run], band: float, most: int) -> tuple[Run, ...]:
 
 
 def decimated(runs: Sequence[Run], band: float) -> tuple[Run, ...]:
-    """The runs with one sample of each `count`, the same of all: as few as are enough, and as the band allows."""
+    """The runs with one sample of each `count`, the same of all: as few as are enough, and as the band allows.
+
+    The shortest run keeps as many samples as of noise that is cut.
+    """
     total, slowest = sum(run.length for run in runs), min(run.sample_rate for run in runs)
     allowed = int(2.0 * np.pi * slowest / (band * _OF.samples_of_a_period))
-    count = min(-(-total // _OF.enough_samples), allowed)
+    count = min(-(-total // _OF.enough_samples), allowed, min(run.length for run in runs) // _OF.shortest_part)
     return tuple(run.decimated(count) for run in runs) if count > 1 else tuple(runs)
 
 

@@ -130,6 +130,13 @@ def test_finely_sampled_records_are_decimated_for_a_search(samples, period, ever
     assert {one.every for one in found} == {min(-(-2 * samples // 8192), max(1, int(period / 32)))}
 
 
+def test_a_short_run_keeps_the_samples_of_the_shortest_part():
+    """512 of each: a run of few samples beside a long one is not left with a handful."""
+    long, short = replace(noise("long", 200_000), kind="other"), replace(noise("short", 1600), kind="other")
+    assert [run.every for run in decimated((long, short), 2.0 * np.pi)] == [3, 3]
+    assert [run.every for run in decimated((long, replace(noise("few", 100), kind="other")), 2.0 * np.pi)] == [1, 1]
+
+
 def starts_of(monkeypatch: pytest.MonkeyPatch) -> tuple[int, int]:
     """How many vectors of the last and of the first generation of a search are refined."""
     counts: list[int] = []
