@@ -40,12 +40,9 @@ def in_words(effect: Effect, preset: Preset, matrix: Matrix) -> str:
         described = any(run.specimen for run in runs)
     else:
         described = bool(of.piston_area or of.servo_valve or of.supply_pressure or any(run.gain for run in runs))
-    name = title(effect.name)
-    return (
-        name
-        if described or not effect.does
-        else f"{name} ({effect.does}, at the {place_in_words(effect, preset, matrix)})"
-    )
+    if described or not effect.does:
+        return title(effect.name)
+    return f"{title(effect.name)} ({effect.does}, at the {place_in_words(effect, preset, matrix)})"
 
 
 def place_in_words(effect: Effect, preset: Preset, matrix: Matrix) -> str:

@@ -209,6 +209,10 @@ def _preferred(
     unusual; of models that are as simple, one that is about as probable as any of them. It is no simpler where an
     effect of the first takes the place of what it lacks.
     """
+
+    def as_usual(model: _JudgedStructure) -> bool:
+        return model.machine not in strange or first.machine in strange
+
     if probable.get(first.machine, 1.0) < CRITERIA.structure.improbable:
         return min(_as_probable(others, probable), key=_parameters), message("structure.more_probable")
     as_likely = [model for model in others if probable.get(model.machine, 0.0) >= probable.get(first.machine, 0.0)]
@@ -216,12 +220,10 @@ def _preferred(
         fewer = [
             model
             for model in _as_probable(as_likely, probable)
-            if model.with_effect is not None
-            and model.count < first.parameters
-            and (model.machine in strange) <= (first.machine in strange)
+            if model.with_effect is not None and model.count < first.parameters and as_usual(model)
         ]
         if fewer:
-            return _as_probable(fewer, probable)[0], message("structure.fewer")
+            return fewer[0], message("structure.fewer")
     within = [model for model in as_likely if model.error < first.error and not model.at_bound]
     if first.at_bound and within:
         return _simplest(within), message("structure.within")
@@ -230,7 +232,7 @@ def _preferred(
         for one in others
         if one.parameters < first.irreplaceable
         and one.error <= CRITERIA.equality.practically_equal * first.error
-        and (one.machine in strange) <= (first.machine in strange)
+        and as_usual(one)
         and not better(one.best, first.best)
     ]
     if first.with_effect is not None and simpler:

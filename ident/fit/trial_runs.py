@@ -26,10 +26,16 @@ def decimated(runs: Sequence[Run], band: float) -> tuple[Run, ...]:
 
     The shortest run keeps as many samples as of noise that is cut.
     """
-    total, slowest = sum(run.length for run in runs), min(run.sample_rate for run in runs)
-    allowed = int(2.0 * np.pi * slowest / (band * _OF.samples_of_a_period))
-    count = min(-(-total // _OF.enough_samples), allowed, min(run.length for run in runs) // _OF.shortest_part)
+    enough = -(-sum(run.length for run in runs) // _OF.enough_samples)
+    shortest = min(run.length for run in runs) // _OF.shortest_part
+    count = min(enough, band_stride(runs, band, _OF.samples_of_a_period), shortest)
     return tuple(run.decimated(count) for run in runs) if count > 1 else tuple(runs)
+
+
+def band_stride(runs: Sequence[Run], band: float, remaining: float) -> int:
+    """Samples of the slowest run for one, where so many remain of a period of the edge of the `band` (rad/s)."""
+    slowest = min(run.sample_rate for run in runs)
+    return max(1, int(slowest / (remaining * (band / (2 * np.pi)))))
 
 
 def shortened(runs: Sequence[Run], samples: int) -> tuple[Run, ...]:

@@ -14,6 +14,7 @@ import scipy.linalg
 from numpy.typing import NDArray
 
 from ident.fit.reduction import excited_band
+from ident.fit.trial_runs import band_stride
 from ident.linear import LinearModel
 from ident.run import Run
 from ident.simulation.jit import jit
@@ -25,9 +26,7 @@ _OVER = 8.0  # samples a period of the band edge
 
 def stride(runs: Sequence[Run]) -> int:
     """Samples that are averaged into one."""
-    band = excited_band(runs) / (2 * np.pi)
-    slowest = min(run.sample_rate for run in runs)
-    return max(1, int(slowest / (_OVER * band)))
+    return band_stride(runs, excited_band(runs), _OVER)
 
 
 def averaged(samples: Array, count: int) -> Array:

@@ -5,6 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from ident.diagnosis.candidate_models import CandidateModels
+from ident.fit.settings import Settings
 from ident.fit.simulated_runs import SimulatedRuns
 from ident.fit.trial_runs import decimated
 from ident.matrix import Actuator, Matrix
@@ -39,6 +41,17 @@ def test_at_the_samples_that_remain_the_simulated_machine_is_where_it_was(hold):
     for each in (run, few):
         output = SimulatedRuns(model, matrix, (each,), BAND).outputs_at(at)["r"]
         assert np.std(output - each.measured) < 3e-3 * np.std(truth)
+
+
+def test_trials_of_a_diagnosis_are_decimated_and_what_is_reported_is_not():
+    """The records of trials and of rough steps are the same objects, so that what is known of them is found once."""
+    force = slow("linear")
+    run = Run("r", "", RATE, {"command": force, "displacement": force}, units={"command": "N"})
+    models = CandidateModels.of(Matrix(Actuator("A"), (run,)), Settings(model="drive"))
+    few, rough = (models.fitness((), samples).runs for samples in (131_072, 49_152))
+    assert [one.every for one in few] == [2]
+    assert [one.every for one in models.fitness(()).runs] == [1]
+    assert all(one is other for one, other in zip(few, rough, strict=True))
 
 
 def test_a_held_command_is_its_mean_until_the_next_sample_that_remains():
