@@ -17,6 +17,7 @@ from ident.comparison.frequency_response import DescribingGain, Spectra, describ
 from ident.custom.definition import preset_with
 from ident.effects.effect import usual_shapes
 from ident.errors import Unusable
+from ident.fit.known_zeros import with_known_zeros
 from ident.fit.normal_matrices import output
 from ident.fit.result import FitResult
 from ident.fit.simulated_runs import BegunOver, every_run, is_simulated
@@ -277,7 +278,9 @@ def compare(matrix: Matrix, fit: FitResult, simulator: Simulator = modelled) -> 
 
 
 def fitted(fit: FitResult, matrix: Matrix) -> tuple[Preset, Matrix, dict[str, float]]:
-    """The model of a fit as it suits a matrix, the matrix with what drives it, and its values by equations' names.
+    """The model of a fit as it suits a matrix, the matrix as it was fitted, and its values by equations' names.
+
+    What drives the model is in the matrix, and the zeros that rest tells count where they did in the fit.
 
     Raises Unusable where a value is missing.
     """
@@ -289,7 +292,7 @@ def fitted(fit: FitResult, matrix: Matrix) -> tuple[Preset, Matrix, dict[str, fl
     missing = [p.name for p in preset.parameters if p.in_equations not in values]
     if missing:
         raise Unusable("bad-fit", f"no value of {', '.join(missing)}", "fit", f"give a fit of model {fit.model}")
-    return preset, driven, values
+    return preset, with_known_zeros(driven, fit.settings.get("known_zeros", ())), values
 
 
 def response(fit: FitResult, run: Run, actuator: Actuator, frequency: Array) -> Complex:
