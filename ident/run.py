@@ -30,6 +30,8 @@ HOLDS = ("linear", "zoh", "band-limited")
 USES, STILL = ("fit", "verify"), "still"
 MOTIONS = ("displacement", "velocity")
 """Channels that may be imposed on a machine that answers with a force, such as a damper."""
+KINEMATIC = (*MOTIONS, "acceleration")
+"""Channels of the motion with which a machine answers."""
 COMMANDED_MOTIONS = {
     "m": "displacement",
     "rad": "displacement",
@@ -39,11 +41,12 @@ COMMANDED_MOTIONS = {
 }
 """Which motion a command is, or in unknown units may be, where a force answers and no motion was recorded."""
 CHANNELS = (
-    "command", "displacement", "velocity", "force", "drive_force", "load_pressure", "pressure_a", "pressure_b",
-    "supply_pressure", "vertical_load", "spool", "current", "temperature",
+    "command", "displacement", "velocity", "acceleration", "force", "drive_force", "load_pressure",
+    "pressure_a", "pressure_b", "supply_pressure", "vertical_load", "spool", "current", "temperature",
 )  # fmt: skip
 DISTURBANCES = {"flow_disturbance": "flow", "load_disturbance": "load", "sensor_disturbance": "sensor"}
 """What acts on a machine beside its command, measured: the channel, and the place where it adds."""
+_DRIFT = 0.01  # of the power of an acceleration, at its lowest frequencies: integrated, noise there is a drift
 _PULSE = 2  # changes of a command that is a step or a pulse
 
 
@@ -200,12 +203,13 @@ class Run(Shown):
     def motion(self) -> float:
         """The standard deviation of the position, m: as recorded, else of the integral of the speed without its drift.
 
-        Of a run that records neither it is that of its output.
+        Of a run that records no motion but an acceleration it is that of its double integral; of one without any, that
+        of its output.
         """
         if "displacement" in self.channels:
             return float(np.std(self.channels["displacement"]))
         if "velocity" not in self.channels:
-            return float(np.std(self.measured))
+            return self._integrated(2) if "acceleration" in self.channels else float(np.std(self.measured))
         way = np.cumsum(self.channels["velocity"]) / self.sample_rate
         k = np.arange(len(way))
         return float(np.std(way - np.polyval(np.polyfit(k, way, 1), k)))
@@ -229,8 +233,22 @@ class Run(Shown):
 
     @cached_property
     def speed(self) -> float:
-        """The standard deviation of the recorded speed, m/s."""
-        return float(np.std(self.channels["velocity"]))
+        """The standard deviation of the recorded speed, m/s; of an acceleration alone that of its integral."""
+        return float(np.std(self.channels["velocity"])) if "velocity" in self.channels else self._integrated(1)
+
+    def _integrated(self, times: int) -> float:
+        """The standard deviation of the integral, once or twice, of the recorded acceleration, by its spectrum.
+
+        That of a base, where it is the command, is taken off: the motion is the one against it. The lowest lines with a
+        hundredth of the power are left out: noise there would be a drift.
+        """
+        a = self.channels["acceleration"]
+        if self.units.get("command") == "m/s^2":
+            a = a - self.command
+        lines = np.abs(np.fft.rfft(a - a.mean())) ** 2 / len(a) ** 2
+        omega = 2.0 * np.pi * np.fft.rfftfreq(len(a), 1.0 / self.sample_rate)
+        kept = np.cumsum(lines) > _DRIFT * lines.sum()
+        return float(np.sqrt(2.0 * np.sum(lines[kept] / omega[kept] ** (2 * times))))
 
     def turned(self, channel: str) -> Run:
         """The run with the sign of a channel turned."""

@@ -24,6 +24,7 @@ UNITS = (
     ("length", ("mm", "cm", "m", "um", "in", "mil")), ("force", ("N", "kN", "kgf", "tf", "lbf", "kip")),
     ("pressure", ("bar", "MPa", "kPa", "Pa", "psi")),
     ("velocity", ("mm/s", "cm/s", "m/s", "in/s", "rpm", "rad/s", "deg/s")),
+    ("acceleration", ("m/s^2", "g", "mm/s^2")),
     ("angle", ("deg", "rad", "rev")), ("torque", ("N*m", "kN*m")), ("electrical", ("V", "mV", "A", "mA")),
     ("time", ("s", "ms", "us", "min")), ("temperature", ("degC", "K", "degF")), ("other", ("%", "counts", "1")),
 )  # fmt: skip

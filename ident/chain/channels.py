@@ -13,7 +13,7 @@ from ident.errors import Unusable
 from ident.run import CHANNELS, Run
 from ident.words.run_name import run_name
 
-_MOTION = ("command", "displacement", "velocity")  # a model has its own
+_MOTION = ("command", "displacement", "velocity", "acceleration")  # a model has its own
 READABLE = tuple(channel for channel in CHANNELS if channel not in _MOTION)
 """What an effect may read of a record, each under its channel's name, in SI; the name alone stands for the mean."""
 BESIDE_MEAN = {f"d{channel}": channel for channel in READABLE}

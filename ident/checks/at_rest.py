@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import maximum_filter1d, minimum_filter1d
 
-from ident.run import DISTURBANCES, MOTIONS, Run, Samples
+from ident.run import DISTURBANCES, KINEMATIC, MOTIONS, Run, Samples
 
 HELD = 0.002  # of an input's range, within which the input rests
 STATES = ("load_pressure", "pressure_a", "pressure_b", "spool", "temperature")
@@ -20,7 +20,7 @@ def acting(run: Run) -> list[Samples]:
 
     These are the command, forces and disturbances, and the motion where something else answers to it.
     """
-    answers = {run.output, *STATES, *(MOTIONS if run.output in MOTIONS else ())}
+    answers = {run.output, *STATES, *(KINEMATIC if run.output in KINEMATIC else ())}
     signals = {name: samples for name, samples in run.channels.items() if name not in answers}
     driven = {"command", "drive_force", *DISTURBANCES, *MOTIONS} & signals.keys()
     return list(signals.values()) if driven else []

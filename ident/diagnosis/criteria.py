@@ -191,6 +191,14 @@ class InitialGuesses:
     frequencies that follow, down to a quarter of that of the record, lie within a third of one; over how much a refit
     follows a resonance is not measured.
     Test: test_criteria_of_prediction.py::test_a_part_behind_a_spring_begins_within_a_third_of_its_frequency"""
+    periods: int = 16
+    """[periods of the resonance of the records] Of a stretch whose spectrum is averaged with those of others. Why: a
+    mode with a damping ratio of 0.03 is as wide as such a stretch resolves.
+    Test: test_initial_guesses.py::test_what_swings_beside_the_machine_is_seen_in_the_residual"""
+    beside: float = 1.33
+    """[times the resonance of the records, or of its inverse] From where on a peak of the residual is another one. Why:
+    the residual is large at the resonance itself, whose damping is off; starts within a third reach one another.
+    Test: test_initial_guesses.py::test_what_swings_beside_the_machine_is_seen_in_the_residual"""
     spring_shares: tuple[float, ...] = (0.3, 0.6)
     """[of the machine's spring] Share that an effect which is a spring at first has taken over. Why: from either share
     the refit of a Bouc-Wen oscillator reaches its optimum, from none and from all of the spring it does not.

@@ -24,7 +24,7 @@ from ident.units.quantity import shown
 from ident.words.listed import first_of
 from ident.words.message import message
 
-OUTPUTS = ("displacement", "velocity", "force", "load_pressure", "temperature")
+OUTPUTS = ("displacement", "velocity", "acceleration", "force", "load_pressure", "temperature")
 """Channels that a model may have to reproduce; the first that there is, unless one is named. A temperature is one where
 another column is the command."""
 _DRIVES = ("command", "current")

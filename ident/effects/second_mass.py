@@ -23,9 +23,9 @@ SHAPE = (
 )  # fmt: skip
 TEXTS = (
     "xj' = v - vj",
-    "vj' = wj**2 * xj + 2 * zeta * wj * (v - vj)",
+    "vj' = wj**2 * xj + 2 * zeta * wj * (v - vj) - aB",
     "G = mu * m0 * (wj**2 * xj + 2 * zeta * wj * (v - vj))",
-    "a = where(mu > 0, (D - R - f - S - G) / ((1 - mu) * m0 + mL), a)",
+    "a = where(mu > 0, (D - R - f - S - G) / ((1 - mu) * m0 + mL) - aB, a)",
     "M = M - mu * m0",
 )
 UNITS = {"a": "m/s^2", "M": "kg"}

@@ -21,7 +21,7 @@ SPECIMEN_JOINT = Effect(
         "G = (mL * (D - R - f) / m0 + S + k * (x - xL)) / (1 + k * s + mL / m0)",
         "F = lag2(G, s * cL / (1 + k * s + mL / m0), s * mL / (1 + k * s + mL / m0))",
         "Fh := F",
-        "a = (D - R - f - F) / m0",
+        "a = (D - R - f - F) / m0 - aB",
         "M = m0 + where(s > 0, 0, mL)",
     ),
     units={"xL": "m", "vL": "m/s", "F": "N", "a": "m/s^2", "M": "kg"},

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 
 from ident.fit.result import RunError
-from ident.run import MOTIONS, Run
+from ident.run import KINEMATIC, Run
 from ident.words.message import message
 
 WORSE = 1.0
@@ -22,6 +22,6 @@ def contradicting(runs: Sequence[Run], errors: Sequence[RunError]) -> Iterator[s
         return
     run, error = max(worse, key=lambda one: one[1])
     causes = [message("cause.conditions")]
-    if run.output in MOTIONS and run.units.get("command") in _FORCES:
+    if run.output in KINEMATIC and run.units.get("command") in _FORCES:
         causes.append(message("cause.held", channel=run.output))
     yield str(message("contradicted", run=run.id, error=error, causes=causes))

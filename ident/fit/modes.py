@@ -60,6 +60,6 @@ def motion(runs: Iterable[Run], band: float) -> dict[str, float]:
         if "displacement" in run.channels:
             far["x"].append(run.motion)
             far["v"].append(run.speed_within(band))
-        if "velocity" in run.channels:
+        if not {"velocity", "acceleration"}.isdisjoint(run.channels):
             far["v"].append(run.speed)
     return {name: float(np.sqrt(2.0)) * max(sizes) for name, sizes in far.items() if sizes}

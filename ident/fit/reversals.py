@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ident.parameter import AtReversals
-from ident.run import MOTIONS, Run
+from ident.run import KINEMATIC, Run
 from ident.simulation.steps import steps_where_reversed
 
 Array = NDArray[np.float64]
@@ -33,7 +33,7 @@ class Reversals:
         speeds = [
             (run.speed if "velocity" in run.channels else band * run.motion) / run.sample_rate**2
             for run in runs
-            if not run.channels.keys().isdisjoint(MOTIONS)
+            if not run.channels.keys().isdisjoint(KINEMATIC)
         ]
         way = float(np.sqrt(2.0) * band * max(speeds, default=0.0))
         return cls(way, min(run.sample_rate for run in runs), amplitude)

@@ -24,7 +24,7 @@ from ident.fit.criteria import FIT_CRITERIA
 from ident.fit.fitness import Fitness
 from ident.fit.result import Combination
 from ident.fit.uncertainty import Covariance
-from ident.run import MOTIONS, Run
+from ident.run import KINEMATIC, Run
 
 Array = NDArray[np.float64]
 NAME = "lag to a slow command"
@@ -39,7 +39,7 @@ def slow_lag(objective: Fitness, found: Covariance) -> Iterator[Combination]:
     """
     runs = objective.matrix.of_use("fit")
     alike = len({(run.gain, run.specimen, run.output) for run in runs}) == 1
-    if objective.preset.data.driven_by != "command" or not alike or runs[0].output not in MOTIONS:
+    if objective.preset.data.driven_by != "command" or not alike or runs[0].output not in KINEMATIC:
         return
 
     def lag(points: Array) -> Array:

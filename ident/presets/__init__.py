@@ -22,6 +22,7 @@ _FILES = (
     "sprung_motor",
     "position_servo",
     "two_tanks",
+    "moving_base",
     "specimen",
     "force_loop",
     "kononykhin",

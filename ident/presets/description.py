@@ -22,7 +22,7 @@ CHOICES: Mapping[str, tuple[str, ...]] = {
     ),
 }  # fmt: skip
 """What a place may be; the first is what it is where nothing is said."""
-SHOWN = ("displacement", "velocity", "force", "load_pressure")
+SHOWN = ("displacement", "velocity", "acceleration", "force", "load_pressure")
 GAINS = {"P": "Kp", "I": "KI", "D": "KD"}
 """What a gain is called in the equations."""
 _KEYS = (*CHOICES, "sensor", "gains")

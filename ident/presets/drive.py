@@ -5,7 +5,7 @@ from ident.presets.preset import Combined, Preset, RequiredData, SearchPlan
 from ident.stages import CASCADE, DIRECT_FORCE, DRIVEN_MASS, IDEAL_DRIVE, IDEAL_SENSOR, Scale
 
 OUTPUTS = {"displacement": "y", "force": "F"}
-OPEN_OUTPUTS = {**OUTPUTS, "velocity": "vy"}
+OPEN_OUTPUTS = {**OUTPUTS, "velocity": "vy", "acceleration": "ay"}
 """Of the mass alone; no loop of a position is closed over a speed."""
 FORCE_SCALE = "(c0 + m0*W)*W*L"
 CITATION = (

@@ -10,7 +10,7 @@ MOTOR = Preset(
     citation="A DC motor whose inductance is small: J ω' + c ω = K u, with c of friction and induced voltage together.",
     chain=Chain(
         stages=(OPENED_BY_COMMAND, INSTANT_VALVE, RIGID_SPOOL, TORQUE, MASS_SPRING_DAMPER, IDEAL_SENSOR),
-        outputs={"velocity": "vy", "displacement": "y"},
+        outputs={"velocity": "vy", "displacement": "y", "acceleration": "ay"},
     ),
     combinations=(
         Combined("Kt / c0", "1/s", "speed for each unit of the command"),

@@ -30,7 +30,7 @@ OPEN_VALVE = Preset(
             MASS_SPRING_DAMPER,
             IDEAL_SENSOR,
         ),
-        outputs={"load_pressure": "P", "displacement": "y", "velocity": "vy", "force": "F"},
+        outputs={"load_pressure": "P", "displacement": "y", "velocity": "vy", "acceleration": "ay", "force": "F"},
     ),
     listed=("m0", "tau", "c0", "Ka", "Cl", "Z0"),
     without_area={

@@ -18,7 +18,7 @@ from ident.presets.record_units import RecordUnits
 from ident.presets.required_data import RequiredData
 from ident.presets.search_plan import SearchPlan
 from ident.presets.stated import refuse_unstated
-from ident.run import DISTURBANCES, MOTIONS
+from ident.run import DISTURBANCES, KINEMATIC, MOTIONS
 from ident.stages import OPENED_BY_COMMAND, Scale
 from ident.stages.scale import OF_THE_RUNS
 
@@ -108,7 +108,7 @@ class Preset(Model):
         if preset.search.force_scale and {run.output for run in matrix.runs} == {"load_pressure"}:
             # Its forces are measured.
             preset = replace(preset, search=replace(preset.search, force_scale="A*X"))
-        if "displacement" in preset.chain.outputs and any(run.output not in MOTIONS for run in matrix.runs):
+        if "displacement" in preset.chain.outputs and any(run.output not in KINEMATIC for run in matrix.runs):
             # A force or a pressure is known beside the motion.
             preset = replace(preset, data=replace(preset.data, share_force=()))
         preset = preset.disturbed_as(matrix, load)

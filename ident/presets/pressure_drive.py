@@ -21,7 +21,7 @@ PRESSURE_DRIVE = Preset(
     ),
     chain=Chain(
         stages=(OPENED_BY_COMMAND, INSTANT_VALVE, RIGID_SPOOL, ACTING_PRESSURE, DRIVEN_MASS, IDEAL_SENSOR),
-        outputs={"displacement": "y", "velocity": "vy"},
+        outputs={"displacement": "y", "velocity": "vy", "acceleration": "ay"},
     ),
     listed=("m0", "c0", "k0", "Ap"),
     without_area={"m0": ("m0/Ap", "kg"), "c0": ("c0/Ap", "N*s/m"), "k0": ("k0/Ap", "N/m")},

@@ -6,7 +6,7 @@ import re
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 
-from ident.run import MOTIONS, Run
+from ident.run import KINEMATIC, Run
 from ident.units.grammar import Powers, powers_of
 
 _ANGLES: Mapping[str, Powers] = {"m": {"rad": 1.0}, "N": {"N": 1.0, "m": 1.0}, "kg": {"kg": 1.0, "m": 2.0}}
@@ -39,10 +39,10 @@ class RecordUnits:
         """Those of a matrix, by what is stated of its channels; of what is `driven_by` a force the command is one."""
         listed = tuple(runs)
         units = {name: unit for run in listed for name, unit in run.units.items() if name in run.channels}
-        moving = [units[name] for name in MOTIONS if name in units]
+        moving = [units[name] for name in KINEMATIC if name in units]
         unknown: dict[str, Powers] = {}
         if moving and set(moving) == {"1"}:
-            unknown["m"] = {} if "displacement" in units else {"s": 1.0}
+            unknown["m"] = {} if "displacement" in units else {"s": 1.0} if "velocity" in units else {"s": 2.0}
         known = ("force", "drive_force", *(("command",) if driven_by == "drive_force" else ()))
         forces = {units[name] for name in known if name in units}
         if forces in ({"1"}, {"Pa"}):

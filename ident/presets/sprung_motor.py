@@ -13,7 +13,7 @@ SPRUNG_MOTOR = Preset(
     ),
     chain=Chain(
         stages=(OPENED_BY_COMMAND, INSTANT_VALVE, RIGID_SPOOL, TORQUE, DRIVEN_MASS, IDEAL_SENSOR),
-        outputs={"displacement": "y"},
+        outputs={"displacement": "y", "acceleration": "ay"},
     ),
     listed=("m0", "c0", "k0", "Kt"),
     combinations=(

@@ -12,7 +12,7 @@ from ident.effects.needs import electric, one_sided
 from ident.effects.ringing import resonance
 from ident.errors import Unusable
 from ident.presets import PRESETS, Preset, preset
-from ident.run import BENCH, DISTURBANCES, MOTIONS, Run
+from ident.run import BENCH, DISTURBANCES, KINEMATIC, MOTIONS, Run
 from ident.stages import OPENED_BY_COMMAND
 
 _STATED, _LOOP, _OTHER_LOOP, _OPEN, _UNLIKELY = 0, 1, 2, 3, 6
@@ -194,8 +194,10 @@ def _one_sided(run: Described) -> bool:
 
 def _rank(model: Preset, runs: Sequence[Described], oil: bool) -> int:
     if any(_by_force(model, run) for run in runs):
-        stated = all(run.units.get("command") != "1" and run.output in MOTIONS for run in runs)
+        stated = all(run.units.get("command") != "1" and run.output in KINEMATIC for run in runs)
         return _STATED if stated else _OPEN  # what is in units of 1 may be no force, and an output what follows one
+    if "m/s^2" in model.data.command_units:
+        return _STATED  # an acceleration is the command of nothing but a base
     if all(_by_motion(model, run) for run in runs):
         return _STATED if moved_by_command(model, runs) else _OPEN
     if model.data.driven_by != "command":

@@ -12,16 +12,19 @@ from ident.run import CHANNELS, DISTURBANCES
 from ident.units.quantity import DIMENSIONS, Scale, parameter_value, shown, split, unit_scale
 
 PRESSURE, WAY, SPEED, FORCE = ("pressure",), ("length", "angle"), ("velocity", "angular velocity"), ("force", "torque")
+ACCELERATION = "acceleration"
+_NO_COMMAND = ("dimensionless", "per sample", ACCELERATION)
 KINDS_OF_UNIT: dict[str, Sequence[str]] = {
-    "command": tuple(name for name in DIMENSIONS if name not in ("dimensionless", "per sample")),
-    "displacement": WAY, "velocity": SPEED,
+    "command": (ACCELERATION, *(name for name in DIMENSIONS if name not in _NO_COMMAND)),
+    "displacement": WAY, "velocity": SPEED, "acceleration": (ACCELERATION,),
     "force": (*FORCE, *PRESSURE), "drive_force": FORCE, "load_pressure": PRESSURE,
     "pressure_a": PRESSURE, "pressure_b": PRESSURE, "supply_pressure": PRESSURE, "vertical_load": ("force",),
     "flow_disturbance": ("flow",), "load_disturbance": FORCE, "sensor_disturbance": WAY,
     "spool": ("length", "voltage", "current"), "current": ("current", "voltage"), "temperature": ("temperature",),
 }  # fmt: skip
 """What each channel may be measured in; ``1`` is allowed everywhere, for records in unknown units. A force that is
-measured as a pressure is a stress, the force for each area of a specimen."""
+measured as a pressure is a stress, the force for each area of a specimen. ``g`` is the standard gravity of a command,
+and no gram."""
 _LISTED = 4  # kinds of unit that a message names
 
 

@@ -30,6 +30,9 @@ WORDS = {
         "lagesollwert", "positionssollwert", "sollwert position", "sollwert weg", "fuehrungsgroesse",
         "fuhrungsgrosse", "vorgabe", "consigne", "consigne position", "position consigne", "consigne de position",
         "commande", "comando", "riferimento", "posizione comandata", "riferimento posizione", "consigna",
+        "base acceleration", "ground acceleration", "ground motion", "base excitation", "input acceleration",
+        "excitation acceleration", "bodenbeschleunigung", "fusspunktbeschleunigung", "acceleration du sol",
+        "地面加速度", "基底加速度",
         "指令", "命令", "给定", "给定值", "设定值", "目标值", "目标位移", "指令位移", "位移指令", "命令位移",
     ),
     "displacement": (
@@ -43,7 +46,7 @@ WORDS = {
         "istwert weg", "hub", "kolbenweg", "kolbenposition", "kolbenhub", "zylinderweg", "auslenkung",
         "verschiebung", "deplacement", "position mesuree", "deplacement mesure", "course", "position reelle",
         "posizione", "spostamento", "corsa", "posizione misurata", "posizione reale", "posicion", "desplazamiento",
-        "damper displacement", "lateral displacement",
+        "damper displacement", "lateral displacement", "relative displacement",
         "位移", "位置", "行程", "实际位移", "测量位移", "位移反馈", "活塞位移", "作动器位移",
     ),
     "velocity": (
@@ -51,6 +54,13 @@ WORDS = {
         "geschwindigkeit", "drehzahl", "kolbengeschwindigkeit", "istgeschwindigkeit", "istdrehzahl", "vitesse",
         "velocita", "velocidad",
         "速度", "转速",
+    ),
+    "acceleration": (
+        "acceleration", "accel", "acc", "accelerometer", "measured acceleration", "actual acceleration",
+        "floor acceleration", "roof acceleration", "top acceleration", "mass acceleration", "response acceleration",
+        "absolute acceleration", "beschleunigung", "istbeschleunigung", "acceleration mesuree", "accelerazione",
+        "aceleracion",
+        "加速度", "响应加速度",
     ),
     "force": (
         "force", "load", "load cell", "measured force", "actual force", "force feedback", "torque", "axial force",
@@ -98,7 +108,7 @@ TIMES = (
 """Names of a column of times."""
 UNITS_BY_NAME = ("rpm",)
 """Names that are a unit: what is called so is measured in it."""
-_BY_UNIT = ("displacement", "velocity", "force")
+_BY_UNIT = ("displacement", "velocity", "acceleration", "force")
 _IN_NAME = re.compile(r"^(.*\S)\s*[\[(<{\uff08]\s*([^\[\](){}<>\uff08\uff09]+?)\s*[\])>}\uff09]$")  # wide brackets, too
 _LETTERS = "mstAKlLhgNVWJ"
 """Units of one letter that may as well be an index: x_m is measured, p_s a supply, p_A a side, F_N normal."""

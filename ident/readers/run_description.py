@@ -26,7 +26,7 @@ RUN = (
 )  # fmt: skip
 
 
-ANSWERS = ("displacement", "velocity", "force", "load_pressure")
+ANSWERS = ("displacement", "velocity", "acceleration", "force", "load_pressure")
 """Channels of a machine's answer, of which one may be the output without a word; where there is none, a temperature."""
 ZERO_CELSIUS = 273.15
 """K. A temperature that answers a command is counted from 0 °C: only its rise over the surroundings is the model's."""

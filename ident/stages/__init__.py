@@ -1,10 +1,18 @@
 """A place of the chain in, its core out: the equations that a preset picks there, with the parameters they bring."""
 
 from ident.stages.controller import OPENED_BY_COMMAND, PI, PID, PROPORTIONAL, SPEED_INSIDE
-from ident.stages.drive import CASCADE, DIRECT_FORCE, IDEAL_DRIVE
+from ident.stages.drive import CASCADE, DIRECT_FORCE, IDEAL_DRIVE, NOT_DRIVEN
 from ident.stages.flow import FLOW_TO_SPEED, LINEAR_FLOW, SQUARE_ROOT_FLOW
 from ident.stages.level import LOWER_LEVEL, UPPER_LEVEL
-from ident.stages.load import BLOCKED, DRIVEN_MASS, FOLLOWING, MASS_SPRING_DAMPER, MEASURED_LOAD, PRESSED_SPECIMEN
+from ident.stages.load import (
+    BLOCKED,
+    DRIVEN_MASS,
+    FOLLOWING,
+    MASS_ON_BASE,
+    MASS_SPRING_DAMPER,
+    MEASURED_LOAD,
+    PRESSED_SPECIMEN,
+)
 from ident.stages.long_stroke import DRIVEN_VALVE, OVERLAP, TABLE_ON_GUIDES, TIGHT_CYLINDER, TWO_SIDED_FLOW
 from ident.stages.motor import TORQUE
 from ident.stages.pressure import ACTING_PRESSURE, COMPRESSIBLE
@@ -32,9 +40,11 @@ __all__ = [
     "INSTANT_VALVE",
     "LINEAR_FLOW",
     "LOWER_LEVEL",
+    "MASS_ON_BASE",
     "MASS_SPRING_DAMPER",
     "MEASURED_LOAD",
     "MOVED_SPECIMEN",
+    "NOT_DRIVEN",
     "OPENED_BY_COMMAND",
     "OVERLAP",
     "PI",

@@ -6,6 +6,8 @@ from ident.stages.stage import Quantity, stage
 
 DIRECT_FORCE = stage("pressure", (Quantity("D", "N", "force that drives the load"),), ("D = u", "the recorded force"))
 
+NOT_DRIVEN = stage("pressure", (Quantity("D", "N", "force that drives the load"),), ("D = 0", "no drive is there"))
+
 CASCADE = stage(
     "controller",
     (

@@ -19,7 +19,9 @@ MASS_SPRING_DAMPER = stage(
         Quantity("Ff", "N", "largest dry friction force"),
         Quantity("M", "kg", "mass that dry friction has to stop"),
         Quantity("f", "N", "dry friction force; at standstill only what holds the rod"),
-        Quantity("a", "m/s^2", "acceleration of the rod"),
+        Quantity("a", "m/s^2", "acceleration of the rod, against its base"),
+        Quantity("aB", "m/s^2", "acceleration of the base"),
+        Quantity("ay", "m/s^2", "acceleration that is recorded"),
         Quantity("F", "N", "force on the specimen"),
         Quantity("X", "m", "position of what the transducer is fixed to"),
     ),
@@ -31,10 +33,12 @@ MASS_SPRING_DAMPER = stage(
     ("Ff = 0", "no dry friction"),
     ("M = m0 + mL", "rod and specimen stop together"),
     ("f = dry(Ff, v, a, M)", "friction stops a motion, but cannot reverse it"),
-    ("a = (D - R - f - S) / (m0 + mL)", "rod and specimen move together (Qian et al. 2014, eq. 6)"),
+    ("aB = 0", "the base stands still"),
+    ("a = (D - R - f - S) / (m0 + mL) - aB", "rod and specimen move together (Qian et al. 2014, eq. 6)"),
     ("v' = a", "speed is the integral of acceleration"),
     ("x' = v", "position is the integral of speed"),
-    ("F = S + mL * a", "reading of a load cell between rod and specimen"),
+    ("ay = a + aB", "an accelerometer shows the acceleration in space"),
+    ("F = S + mL * ay", "reading of a load cell between rod and specimen"),
     ("X = x", "the transducer's frame is rigid"),
     parameters=(
         Parameter("m0", "m₀", "kg", 1e-2, 1e6, 1.0, "moving mass", ORDER_OF_MAGNITUDE),
@@ -46,7 +50,7 @@ MASS_SPRING_DAMPER = stage(
 MEASURED_LOAD = MASS_SPRING_DAMPER.with_equations(
     ("S = fm", "the load cell measures the force on the specimen"),
     ("M = m0", "the mass behind the load cell is part of its force"),
-    ("a = (D - R - f - S) / m0", "the rod alone, against the measured force"),
+    ("a = (D - R - f - S) / m0 - aB", "the rod alone, against the measured force"),
     ("F = S", "the measured force"),
 )
 """The load with the measured force in place of the specimen's equation."""
@@ -61,6 +65,9 @@ DRIVEN_MASS = replace(
     scales=(Scale("m0", "mL", 1e-2, 1e3), Scale("c0", "m0 * W", 1e-4, 1e3), Scale("k0", "m0 * W**2", 1e-6, 1e2)),
 )
 """A mass with spring and damper of its own, beside the specimen's."""
+
+MASS_ON_BASE = DRIVEN_MASS.with_equations(("aB = u", "the recorded acceleration moves the base"))
+"""A mass with spring and damper on a base that is moved: positions and speeds are those against the base."""
 
 PRESSED_SPECIMEN = replace(
     MASS_SPRING_DAMPER.with_equations(

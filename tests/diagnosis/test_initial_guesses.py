@@ -8,7 +8,9 @@ from typing import Any
 
 import numpy as np
 import pytest
+from scipy.signal import lfilter
 
+from ident.diagnosis import initial_guesses as guesses
 from ident.diagnosis.candidate_models import CandidateModels
 from ident.diagnosis.criteria import CRITERIA
 from ident.diagnosis.free_shapes import trial_from_everywhere
@@ -88,9 +90,12 @@ def test_a_part_behind_a_spring_begins_below_the_resonance_of_the_record():
     run = Run("run", "", rate, {"command": u, "velocity": y}, output="velocity", hold="zoh")
     name = "elastic_load__frequency"
     space: Any = SimpleNamespace(names=(name,), bounds=lambda _: {name: (1.0, 35.0)})
-    found = initial_guesses(SimpleNamespace(fitness=SimpleNamespace(runs=(run,))), ELASTIC_LOAD, space, {})
+    fitness = SimpleNamespace(runs=(run,), band=BAND, outputs=lambda _point: {"run": np.zeros_like(y)})
+    found = initial_guesses(SimpleNamespace(fitness=fitness, point=None), ELASTIC_LOAD, space, {})
     shares = np.array(CRITERIA.initial_guesses.hanging_shares)
-    assert [one[name] for one in found] == pytest.approx(np.minimum(omega * np.sqrt(1 - shares), 35.0), rel=0.02)
+    below = [one[name] for one in found[: len(shares)]]
+    assert below == pytest.approx(np.minimum(omega * np.sqrt(1 - shares), 35.0), rel=0.02)
+    assert len(found) == len(shares) + 1  # and one where the residual is large beside it
 
 
 def test_an_edge_is_looked_for_at_the_top_of_the_model_where_its_zero_is_not_that_of_the_gauge():
@@ -102,3 +107,22 @@ def test_an_edge_is_looked_for_at_the_top_of_the_model_where_its_zero_is_not_tha
     assert strength_in_model(base, models.effects["overflow"]) == pytest.approx(1.0 / top)
     (prediction,) = predict(models, base, ["overflow"])
     assert trial_from_everywhere(models, base, prediction).local.error < 0.02
+
+
+@pytest.mark.parametrize("other", [6.0, 25.0])
+def test_what_swings_beside_the_machine_is_seen_in_the_residual(other, monkeypatch):
+    """Below its resonance or above, with a damping ratio of 0.03, though the residual at the resonance is larger."""
+    known, rate = 12.0, 100.0
+    monkeypatch.setattr(guesses, "resonance", lambda _runs: known)
+    rng, left = np.random.default_rng(3), np.zeros(4000)
+    for frequency, size in ((known, 2.0), (other, 1.0)):
+        pole = np.exp((-0.03 + 1j) * frequency / rate)
+        swing = lfilter([1.0], [1.0, -2.0 * pole.real, abs(pole) ** 2], rng.standard_normal(len(left)))
+        left += size * swing / swing.std()
+    x = 10.0 * rng.standard_normal(len(left))
+    run = Run("run", "", rate, {"command": x, "displacement": x + left})
+    fitness = SimpleNamespace(runs=(run,), band=BAND, outputs=lambda _point: {"run": x})
+    found: Any = SimpleNamespace(fitness=fitness, point=None)
+    assert guesses._beside_resonance(found) == pytest.approx([other], rel=0.1)
+    monkeypatch.setattr(guesses, "resonance", lambda _runs: None)
+    assert guesses._beside_resonance(found) == []

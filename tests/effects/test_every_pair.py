@@ -36,7 +36,7 @@ from tests.simulation.plain_kernel import plain_kernels
 
 MACHINES = tuple(drawn(np.random.default_rng([50, seed])) for seed in range(10))
 MODELS = (*PRESETS, *MACHINES)
-CHANNELS = ("command", "displacement", "velocity", "force", "load_pressure", "spool", "drive_force",
+CHANNELS = ("command", "displacement", "velocity", "acceleration", "force", "load_pressure", "spool", "drive_force",
             "vertical_load", "current")  # fmt: skip
 KNOWN = {"command": "m", "spool": "V", "drive_force": "N", "vertical_load": "N", "current": "A", **UNITS}
 SHORT, LONG = 16, 2000  # samples: of one simulation, of a fit
@@ -55,7 +55,8 @@ def records(model: str, length: int) -> Matrix:
         return replace(matrix, runs=tuple(run for run in matrix.runs if run.id == "sine-50-5"))
     rng, output = np.random.default_rng(50), next(iter(preset(model).chain.outputs))
     channels = {name: 1e-3 * smooth(rng, length, 20.0) for name in CHANNELS}
-    run = Run("one", "", RATE, channels, KNOWN, gain=5.0, specimen=Specimen(1.0, 1e4, 10.0), kind="blwn", output=output)
+    units = KNOWN | {"command": (preset(model).data.command_units or ("m",))[0]}
+    run = Run("one", "", RATE, channels, units, gain=5.0, specimen=Specimen(1.0, 1e4, 10.0), kind="blwn", output=output)
     return Matrix(Actuator("ANY", piston_area=5e-4, supply_pressure=2e7), (run,))
 
 

@@ -44,7 +44,7 @@ def published(model: Preset) -> dict[str, str]:
 
 def units(model: Preset) -> dict[str, dimensions.Dimension]:
     """Everything that an equation may read there."""
-    command = COMMAND[model.data.driven_by]
+    command = "m/s^2" if "m/s^2" in model.data.command_units else COMMAND[model.data.driven_by]
     inputs = {INPUT: command, INPUT_RATE: "1/s" if command == "1" else f"{command}/s", FORCE: "N", TIME: "s"}
     known = {**inputs, **{q.name: q.unit for q in CONDITIONS.values()}, **published(model)}
     return {

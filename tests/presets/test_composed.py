@@ -24,7 +24,7 @@ from ident.run import Run
 from ident.workflows import diagnose, identify
 
 RATE = 200.0
-UNITS = {"displacement": "m", "velocity": "m/s", "force": "N", "load_pressure": "Pa"}
+UNITS = {"displacement": "m", "velocity": "m/s", "acceleration": "m/s^2", "force": "N", "load_pressure": "Pa"}
 
 
 def force_loop(seed: int, seconds: float = 10.0, overlap: float = 0.0) -> Matrix:
