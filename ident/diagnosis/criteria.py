@@ -105,12 +105,14 @@ class Noise:
 class StructureSelection:
     """Which machine fits where none is named, and over which windows it is judged."""
 
-    improbable: float = 0.01
-    """[probability] Of the first machine with its best effect, below which the most probable one comes before it. Why:
-    a machine with more parameters may have made up for a part of a missing effect; the usual order changes only where
-    it is that sure.
-    Test: test_criteria_of_comparison.py::
-    test_the_most_probable_machine_comes_first_where_the_usual_one_is_improbable"""
+    unusual: float = 0.01
+    """[prior, beside 1 of a usual machine] Of one that moves otherwise as a rule, as a motor along a way. Why: with an
+    effect it often explains as much by fewer parameters; one in a hundred drives of such a record is taken to be one.
+    Test: test_criteria_of_comparison.py::test_an_unusual_machine_has_to_be_a_hundred_times_as_likely"""
+    no_parts: float = 0.5
+    """[prior, beside 1 of a machine] Of a lag, which has no parts. Why: a machine may answer by a lag and nothing else,
+    and friction and springs act on the machine alone; where both are as likely the machine is taken.
+    Test: test_structure_selection.py::test_a_lag_is_taken_that_is_more_probable_than_a_machine"""
     tried_further: float = 1.3
     """[ratio of held-out errors] To the best model without an effect, up to which a model is tried with more effects
     where none explains the records. Why: a machine without what it lacks leaves about as much as what imitates it.
@@ -195,7 +197,7 @@ class InitialGuesses:
     """[periods of the resonance of the records] Of a stretch whose spectrum is averaged with those of others. Why: a
     mode with a damping ratio of 0.03 is as wide as such a stretch resolves.
     Test: test_initial_guesses.py::test_what_swings_beside_the_machine_is_seen_in_the_residual"""
-    beside: float = 1.33
+    apart: float = 1.33
     """[times the resonance of the records, or of its inverse] From where on a peak of the residual is another one. Why:
     the residual is large at the resonance itself, whose damping is off; starts within a third reach one another.
     Test: test_initial_guesses.py::test_what_swings_beside_the_machine_is_seen_in_the_residual"""

@@ -92,7 +92,7 @@ def _guesses_of(base: FittedModel, parameter: Parameter, space: Space, known: Ma
         return tuple(np.arange(angles) * np.pi / (angles / 2))
     if parameter.start is Starts.SPECTRAL_LINES:
         return spectral_lines(base, *space.bounds(known)[parameter.in_equations])
-    if parameter.start is Starts.RESONANCE and (found := [*_below_resonance(base), *_beside_resonance(base)]):
+    if parameter.start is Starts.RESONANCE and (found := [*_below_resonance(base), *_away_from_resonance(base)]):
         return tuple(map(float, np.clip(found, *space.bounds(known)[parameter.in_equations])))
     axis = space.names.index(parameter.in_equations)
     criteria = CRITERIA.initial_guesses
@@ -112,23 +112,23 @@ def _below_resonance(base: FittedModel) -> list[float]:
     return [float(found * np.sqrt(1.0 - share)) for share in shares] if found is not None else []
 
 
-def _beside_resonance(base: FittedModel) -> list[float]:
+def _away_from_resonance(base: FittedModel) -> list[float]:
     """The frequency (1/s) at which the residual is largest away from the resonance of the records; none without one.
 
     A mass that swings beside the machine shows there, whether its frequency lies below that resonance or above.
     """
-    known, criteria = resonance(base.fitness.runs), CRITERIA.initial_guesses
-    if known is None:
+    ringing, criteria = resonance(base.fitness.runs), CRITERIA.initial_guesses
+    if ringing is None:
         return []
     outputs = base.fitness.outputs(base.point)
-    periods = criteria.periods * 2.0 * np.pi / known  # s
-    grid = np.arange(1.0, criteria.periods * base.fitness.band / known) * known / criteria.periods
+    periods = criteria.periods * 2.0 * np.pi / ringing  # s
+    grid = np.arange(1.0, criteria.periods * base.fitness.band / ringing) * ringing / criteria.periods
     total = np.zeros(len(grid))
     for run in base.fitness.runs:
         length = min(run.length, round(periods * run.sample_rate))
         frequencies, power = welch(run.measured - outputs[run.id], run.sample_rate, nperseg=length)
         total += np.interp(grid, 2.0 * np.pi * frequencies, power / np.var(run.measured))
-    away = np.abs(np.log(grid / known)) > np.log(criteria.beside)
+    away = np.abs(np.log(grid / ringing)) > np.log(criteria.apart)
     return [float(grid[away][np.argmax(total[away])])] if away.any() else []
 
 

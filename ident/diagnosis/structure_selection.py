@@ -1,13 +1,13 @@
 """The choice of a machine where no model is named: the models that the channels allow, compared on held-out data.
 
-Where the residual of the first model exceeds the noise, an effect is missing, and a machine with more parameters may
-have made up for a part of it. So the models are compared with one effect of the catalogue each. Another model with no
-more parameters then comes before the first where the first is improbable among them; and so does a model with fewer
-parameters and as small an error. A model with more parameters comes before it only where that is as small an error
-without an effect, and with one gains half of all that can be gained in addition to the first with its effect: a
-missing effect may hide the machine. A first model with a parameter at its bound is the wrong machine: a model with a
-smaller error that is as probable comes before it. A first model that no effect improves may have made up for one: a
-model that has fewer parameters together with its effect, and is more probable, comes before it.
+Where the residual of the simplest good model exceeds the noise, an effect is missing, and a machine with more
+parameters may have made up for a part of it. So the models are compared with one effect of the catalogue each, and the
+most probable one is taken: by its likelihood on held-out data, less what each parameter costs, and by the prior of its
+kind. A machine that moves otherwise as a rule is rare, and a lag, which has no parts, is less probable than a machine.
+A model with more parameters is among them only where it has as small an error without an effect, and with one gains
+half of all that can be gained in addition to the first with its effect: a missing effect may hide the machine. A first
+model with a parameter at its bound is the wrong machine: a model with a smaller error that is about as probable comes
+before it.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from ident.diagnosis.criteria import CRITERIA
 from ident.diagnosis.evidence.comparison import common_disturbance, gain
 from ident.diagnosis.evidence.probability import structure_probabilities
 from ident.diagnosis.fitted_model import FittedModel
-from ident.diagnosis.model_comparison import better, evidence, finite_everywhere
+from ident.diagnosis.model_comparison import evidence, finite_everywhere
 from ident.diagnosis.operating_point import at_operating_point
 from ident.diagnosis.ranking import rank
 from ident.effects import CATALOGUE
@@ -39,6 +39,7 @@ from ident.preprocessing import off_steps, screen
 from ident.preprocessing.pipeline import ALL_ON
 from ident.presets import Preset, preset
 from ident.presets.suited import (
+    has_no_parts,
     in_question,
     is_assumed_loop,
     moved_by_command,
@@ -75,9 +76,8 @@ def compared_structures(
 ) -> tuple[Structure, ...]:  # fmt: skip
     """The models in question, the chosen one first: the simplest whose held-out error is not worse.
 
-    For a machine that moves along a way, the simplest that is not a motor is chosen, where one is no worse. A model
-    with no more parameters comes before it where it is improbable, each with one effect; or a model with fewer
-    parameters and as small an error.
+    Where its residual exceeds the noise, each has one effect, and the most probable one is first. A machine that moves
+    otherwise as a rule, as a motor along a way, is rare.
 
     Raises Unusable where the channels allow none.
     """
@@ -117,9 +117,10 @@ def _compared(
     first = min(good, key=lambda one: (one.machine in strange, one.parameters))
     with_effects = _with_an_effect_each(first, tried, report)
     others = list(with_effects.values())
-    best, why = _preferred(with_effects[first.machine], others, strange, _probabilities(others))
+    priors = {model.name: _prior(model, matrix) for model in (*models, *springs)}
+    best, why = _preferred(with_effects[first.machine], others, _probabilities(others, priors))
     compared = [best, *(with_effects.get(one.machine, one) for one in tried if one.machine != best.machine)]
-    probable = _probabilities(compared)
+    probable = _probabilities(compared, priors)
     said = (
         model.structure(over, _rather(model, best, probable) if number else why, probable.get(model.machine))
         for number, model in enumerate(compared)
@@ -147,7 +148,14 @@ def _rather(model: _JudgedStructure, first: _JudgedStructure, probable: Mapping[
     return message("structure.rather", machine=model.machine) if more else None
 
 
-def _probabilities(compared: Sequence[_JudgedStructure]) -> dict[str, float]:
+def _prior(model: Preset, matrix: Matrix) -> float:
+    """How probable a model is before the data, beside a machine that is usual where such things are recorded."""
+    if has_no_parts(model):
+        return CRITERIA.structure.no_parts
+    return CRITERIA.structure.unusual if unusual(model, matrix.runs) else 1.0
+
+
+def _probabilities(compared: Sequence[_JudgedStructure], priors: Mapping[str, float]) -> dict[str, float]:
     """The probability of each compared model, by its machine; each model with its effect if it has one."""
     sound = [model for model in compared if finite_everywhere(model.best)]
     if len(sound) < 2:
@@ -157,7 +165,9 @@ def _probabilities(compared: Sequence[_JudgedStructure]) -> dict[str, float]:
     disturbance = common_disturbance(residuals)
     gains = [gain(residuals[0], of, disturbance) for of in residuals]
     counts = [model.parameters + len(model.best.effects) for model in sound]
-    return dict(zip((model.machine for model in sound), structure_probabilities(gains, counts), strict=True))
+    machines = [model.machine for model in sound]
+    found = structure_probabilities(gains, counts, [priors[machine] for machine in machines])
+    return dict(zip(machines, found, strict=True))
 
 
 def _with_an_effect_each(
@@ -196,50 +206,20 @@ def _gains_half(first: _JudgedStructure, larger: _JudgedStructure) -> bool:
 
 
 def _preferred(
-    first: _JudgedStructure, others: Collection[_JudgedStructure], strange: Collection[str],
-    probable: Mapping[str, float],
-) -> tuple[_JudgedStructure, Message]:  # fmt: skip
-    """The chosen one of models with an effect each, and the reason: the first, or another that explains as much or
-    more.
+    first: _JudgedStructure, others: Collection[_JudgedStructure], probable: Mapping[str, float]
+) -> tuple[_JudgedStructure, Message]:
+    """The chosen one of models with an effect each, and the reason: the most probable one, of equals the first.
 
-    Where the first is improbable among them, the simplest of the most probable models comes before it. Where no effect
-    improves the first, a more probable model with fewer parameters, those of its effect counted, does. Where a
-    parameter of the first is at its bound, a model that is as probable, with a smaller error and no parameter at a
-    bound, comes before it. So does a simpler model whose error is not larger beyond chance, unless that model alone is
-    unusual; of models that are as simple, one that is about as probable as any of them. It is no simpler where an
-    effect of the first takes the place of what it lacks.
+    Where a parameter of the first is at its bound, a model that is about as probable as any, with a smaller error and
+    no parameter at a bound, comes before it.
     """
-
-    def as_usual(model: _JudgedStructure) -> bool:
-        return model.machine not in strange or first.machine in strange
-
-    if probable.get(first.machine, 1.0) < CRITERIA.structure.improbable:
-        return min(_as_probable(others, probable), key=_parameters), message("structure.more_probable")
-    as_likely = [model for model in others if probable.get(model.machine, 0.0) >= probable.get(first.machine, 0.0)]
-    if first.with_effect is None and probable:
-        fewer = [
-            model
-            for model in _as_probable(as_likely, probable)
-            if model.with_effect is not None and model.count < first.parameters and as_usual(model)
-        ]
-        if fewer:
-            return fewer[0], message("structure.fewer")
-    within = [model for model in as_likely if model.error < first.error and not model.at_bound]
+    within = [one for one in _as_probable(others, probable) if one.error < first.error and not one.at_bound]
     if first.at_bound and within:
         return _simplest(within), message("structure.within")
-    simpler = [
-        one
-        for one in others
-        if one.parameters < first.irreplaceable
-        and one.error <= CRITERIA.equality.practically_equal * first.error
-        and as_usual(one)
-        and not better(one.best, first.best)
-    ]
-    if first.with_effect is not None and simpler:
-        fewest = min(map(_parameters, simpler))
-        simplest = [model for model in simpler if model.parameters == fewest]
-        return _as_probable(simplest, probable)[0], message("structure.simpler")
-    return first, message("structure.simplest")
+    best = max(others, key=lambda one: (probable.get(one.machine, 0.0), one.machine == first.machine))
+    if not probable or best.machine == first.machine:
+        return first, message("structure.simplest")
+    return best, message("structure.more_probable")
 
 
 def _as_probable(models: Collection[_JudgedStructure], probable: Mapping[str, float]) -> list[_JudgedStructure]:
@@ -406,17 +386,6 @@ class _JudgedStructure:
     def above_noise(self) -> bool:
         """Whether a simulation confirms it and its residual is above the noise."""
         return self.best.finite and self.models.residual_above_noise(self.best)
-
-    @property
-    def count(self) -> int:
-        """The number of its parameters, with those of its effect that a fit finds."""
-        return self.parameters + len(self.best.space.names) - len(self.refit.space.names)
-
-    @property
-    def irreplaceable(self) -> int:
-        """The number of its parameters, less those whose place its effect takes: an arm's weight that of a spring."""
-        taken = {name for effect in self.best.effects for name in self.models.effects[effect].takes_over}
-        return self.parameters - len(taken & {p.in_equations for p in self.models.preset.parameters})
 
     @property
     def at_bound(self) -> bool:

@@ -164,6 +164,12 @@ def unusual(model: Preset, runs: Sequence[Described]) -> bool:
     return bool(units <= {"m"} and model.data.turns and not tilted)
 
 
+def has_no_parts(model: Preset) -> bool:
+    """Whether a model is no machine, but says how one follows its command: that makes nothing flow or push."""
+    stages = model.chain.stages
+    return OPENED_BY_COMMAND in stages and not any(stage.place in ("flow", "pressure") for stage in stages)
+
+
 def _allows(model: Preset, run: Described) -> bool:
     if model.kind == "bench" or run.kind in BENCH:
         return model.kind == "bench" and run.kind in BENCH
@@ -209,8 +215,7 @@ def _rank(model: Preset, runs: Sequence[Described], oil: bool) -> int:
         looped = looped or all(_comparable(run, compared) for run in runs)
         usual = _LOOP if electric(runs, oil) or not model.data.turns else _OTHER_LOOP
         return usual if looped else _UNLIKELY - 1
-    drives = any(stage.place in ("flow", "pressure") for stage in model.chain.stages)
-    return _OPEN if drives and OPENED_BY_COMMAND in model.chain.stages else _OPEN + 1  # no machine, but how one follows
+    return _OPEN if OPENED_BY_COMMAND in model.chain.stages and not has_no_parts(model) else _OPEN + 1
 
 
 def _by_force(model: Preset, run: Described) -> bool:

@@ -422,9 +422,9 @@ def test_probabilities_are_those_of_the_models_and_sum_to_one() -> None:
 
 def test_of_two_structures_that_explain_as_much_the_one_with_fewer_parameters_is_more_probable() -> None:
     """Each parameter is charged as an effect is; what gains more than that is more probable."""
-    assert structure_probabilities([10.0, 10.0], [3, 5])[0] > 0.8
-    assert structure_probabilities([0.0, 10.0], [3, 5])[1] > 0.65
-    assert sum(structure_probabilities([0.0, 4.0, 5.0], [1, 2, 3])) == pytest.approx(1.0)
+    assert structure_probabilities([10.0, 10.0], [3, 5], [1.0, 1.0])[0] > 0.8
+    assert structure_probabilities([0.0, 10.0], [3, 5], [1.0, 1.0])[1] > 0.65
+    assert sum(structure_probabilities([0.0, 4.0, 5.0], [1, 2, 3], [1.0, 0.5, 1.0])) == pytest.approx(1.0)
 
 
 def test_several_effects_that_leave_only_noise_do_not_lose_to_something_unlisted() -> None:

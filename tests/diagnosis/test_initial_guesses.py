@@ -123,6 +123,6 @@ def test_what_swings_beside_the_machine_is_seen_in_the_residual(other, monkeypat
     run = Run("run", "", rate, {"command": x, "displacement": x + left})
     fitness = SimpleNamespace(runs=(run,), band=BAND, outputs=lambda _point: {"run": x})
     found: Any = SimpleNamespace(fitness=fitness, point=None)
-    assert guesses._beside_resonance(found) == pytest.approx([other], rel=0.1)
+    assert guesses._away_from_resonance(found) == pytest.approx([other], rel=0.1)
     monkeypatch.setattr(guesses, "resonance", lambda _runs: None)
-    assert guesses._beside_resonance(found) == []
+    assert guesses._away_from_resonance(found) == []

@@ -1,4 +1,4 @@
-"""Where no model is named: the simplest of those that the channels allow whose held-out error is not worse."""
+"""Where no model is named: the simplest good one at the noise, else the most probable one, each with an effect."""
 
 from __future__ import annotations
 
@@ -14,8 +14,17 @@ from scipy.signal import cont2discrete, lfilter
 from ident.diagnosis import structure_selection
 from ident.diagnosis.candidate_models import CandidateModels
 from ident.diagnosis.evidence.comparison import Residuals
+from ident.diagnosis.evidence.criteria import EVIDENCE_CRITERIA
 from ident.diagnosis.evidence.energy_bands import EnergyBands, Record
-from ident.diagnosis.structure_selection import _judged, _preferred, choose_structure, compared_structures
+from ident.diagnosis.evidence.probability import structure_probabilities
+from ident.diagnosis.structure_selection import (
+    _judged,
+    _preferred,
+    _prior,
+    _probabilities,
+    choose_structure,
+    compared_structures,
+)
 from ident.fit.result import FitResult, Structure, TransducerOffset
 from ident.fit.settings import Settings
 from ident.matrix import Actuator, Matrix
@@ -296,77 +305,63 @@ def test_one_that_asks_beyond_its_bound_gives_way_to_one_that_does_not(first, ot
     def model(machine: str, error: float, at_bound: bool) -> SimpleNamespace:
         best = SimpleNamespace()
         return SimpleNamespace(
-            machine=machine, parameters=2, irreplaceable=2, error=error, best=best, with_effect=best, at_bound=at_bound
+            machine=machine, parameters=2, error=error, best=best, with_effect=best, at_bound=at_bound
         )
 
     lag, motor = model("lag", 0.324, first), model("motor", 0.306, other)
-    assert _preferred(lag, [lag, motor], set(), {})[0].machine == taken
-    assert _preferred(lag, [lag, motor], set(), {"lag": 0.7, "motor": 0.3})[0].machine == "lag"
+    assert _preferred(lag, [lag, motor], {})[0].machine == taken
+    assert _preferred(lag, [lag, motor], {"lag": 0.7, "motor": 0.3})[0].machine == "lag"
 
 
-@pytest.mark.parametrize(("left", "taken"), [(0.006, "open_valve"), (0.0, "first_order")])
-def test_one_that_leaves_as_little_of_windows_has_to_be_as_likely(left, taken):
-    """A lag follows a cylinder over windows, each begun where it was measured: one that leaves more gives way to it."""
+@pytest.mark.parametrize(("left", "taken"), [(0.03, "open_valve"), (0.0, "motor")])
+def test_one_that_leaves_as_little_has_to_be_as_likely(left, taken):
+    """A motor follows a cylinder nearly: where it leaves a little more of long records it is far less probable."""
     rng = np.random.default_rng(5)
-    noise, shape = 0.03 * rng.standard_normal(3000), np.sin(np.arange(3000) / 9.0)
+    noise, shape = 0.03 * rng.standard_normal(3000), rng.standard_normal(3000)
     bands = EnergyBands((Record(1.0, floor=0.0009),), (3000,))
 
     def model(machine: str, parameters: int, more: float) -> SimpleNamespace:
         residuals = Residuals((noise + more * shape,), bands)
-        no_windows = SimpleNamespace(horizon=None)
-        best = SimpleNamespace(held_out=SimpleNamespace(error=0.03), residuals_held_out=residuals, fitness=no_windows)
-        return SimpleNamespace(
-            machine=machine, parameters=parameters, irreplaceable=parameters, error=0.03, best=best, with_effect=best,
-            at_bound=False,
-        )  # fmt: skip
+        best = SimpleNamespace(
+            finite=True, held_out=SimpleNamespace(error=0.03), residuals_held_out=residuals, effects=()
+        )
+        return SimpleNamespace(machine=machine, parameters=parameters, error=0.03, best=best, at_bound=False)
 
-    first, lag = model("open_valve", 6, 0.0), model("first_order", 2, left)
-    assert _preferred(first, [first, lag], set(), {})[0].machine == taken
-    first.irreplaceable = 2  # its effect takes the place of four of them
-    assert _preferred(first, [first, lag], set(), {})[0].machine == "open_valve"
+    models = first, _ = model("open_valve", 6, 0.0), model("motor", 2, left)
+    probable = _probabilities(models, {"open_valve": 1.0, "motor": 1.0})
+    assert _preferred(first, models, probable)[0].machine == taken
 
 
 @pytest.mark.parametrize(
     ("probabilities", "taken"),
-    [((0.005, 0.2, 0.79), "motor"), ((0.02, 0.2, 0.78), "open_valve"), ((0.001, 0.49, 0.5), "first_order")],
+    [((0.3, 0.3, 0.4), "motor"), ((0.4, 0.3, 0.3), "open_valve"), ((0.2, 0.4, 0.4), "first_order")],
 )
-def test_an_improbable_machine_gives_way_to_the_most_probable(probabilities, taken):
-    """Of two that are nearly as probable the simpler one, and of as simple ones the first, is taken."""
-
-    def model(machine: str) -> SimpleNamespace:
-        return SimpleNamespace(
-            machine=machine, parameters=2, irreplaceable=2, error=0.1, best=None, with_effect=None, at_bound=False
-        )
-
-    first, lag, motor = (model(name) for name in ("open_valve", "first_order", "motor"))
+def test_the_most_probable_machine_is_taken(probabilities, taken):
+    """Of equals the first."""
+    models = first, *_ = [
+        SimpleNamespace(machine=name, error=0.1, at_bound=False) for name in ("open_valve", "first_order", "motor")
+    ]
     probable = dict(zip(("open_valve", "first_order", "motor"), probabilities, strict=True))
-    assert _preferred(first, [first, lag, motor], set(), probable)[0].machine == taken
+    assert _preferred(first, models, probable)[0].machine == taken
+    assert _preferred(first, models, {})[0] is first
+    assert _preferred(first, models, dict.fromkeys(probable, 1.0 / 3))[0] is first
 
 
-@pytest.mark.parametrize(
-    ("count", "probability", "helped", "taken"),
-    [
-        (3, 0.6, False, "first_order"),
-        (5, 0.6, False, "open_valve"),
-        (3, 0.4, False, "open_valve"),
-        (3, 0.6, True, "open_valve"),
-    ],
-)
-def test_a_model_that_no_effect_improves_gives_way_to_a_smaller_one_with_its_effect(count, probability, helped, taken):
-    """What a valve and a cylinder explain by five parameters, a lag behind a delay explains by three."""
+@pytest.mark.parametrize(("ratio", "taken"), [(1.9, False), (2.1, True)])
+def test_a_lag_is_taken_that_is_more_probable_than_a_machine(ratio, taken):
+    """It has no parts on which friction and springs could act: it has to be twice as likely."""
+    gains = [0.0, float(np.log(ratio)) / EVIDENCE_CRITERIA.learning_rate]
+    priors = [_prior(preset(name), of_speeds()) for name in ("motor", "first_order")]
+    machine, lag = structure_probabilities(gains, [2, 2], priors)
+    assert (lag > machine) is taken
 
-    def model(machine: str, parameters: int, effect: object) -> SimpleNamespace:
-        return SimpleNamespace(
-            machine=machine, parameters=parameters, irreplaceable=1, error=0.1, best=None, with_effect=effect,
-            at_bound=False, count=count,
-        )  # fmt: skip
 
-    first, lag = model("open_valve", 5, "effect" if helped else None), model("first_order", 2, "effect")
-    probable = {"open_valve": 1.0 - probability, "first_order": probability}
-    assert _preferred(first, [first, lag], set(), probable)[0].machine == taken
-    assert _preferred(first, [first, lag], {"first_order"}, probable)[0].machine == "open_valve"
-    among = {"open_valve": 0.05, "first_order": 0.25, "motor": 0.7}  # a third that is far more probable
-    assert _preferred(first, [first, lag, model("motor", 3, None)], set(), among)[0].machine == "open_valve"
+def of_speeds() -> Matrix:
+    """A record of a motor's speed."""
+    channels = {"command": np.ones(9), "velocity": np.arange(9.0)}
+    return Matrix(
+        Actuator("A"), (Run("r", "", 1.0, channels, {"command": "V", "velocity": "rad/s"}, output="velocity"),)
+    )
 
 
 @pytest.mark.parametrize(("probability", "said"), [(0.28, True), (0.72, False)])
@@ -377,27 +372,6 @@ def test_a_machine_that_is_more_probable_than_the_first_is_said_with_how_to_name
     rather = structure_selection._rather(motor, first, probable)  # type: ignore[arg-type]
     assert ("--model motor" in str(rather)) is said
     assert structure_selection._rather(motor, first, {}) is None  # type: ignore[arg-type]
-
-
-@pytest.mark.parametrize(("probabilities", "taken"), [((0.3, 0.3, 0.4), "first_order"), ((0.3, 0.1, 0.6), "motor")])
-def test_of_models_that_are_as_simple_a_much_more_probable_one_is_taken(probabilities, taken):
-    """A motor and a lag leave as little as a mass on a spring, each with an effect: the more probable one is no worse
-    for its place in the list."""
-    noise = 0.03 * np.random.default_rng(6).standard_normal(3000)
-    residuals = Residuals((noise,), EnergyBands((Record(1.0, floor=0.0009),), (3000,)))
-    best = SimpleNamespace(
-        held_out=SimpleNamespace(error=0.03), residuals_held_out=residuals, fitness=SimpleNamespace(horizon=None)
-    )
-
-    def model(machine: str, parameters: int) -> SimpleNamespace:
-        return SimpleNamespace(
-            machine=machine, parameters=parameters, irreplaceable=parameters, error=0.03, best=best, with_effect=best,
-            at_bound=False,
-        )  # fmt: skip
-
-    models = first, *_ = model("drive", 3), model("first_order", 2), model("motor", 2)
-    probable = dict(zip(("drive", "first_order", "motor"), probabilities, strict=True))
-    assert _preferred(first, models, set(), probable)[0].machine == taken
 
 
 @pytest.mark.parametrize(("alone", "left", "named"), [(0.61, 0.005, True), (0.61, 0.2, False), (0.7, 0.005, False)])
