@@ -115,7 +115,7 @@ def _below_resonance(base: FittedModel) -> list[float]:
 def _away_from_resonance(base: FittedModel) -> list[float]:
     """The frequency (1/s) at which the residual is largest away from the resonance of the records; none without one.
 
-    A mass that swings beside the machine shows there, whether its frequency lies below that resonance or above.
+    A second mass that swings shows there, whether its frequency lies below that resonance or above.
     """
     ringing, criteria = resonance(base.fitness.runs), CRITERIA.initial_guesses
     if ringing is None:

@@ -149,7 +149,7 @@ def _rather(model: _JudgedStructure, first: _JudgedStructure, probable: Mapping[
 
 
 def _prior(model: Preset, matrix: Matrix) -> float:
-    """How probable a model is before the data, beside a machine that is usual where such things are recorded."""
+    """How probable a model is before the data, as a ratio to a machine that is usual for such records."""
     if has_no_parts(model):
         return CRITERIA.structure.no_parts
     return CRITERIA.structure.unusual if unusual(model, matrix.runs) else 1.0
