@@ -163,7 +163,7 @@ class Draft:
         if not drives & known.channels.keys() and self._said(file, "command") != NONE:
             found.append(self._missing_drive(file, known))
         if not wanted or wanted not in known.channels:
-            what = wanted or "displacement, velocity, force, load pressure (load_pressure) or temperature"
+            what = wanted or "displacement, velocity, acceleration, force, load pressure (load_pressure) or temperature"
             found.append(Missing(f"channel {wanted or OUTPUTS[0]}", f"which column of {_listed(file)} is the {what}"))
         for channel, answer in known.channels.items():
             if not answer.unit:

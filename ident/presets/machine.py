@@ -147,6 +147,8 @@ def _given(of: Description) -> dict[str, str]:
     given = {"load_pressure": "P"} if of.hydraulic else {}
     if of["load"] != "none" or of["flow"] == "to_speed":
         given |= {"displacement": "X", "velocity": "vy"}
+    if of["load"] != "none":
+        given |= {"acceleration": "ay"}
     if of["flow"] != "to_speed" and of["load"] not in ("measured_force", *_COUPLED):
         given |= {"force": "F"}
     return given
@@ -199,6 +201,7 @@ def _rescaled(of: Description) -> list[Scale]:
         gain, text = "Z0", {
             ("displacement", True): "A**2 * W / Kp", ("velocity", True): "A**2 / Kp", ("force", True): "Ka * W / Kp",
             ("displacement", False): "A**2 * X * W / U", ("velocity", False): "A**2 * X / U",
+            ("acceleration", False): "A**2 * X / (W * U)",
             ("force", False): "Ka * X * W / U", ("load_pressure", False): "A * Ka * X * W / U",
         }[shown, of.closed]  # fmt: skip
     elif of["flow"] == "to_speed":
@@ -210,6 +213,7 @@ def _rescaled(of: Description) -> list[Scale]:
         gain, text = "Kt", {
             ("displacement", True): "m0 * W**2 / Kp", ("velocity", True): "m0 * W / Kp", ("force", True): "1 / Kp",
             ("displacement", False): "c0 * X * W / U", ("velocity", False): "c0 * X / U", ("force", False): "X / U",
+            ("acceleration", False): "m0 * X / U",
         }[shown, of.closed]  # fmt: skip
     # In open loop a turned sign cannot be told from a negative gain.
     found += [Scale(gain, text, 1e-3, 1e3) if of.closed else Scale(gain, text, -3e1, 3e1, logarithmic=False)]
@@ -226,7 +230,7 @@ def _force_known(of: Description) -> bool:
 
 
 def _motion_known(of: Description) -> bool:
-    return bool({"displacement", "velocity"} & _known(of))
+    return bool({"displacement", "velocity", "acceleration"} & _known(of))
 
 
 def _force_scale(of: Description) -> str:
