@@ -201,6 +201,10 @@ class InitialGuesses:
     """[times the resonance of the records, or of its inverse] From where on a peak of the residual is another one. Why:
     the residual is large at the resonance itself, whose damping is off; starts within a third reach one another.
     Test: test_initial_guesses.py::test_what_swings_beside_the_machine_is_seen_in_the_residual"""
+    upper_share: float = 0.4
+    """[of the moving mass] That may hang behind a spring whose mode lies above the resonance of the records, where the
+    search for its frequency begins. Why: the frequencies of a tenth to seven tenths lie within two fifths of it.
+    Test: test_initial_guesses.py::test_what_swings_beside_the_machine_is_seen_in_the_residual"""
     spring_shares: tuple[float, ...] = (0.3, 0.6)
     """[of the machine's spring] Share that an effect which is a spring at first has taken over. Why: from either share
     the refit of a Bouc-Wen oscillator reaches its optimum, from none and from all of the spring it does not.

@@ -113,9 +113,10 @@ def _below_resonance(base: FittedModel) -> list[float]:
 
 
 def _away_from_resonance(base: FittedModel) -> list[float]:
-    """The frequency (1/s) at which the residual is largest away from the resonance of the records; none without one.
+    """Frequencies (1/s) of a part of the moving mass that swings away from the resonance of the records; none if not.
 
-    A second mass that swings shows there, whether its frequency lies below that resonance or above.
+    The residual is largest at the other of the two modes, and the frequency with the drive standing lies between them:
+    Ω itself, and of an upper mode Ω that of a part μ, Ω √(1 − μ).
     """
     ringing, criteria = resonance(base.fitness.runs), CRITERIA.initial_guesses
     if ringing is None:
@@ -129,7 +130,10 @@ def _away_from_resonance(base: FittedModel) -> list[float]:
         frequencies, power = welch(run.measured - outputs[run.id], run.sample_rate, nperseg=length)
         total += np.interp(grid, 2.0 * np.pi * frequencies, power / np.var(run.measured))
     away = np.abs(np.log(grid / ringing)) > np.log(criteria.apart)
-    return [float(grid[away][np.argmax(total[away])])] if away.any() else []
+    if not away.any():
+        return []
+    mode = float(grid[away][np.argmax(total[away])])
+    return [mode, *([mode * float(np.sqrt(1.0 - criteria.upper_share))] if mode > ringing else [])]
 
 
 def spectral_lines(base: FittedModel, lower: float, upper: float) -> tuple[float, ...]:

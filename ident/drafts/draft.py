@@ -180,7 +180,8 @@ class Draft:
             what = f"which column of {_listed(file)} is the displacement or velocity that drives"
             return Missing(f"channel {MOTIONS[0]}", what)
         driven = ", or say --output force where the motion drives" if "force" in known.channels else ""
-        what = f"which column of {_listed(file)} is the command, or the force that drives{driven}"
+        moved = ", or the acceleration of the base" if "acceleration" in known.channels else ""
+        what = f"which column of {_listed(file)} is the command, or the force that drives{moved}{driven}"
         return Missing("channel command", what)
 
     def _said(self, file: RawFile, channel: str) -> str | int:

@@ -95,7 +95,7 @@ def test_a_part_behind_a_spring_begins_below_the_resonance_of_the_record():
     shares = np.array(CRITERIA.initial_guesses.hanging_shares)
     below = [one[name] for one in found[: len(shares)]]
     assert below == pytest.approx(np.minimum(omega * np.sqrt(1 - shares), 35.0), rel=0.02)
-    assert len(found) == len(shares) + 1  # and one where the residual is large beside it
+    assert len(shares) < len(found) <= len(shares) + 2  # and where the residual is large beside it
 
 
 def test_an_edge_is_looked_for_at_the_top_of_the_model_where_its_zero_is_not_that_of_the_gauge():
@@ -123,6 +123,7 @@ def test_what_swings_beside_the_machine_is_seen_in_the_residual(other, monkeypat
     run = Run("run", "", rate, {"command": x, "displacement": x + left})
     fitness = SimpleNamespace(runs=(run,), band=BAND, outputs=lambda _point: {"run": x})
     found: Any = SimpleNamespace(fitness=fitness, point=None)
-    assert guesses._away_from_resonance(found) == pytest.approx([other], rel=0.1)
+    begun = [other] if other < known else [other, other * np.sqrt(1 - 0.4)]  # the drive moving, and standing
+    assert guesses._away_from_resonance(found) == pytest.approx(begun, rel=0.08)
     monkeypatch.setattr(guesses, "resonance", lambda _runs: None)
     assert guesses._away_from_resonance(found) == []

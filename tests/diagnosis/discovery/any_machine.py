@@ -30,8 +30,8 @@ from ident.run import Run, Specimen
 Array = NDArray[np.float64]
 RATE, SAMPLES = 200.0, 100
 UNITS = {
-    "command": "m", "displacement": "m", "velocity": "m/s", "acceleration": "m/s^2", "force": "N", "load_pressure": "Pa", "spool": "V",
-    "supply_pressure": "Pa", "drive_force": "N",
+    "command": "m", "displacement": "m", "velocity": "m/s", "acceleration": "m/s^2", "force": "N",
+    "load_pressure": "Pa", "spool": "V", "supply_pressure": "Pa", "drive_force": "N",
 }  # fmt: skip
 KINDS = ("finite", "saturated", "unstable", "noise-free")
 
