@@ -127,12 +127,8 @@ def of_diagnosis() -> Iterator[Tie]:
 
 def of_others() -> Iterator[Tie]:
     """What decides elsewhere."""
-    yield (
-        "which-machine.md",
-        "less probable beforehand: {} of a usual one",
-        (per_cent(CRITERIA.structure.unusual) + " %",),
-    )
-    yield "which-machine.md", "a lag, which has no parts, {} as probable", ({0.5: "half"}[CRITERIA.structure.no_parts],)
+    yield "which-machine.md", "unless that is below {} % of it", (per_cent(CRITERIA.structure.unusual),)
+    yield "which-machine.md", "which has no parts, is {} as probable", ({0.5: "half"}[CRITERIA.structure.no_parts],)
     yield "lab.md", "within {} of it there is nothing left to find", (plain(next_view.NEAR),)
 
     P = "physics.md"

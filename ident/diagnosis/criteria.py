@@ -106,12 +106,12 @@ class StructureSelection:
     """Which machine fits where none is named, and over which windows it is judged."""
 
     unusual: float = 0.01
-    """[prior, beside 1 of a usual machine] Of one that moves otherwise as a rule, as a motor along a way. Why: with an
-    effect it often explains as much by fewer parameters; one in a hundred drives of such a record is taken to be one.
-    Test: test_criteria_of_comparison.py::test_an_unusual_machine_has_to_be_a_hundred_times_as_likely"""
+    """[ratio of the probability of the usual machine to that of one that moves otherwise as a rule] Below which the
+    unusual one is meant. Why: with an effect a motor often explains a cylinder by fewer parameters.
+    Test: test_structure_selection.py::test_an_unusual_machine_stands_for_the_usual_one_that_moves_alike"""
     no_parts: float = 0.5
-    """[prior, beside 1 of a machine] Of a lag, which has no parts. Why: a machine may answer by a lag and nothing else,
-    and friction and springs act on the machine alone; where both are as likely the machine is taken.
+    """[prior, as a ratio to that of a machine] Of a lag, which has no parts. Why: a machine may answer by a lag
+    and nothing else, and friction and springs act on the machine alone.
     Test: test_structure_selection.py::test_a_lag_is_taken_that_is_more_probable_than_a_machine"""
     tried_further: float = 1.3
     """[ratio of held-out errors] To the best model without an effect, up to which a model is tried with more effects

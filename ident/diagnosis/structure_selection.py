@@ -2,9 +2,9 @@
 
 Where the residual of the simplest good model exceeds the noise, an effect is missing, and a machine with more
 parameters may have made up for a part of it. So the models are compared with one effect of the catalogue each, and the
-most probable one is taken: by its likelihood on held-out data, less what each parameter costs, and by the prior of its
-kind. A machine that moves otherwise as a rule is rare, and a lag, which has no parts, is less probable than a machine.
-A model with more parameters is among them only where it has as small an error without an effect, and with one gains
+most probable one is taken: by its likelihood on held-out data, less what each parameter costs. A lag, which has no
+parts, is less probable beforehand than a machine. A machine that moves otherwise as a rule counts as the usual one. A
+model with more parameters is among them only where it has as small an error without an effect, and with one gains
 half of all that can be gained in addition to the first with its effect: a missing effect may hide the machine. A first
 model with a parameter at its bound is the wrong machine: a model with a smaller error that is about as probable comes
 before it.
@@ -117,10 +117,10 @@ def _compared(
     first = min(good, key=lambda one: (one.machine in strange, one.parameters))
     with_effects = _with_an_effect_each(first, tried, report)
     others = list(with_effects.values())
-    priors = {model.name: _prior(model, matrix) for model in (*models, *springs)}
-    best, why = _preferred(with_effects[first.machine], others, _probabilities(others, priors))
+    lags = {model.name for model in models if has_no_parts(model)}
+    best, why = _preferred(with_effects[first.machine], others, _probabilities(others, lags, strange))
     compared = [best, *(with_effects.get(one.machine, one) for one in tried if one.machine != best.machine)]
-    probable = _probabilities(compared, priors)
+    probable = _probabilities(compared, lags, strange)
     said = (
         model.structure(over, _rather(model, best, probable) if number else why, probable.get(model.machine))
         for number, model in enumerate(compared)
@@ -148,26 +148,34 @@ def _rather(model: _JudgedStructure, first: _JudgedStructure, probable: Mapping[
     return message("structure.rather", machine=model.machine) if more else None
 
 
-def _prior(model: Preset, matrix: Matrix) -> float:
-    """How probable a model is before the data, as a ratio to a machine that is usual for such records."""
-    if has_no_parts(model):
-        return CRITERIA.structure.no_parts
-    return CRITERIA.structure.unusual if unusual(model, matrix.runs) else 1.0
+def _probabilities(
+    compared: Sequence[_JudgedStructure], lags: Collection[str], strange: Collection[str]
+) -> dict[str, float]:
+    """The probability of each compared model, by its machine; each model with its effect if it has one.
 
-
-def _probabilities(compared: Sequence[_JudgedStructure], priors: Mapping[str, float]) -> dict[str, float]:
-    """The probability of each compared model, by its machine; each model with its effect if it has one."""
+    `lags` have no parts, `strange` machines are unusual. An unusual machine that is not far more likely counts as the
+    usual machine that integrates as it does, which moves so, too, where less of it shows.
+    """
     sound = [model for model in compared if finite_everywhere(model.best)]
     if len(sound) < 2:
         return {}
+    criteria = CRITERIA.structure
     sound.sort(key=lambda model: -model.error)  # the reference has the largest error
     residuals = [model.best.residuals_held_out for model in sound]
     disturbance = common_disturbance(residuals)
     gains = [gain(residuals[0], of, disturbance) for of in residuals]
     counts = [model.parameters + len(model.best.effects) for model in sound]
+    priors = [criteria.no_parts if model.machine in lags else 1.0 for model in sound]
     machines = [model.machine for model in sound]
-    found = structure_probabilities(gains, counts, [priors[machine] for machine in machines])
-    return dict(zip(machines, found, strict=True))
+    probable = dict(zip(machines, structure_probabilities(gains, counts, priors), strict=True))
+    for rare in (model for model in sound if model.machine in strange):
+        usual = [model for model in sound if model.machine not in strange and model.integrates == rare.integrates]
+        likeliest = max(usual, key=lambda model: probable[model.machine], default=None)
+        part = (1.0 - criteria.unusual) * probable[rare.machine]
+        if likeliest and criteria.unusual * probable[rare.machine] < probable[likeliest.machine]:
+            probable[rare.machine] -= part
+            probable[likeliest.machine] += part
+    return probable
 
 
 def _with_an_effect_each(
@@ -370,6 +378,11 @@ class _JudgedStructure:
     def error(self) -> float:
         """Its error on held-out data; infinite where a simulation diverges."""
         return _held_out(self.best)
+
+    @property
+    def integrates(self) -> bool:
+        """Whether it integrates over the fitted runs."""
+        return integrates(self.models.preset.chain, self.models.matrix.of_use("fit"), self.models.matrix.actuator)
 
     @property
     def log_likelihood(self) -> float:

@@ -14,17 +14,12 @@ from ident.diagnosis.compared_records import _condition
 from ident.diagnosis.competing_models import _chosen
 from ident.diagnosis.cross_validation import _of_long_steps, _of_short_steps, fold_of_segments
 from ident.diagnosis.discovery import discover
-from ident.diagnosis.evidence.criteria import EVIDENCE_CRITERIA
-from ident.diagnosis.evidence.probability import structure_probabilities
 from ident.diagnosis.prediction_horizon import longer_horizon
 from ident.diagnosis.report import better_with_fewer
 from ident.diagnosis.run_consistency import _compared, inconsistent_parameters
-from ident.diagnosis.structure_selection import _prior
 from ident.diagnosis.tie_breaking import stable_minimum
 from ident.diagnosis.verdict import contradicts
 from ident.diagnosis.verification import VerifyChange
-from ident.matrix import Actuator, Matrix
-from ident.presets import preset
 from ident.run import Run
 
 
@@ -157,14 +152,3 @@ def test_terms_alone_come_first_up_to_an_error_five_per_cent_larger(monkeypatch,
     models: Any = SimpleNamespace(is_noise=lambda _: False)
     found: Any = discover._of_both_searches(models, selection, named, SimpleNamespace())  # type: ignore[arg-type]
     assert (found is named) is alone
-
-
-@pytest.mark.parametrize(("ratio", "taken"), [(95.0, False), (105.0, True)])
-def test_an_unusual_machine_has_to_be_a_hundred_times_as_likely(ratio, taken):
-    """A motor that moves along a way, beside a cylinder."""
-    channels, units = {"command": np.ones(9), "displacement": np.arange(9.0)}, {"command": "V", "displacement": "m"}
-    matrix = Matrix(Actuator("A"), (Run("r", "", 1.0, channels, units),))
-    gains = [0.0, float(np.log(ratio)) / EVIDENCE_CRITERIA.learning_rate]
-    priors = [_prior(preset(name), matrix) for name in ("open_valve", "motor")]
-    cylinder, motor = structure_probabilities(gains, [2, 2], priors)
-    assert (motor > cylinder) is taken

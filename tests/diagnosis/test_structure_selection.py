@@ -6,6 +6,7 @@ import re
 from dataclasses import replace
 from functools import cache
 from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -16,11 +17,9 @@ from ident.diagnosis.candidate_models import CandidateModels
 from ident.diagnosis.evidence.comparison import Residuals
 from ident.diagnosis.evidence.criteria import EVIDENCE_CRITERIA
 from ident.diagnosis.evidence.energy_bands import EnergyBands, Record
-from ident.diagnosis.evidence.probability import structure_probabilities
 from ident.diagnosis.structure_selection import (
     _judged,
     _preferred,
-    _prior,
     _probabilities,
     choose_structure,
     compared_structures,
@@ -328,7 +327,7 @@ def test_one_that_leaves_as_little_has_to_be_as_likely(left, taken):
         return SimpleNamespace(machine=machine, parameters=parameters, error=0.03, best=best, at_bound=False)
 
     models = first, _ = model("open_valve", 6, 0.0), model("motor", 2, left)
-    probable = _probabilities(models, {"open_valve": 1.0, "motor": 1.0})
+    probable = _probabilities(models, (), ())
     assert _preferred(first, models, probable)[0].machine == taken
 
 
@@ -347,21 +346,43 @@ def test_the_most_probable_machine_is_taken(probabilities, taken):
     assert _preferred(first, models, dict.fromkeys(probable, 1.0 / 3))[0] is first
 
 
+def of_gains(integrates: bool = True, **gains: float) -> list[Any]:
+    """Models of two parameters by their gains, in place of residuals."""
+    return [
+        SimpleNamespace(machine=name, parameters=2, error=-gain, integrates=integrates,
+                        best=SimpleNamespace(residuals_held_out=gain, effects=()))
+        for name, gain in gains.items()
+    ]  # fmt: skip
+
+
+@pytest.fixture
+def gains_for_residuals(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A residual is the gain of its model."""
+    for name, instead in (("gain", lambda _first, of, _: of), ("common_disturbance", lambda _: None),
+                          ("finite_everywhere", lambda _: True)):  # fmt: skip
+        monkeypatch.setattr(structure_selection, name, instead)
+
+
+@pytest.mark.usefixtures("gains_for_residuals")
 @pytest.mark.parametrize(("ratio", "taken"), [(1.9, False), (2.1, True)])
 def test_a_lag_is_taken_that_is_more_probable_than_a_machine(ratio, taken):
     """It has no parts on which friction and springs could act: it has to be twice as likely."""
-    gains = [0.0, float(np.log(ratio)) / EVIDENCE_CRITERIA.learning_rate]
-    priors = [_prior(preset(name), of_speeds()) for name in ("motor", "first_order")]
-    machine, lag = structure_probabilities(gains, [2, 2], priors)
-    assert (lag > machine) is taken
+    models = of_gains(motor=0.0, first_order=float(np.log(ratio)) / EVIDENCE_CRITERIA.learning_rate)
+    probable = _probabilities(models, ("first_order",), ())
+    assert (probable["first_order"] > probable["motor"]) is taken
 
 
-def of_speeds() -> Matrix:
-    """A record of a motor's speed."""
-    channels = {"command": np.ones(9), "velocity": np.arange(9.0)}
-    return Matrix(
-        Actuator("A"), (Run("r", "", 1.0, channels, {"command": "V", "velocity": "rad/s"}, output="velocity"),)
-    )
+@pytest.mark.usefixtures("gains_for_residuals")
+@pytest.mark.parametrize(("ratio", "taken"), [(95.0, "open_valve"), (105.0, "motor")])
+def test_an_unusual_machine_stands_for_the_usual_one_that_moves_alike(ratio, taken):
+    """A motor that moves along a way, beside a cylinder: what it explains by fewer parameters is the cylinder's."""
+    gain = float(np.log(ratio)) / EVIDENCE_CRITERIA.learning_rate
+    lag = of_gains(False, first_order=gain - 1.0)
+    probable = _probabilities([*of_gains(open_valve=0.0, motor=gain), *lag], ("first_order",), ("motor",))
+    assert max(probable, key=lambda name: probable[name]) == taken
+    assert sum(probable.values()) == pytest.approx(1.0)
+    alone = _probabilities([*of_gains(motor=0.0), *lag], ("first_order",), ("motor",))
+    assert alone["motor"] > 0.01  # nothing else integrates
 
 
 @pytest.mark.parametrize(("probability", "said"), [(0.28, True), (0.72, False)])
