@@ -41,6 +41,7 @@ from ident.parameter import Starts
 from ident.preprocessing import prepare
 from ident.presets import Preset
 from ident.presets import preset as preset_named
+from ident.residuals.correlation import memory
 from ident.run import Run
 from ident.simulation.steps import MOST
 
@@ -309,8 +310,8 @@ class CandidateModels:
             return self._above(self.floor, refit.error)
         outputs = refit.fitness.outputs(refit.point)
         residuals = [refit.fitness.left(run, outputs[run.id]) for run in self.runs]
-        memory = [float(np.corrcoef(r[1:], r[:-1])[0, 1]) for r in residuals]
-        return Residual(refit.error, None, correlation=float(np.median(memory)))
+        found = [memory(residual, CRITERIA.noise.memory) for residual in residuals]
+        return Residual(refit.error, None, correlation=float(np.median(found)))
 
     def last_residual(self, refit: FittedModel) -> Residual:
         """The same of the last model of a search, where coloured noise may have made its error with the share that the

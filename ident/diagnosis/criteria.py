@@ -96,9 +96,13 @@ class Noise:
     still lasts long.
     Test: test_criteria_of_estimation.py::test_an_error_is_noise_within_each_margin"""
     noise_correlation: float = 0.5
-    """[correlation] Of neighbouring residuals that noise may have where no floor is known. Why: above it the residual
+    """[correlation] Of a residual with itself that noise may have where no floor is known. Why: above it the residual
     has a memory.
     Test: test_criteria_of_estimation.py::test_an_error_is_noise_within_each_margin"""
+    memory: int = 10
+    """[samples] Up to which a residual is compared with itself there. Why: a swing of up to twenty samples turns round
+    within them, and what is slower is like its neighbour.
+    Test: test_criteria_of_estimation.py::test_what_swings_is_no_noise_where_no_floor_is_known"""
 
 
 @dataclass(frozen=True)

@@ -146,10 +146,10 @@ class Explanation:
 class NoiseTest:
     """The numbers by which the residual on the estimation data counts as noise, or does not.
 
-    Where a noise `floor` is known the `error` has to be below the `limit`; else the `correlation` of neighbouring
-    residuals must not be above it. Where no command was repeated, and the error is at most twice the floor,
-    it is also noise if the share that the inputs predict of it, out of fold, is no more than chance: `predicted` is at
-    most `predicted_limit`.
+    Where a noise `floor` is known the `error` has to be below the `limit`; else the `correlation` of the residual
+    with itself, a few samples later, must not be above it. Where no command was repeated, and the error is at most
+    twice the floor, it is also noise if the share that the inputs predict of it, out of fold, is no more than chance:
+    `predicted` is at most `predicted_limit`.
     """
 
     error: float

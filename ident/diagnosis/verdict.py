@@ -43,10 +43,10 @@ class Residual:
     """The error on the estimation data, and its noise floor.
 
     `floor` is the error that noise alone makes, None where it is not known, and `spread` its relative standard
-    deviation. `correlation` is the correlation of neighbouring residuals, which decides where no floor is known. A
-    floor from a spectrum above the band of the command is a lower bound: `predicted`, the share of the residual that
-    the inputs predict, decides where coloured noise may have made the error; None elsewhere. `excess` is the share of
-    the floor by which the error may exceed it, None for the usual share; a bench has its own.
+    deviation. `correlation` is that of the residual with itself a few samples later, which decides where no floor is
+    known. A floor from a spectrum above the band of the command is a lower bound: `predicted`, the share of the
+    residual that the inputs predict, decides where coloured noise may have made the error; None elsewhere. `excess` is
+    the share of the floor by which the error may exceed it, None for the usual share; a bench has its own.
     """
 
     error: float
@@ -96,7 +96,7 @@ def is_noise(residual: Residual, criteria: Criteria = CRITERIA) -> bool:
 
 def noise_test(residual: Residual, criteria: Criteria = CRITERIA) -> NoiseTest:
     """The error and its limit, the floor and a margin for its own error and for chance; the predicted share and its
-    limit, the share that matters and a margin for chance; without a floor the correlation of neighbouring residuals
+    limit, the share that matters and a margin for chance; without a floor the correlation of the residual with itself
     and its limit."""
     if residual.floor is None:
         return NoiseTest(residual.error, criteria.noise.noise_correlation, correlation=residual.correlation)

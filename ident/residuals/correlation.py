@@ -50,6 +50,13 @@ class Residual:
     cross: Correlation | None
 
 
+def memory(residual: Array, lags: int) -> float:
+    """The largest of |ρ_e(k)| of a residual (n,) at 1 to `lags` samples: what swings has it at half a period."""
+    e = residual - residual.mean()
+    power = float(e @ e) or 1.0
+    return max(abs(float(e[k:] @ e[:-k])) / power for k in range(1, min(lags, len(e) - 1) + 1))
+
+
 def correlation(compared: RunComparison, lags: int | None = None) -> Residual:
     """What is left of a run, up to so many lags. Raises Unusable for lags beyond half the record."""
     run = compared.run

@@ -16,6 +16,7 @@ from ident.diagnosis.criteria import CRITERIA
 from ident.diagnosis.undetermined import _with_fewer_steps
 from ident.diagnosis.verdict import Residual, is_noise
 from ident.fit.levenberg_marquardt import levenberg_marquardt
+from ident.residuals.correlation import memory
 from ident.run import Run
 from ident.simulation.steps import MOST
 
@@ -139,6 +140,17 @@ def test_a_channel_varies_where_it_does_by_more_than_rounding(deviation, varies)
 )
 def test_an_error_is_noise_within_each_margin(residual, noise):
     assert is_noise(residual) is noise
+
+
+@pytest.mark.parametrize("samples", [3.0, 5.4, 11.0, 19.0])
+def test_what_swings_is_no_noise_where_no_floor_is_known(samples):
+    """Neighbours of a swing of four to six samples are hardly alike, and half a period later it has turned round."""
+    rng = np.random.default_rng(9)
+    noise, swing = rng.standard_normal(2000), np.sin(2 * np.pi * np.arange(2000) / samples)
+    most, limit = CRITERIA.noise.memory, CRITERIA.noise.noise_correlation
+    assert memory(noise, most) < 0.2 * limit
+    assert memory(swing + 0.5 * noise, most) > limit
+    assert memory(np.zeros(50), most) == 0.0
 
 
 @pytest.mark.parametrize(("strength", "off"), [(0.0085, True), (0.0115, False)])
