@@ -337,7 +337,7 @@ def _clock(file: RawFile, said: FileAnswers) -> tuple[Answer, str, tuple[str, ..
             return Answer(), "", ()
         unnamed = message("draft.first_is_time", number=clock.number)
         return Answer(clock.number, answer.unit or clock.unit), "", (str(unnamed),)
-    told = message("draft.rate" if rate.stated else "draft.rate_without_unit", rate=rate.value)
+    told = message(rate.told, rate=rate.value, variable=shown(rate.variable))
     return Answer(), f"{rate.value:g} Hz", (str(told),)
 
 

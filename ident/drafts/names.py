@@ -7,7 +7,16 @@ from collections.abc import Sequence
 import numpy as np
 
 from ident.drafts.raw import Column, RawFile
-from ident.readers.column_names import PAIRS, UNITS_BY_NAME, channel_of, is_unit, may_measure, said, stem_of
+from ident.readers.column_names import (
+    LESS_USUAL_COMMANDS,
+    PAIRS,
+    UNITS_BY_NAME,
+    channel_of,
+    is_unit,
+    may_measure,
+    said,
+    stem_of,
+)
 
 _EVEN = 0.5  # of a step, by which the steps of a printed time differ at most
 
@@ -20,8 +29,14 @@ def suggested(columns: Sequence[Column]) -> dict[str, Column]:
         channel = "command" if stem_of(column.meaning) in inputs else channel_of(column.meaning, column.unit)
         if channel:
             found.setdefault(channel, []).append(column)
-    chosen = {channel: _fitting(channel, candidates) for channel, candidates in found.items()}
+    chosen = {channel: _fitting(channel, _most_usual(candidates)) for channel, candidates in found.items()}
     return {channel: columns[0] for channel, columns in chosen.items() if len(columns) == 1}
+
+
+def _most_usual(columns: Sequence[Column]) -> Sequence[Column]:
+    """The columns without the commands of less usual loops, where there is another: target velocity, target position."""
+    usual = [column for column in columns if stem_of(column.meaning) not in LESS_USUAL_COMMANDS]
+    return usual or columns
 
 
 def _fitting(channel: str, columns: Sequence[Column]) -> Sequence[Column]:

@@ -59,10 +59,11 @@ class Column:
 
 @dataclass(frozen=True)
 class Rate:
-    """A sample rate that stands above a table: Hz, and whether its unit stands there too."""
+    """A sample rate in Hz; `told` is the message that says where it stands, and of which `variable`, if of one."""
 
     value: float
-    stated: bool
+    told: str = "draft.rate"
+    variable: str = ""
 
 
 @dataclass(frozen=True)
@@ -118,23 +119,24 @@ class RawFile:
 
     @property
     def rate(self) -> Rate | None:
-        """The sample rate that the heading or the lines above the table state; a rate without a unit where an interval
-        confirms it. An interval in a row of the heading that names no unit is in seconds."""
+        """The sample rate that the file, its heading or the lines above its table state; a rate without a unit where an
+        interval confirms it. An interval in a row of the heading that names no unit is in seconds."""
         if self.table.rate:
-            return Rate(float(f"{self.table.rate:.9g}"), True)
+            value, variable = float(f"{self.table.rate:.9g}"), self.table.rate_variable
+            return Rate(value, "draft.rate_of_variable" if variable else "draft.rate_of_file", variable)
         if self.period is not None and (step := _seconds(self.period[0], self.period[1] or "s")):
-            return Rate(1.0 / step, bool(self.period[1]))
+            return Rate(1.0 / step, "draft.rate" if self.period[1] else "draft.rate_without_unit")
         rates = [(value, unit) for value, unit in _stated(_RATE, self.preamble) if unit.lower() in ("", "hz", "khz")]
         steps = [(value, unit) for value, unit in _stated(_STEP, self.preamble) if unit.lower() not in ("hz", "khz")]
         for value, unit in rates:
             if unit:
-                return Rate(value * (1e3 if unit.lower() == "khz" else 1.0), True)
+                return Rate(value * (1e3 if unit.lower() == "khz" else 1.0))
         for value, unit in steps:
             if unit and (step := _seconds(value, unit)):
-                return Rate(1.0 / step, True)
+                return Rate(1.0 / step)
         for value, _ in rates:
             if any(not unit and np.isclose(value * step, 1.0, rtol=1e-3) for step, unit in steps):
-                return Rate(value, False)
+                return Rate(value, "draft.rate_without_unit")
         return None
 
     def _unit(self, number: int) -> str:

@@ -14,8 +14,20 @@ from ident.errors import Unusable
 from ident.readers.channel_description import channel_scale
 from ident.units.quantity import is_known_unit, si_scale, unit_scale
 
+_OTHER_LOOPS = ("velocity", "speed", "torque", "pressure", "current", "angle")
+"""What a loop may control other than a position or a force."""
+LESS_USUAL_COMMANDS = tuple(
+    words
+    for what in _OTHER_LOOPS
+    for words in (
+        *(f"{what} {word}" for word in ("command", "cmd", "setpoint", "set point", "reference", "ref", "demand")),
+        *(f"{word} {what}" for word in ("commanded", "command", "cmd", "target", "desired", "reference", "ref")),
+    )
+)
+"""Commands of other loops: a controller logs them beside the command of its position, which then is the command."""
 WORDS = {
     "command": (
+        *LESS_USUAL_COMMANDS, "commanded", "commanded value", "commanded force", "commanded displacement",
         "command", "cmd", "reference", "ref", "setpoint", "set point", "set value", "demand", "desired",
         "drive command", "command signal", "target", "target position", "target value", "position command",
         "command position", "commanded position", "position setpoint", "position reference", "reference position",

@@ -11,6 +11,7 @@ from ident.errors import Unusable
 from ident.readers.hdf5_chunks import read_dataset
 from ident.readers.hdf5_series import REFERENCES, SUBSYSTEM, is_object, signals73
 from ident.readers.limits import Limits, check_size
+from ident.readers.rate_variable import names_a_rate, rate_of
 from ident.readers.table import NUMERIC, Array, Table, column_of, split_columns
 
 SIGNATURE = b"\x89HDF\r\n\x1a\n"
@@ -63,7 +64,14 @@ def read_hdf5(data: bytes, where: str, limits: Limits) -> Table:
 
     names = (*(column for column, _, _, _ in columns), *(column for column, _, _, _ in signals))
     units = (*("" for _ in columns), *(unit for _, _, _, unit in signals))
-    return Table(names, load, units=units if any(units) else ())
+    stating = [
+        number
+        for number, (column, _, _, dataset) in enumerate(columns)
+        if names_a_rate(column) and dataset.size == 1 and dataset.dtype.kind in NUMERIC
+    ]
+    scalars = zip((columns[n][0] for n in stating), (float(array[0]) for array in load(stating)), strict=True)
+    rate, variable = rate_of(scalars)
+    return Table(names, load, units=units if any(units) else (), rate=rate, rate_variable=variable)
 
 
 def walk(group: Any, path: str, where: str, seen: dict[Any, None], depth: int) -> Iterator[tuple[str, Any]]:

@@ -18,6 +18,8 @@ from ident.readers.text import as_utf8, read_text
 
 SIGNATURE, END = b"LabVIEW Measurement", b"***End_of_Header***"
 TIME = "X_Value"
+_DURATION = "Time"
+"""The dimension of ``X_Value`` where the file states none; a time is in s."""
 _LONGEST = 1 << 20  # bytes of both heads
 _SEPARATORS = {"Tab": "\t", "Comma": ","}
 
@@ -40,7 +42,8 @@ def read_lvm(data: bytes, where: str, limits: Limits) -> Table:
     head = _entries(text[:first], apart) | _entries(text[first:second], apart)
     above = text.count(b"\n", 0, line_start(text, 1, second))
     table = read_text(text, where, limits, Dialect(skip_rows=above))
-    units = filled(["", *head.get("Y_Unit_Label", [])], len(table.names))
+    timed = head.get("X_Dimension", [_DURATION])[0] == _DURATION
+    units = filled(["s" if timed else "", *head.get("Y_Unit_Label", [])], len(table.names))
     if head.get("X_Columns", ["One"])[0] != "No":
         return Table(table.names, table.load, table.notices, units)
     return _timed(table, units, head, where)

@@ -11,7 +11,8 @@ from ident.readers.mat4 import variables4
 from ident.readers.mat5 import Damaged, Variable, variables5
 from ident.readers.mat_inflate import byte_order, inflated
 from ident.readers.mat_series import Signal, signals
-from ident.readers.table import Array, Table, column_of, split_columns
+from ident.readers.rate_variable import rate_of
+from ident.readers.table import NUMERIC, Array, Table, column_of, split_columns
 
 _STEP, _INPUT = "Ts", "InputData"
 """Fields of MATLAB's ``iddata``: the time between two samples, and the inputs."""
@@ -40,9 +41,9 @@ def read_mat(data: bytes, where: str, limits: Limits) -> Table:
     def load(numbers: Sequence[int]) -> list[Array]:
         return [samples(columns[number], where) for number in numbers]
 
-    return Table(
-        tuple(name for name, _, _ in columns), load, units=tuple(units) if any(units) else (), rate=_rate(found)
-    )
+    names, units_of = tuple(name for name, _, _ in columns), tuple(units) if any(units) else ()
+    rate, variable = (_rate(found), "") if _rate(found) else rate_of(_scalars(found))
+    return Table(names, load, units=units_of, rate=rate, rate_variable=variable)
 
 
 def _rate(found: Sequence[Variable]) -> float:
@@ -53,6 +54,12 @@ def _rate(found: Sequence[Variable]) -> float:
         if field == _STEP and f"{owner}.{_INPUT}" in held and not isinstance(step, str) and step.size == 1:
             return 1.0 / float(step.ravel()[0]) if 0.0 < float(step.ravel()[0]) < float("inf") else 0.0
     return 0.0
+
+
+def _scalars(found: Sequence[Variable]) -> list[tuple[str, float]]:
+    """The variables that hold one real number."""
+    single = [(name, array) for name, array in found if not isinstance(array, str) and array.size == 1]
+    return [(name, float(array.ravel()[0])) for name, array in single if array.dtype.kind in NUMERIC]
 
 
 def contents(data: bytes, where: str, limits: Limits) -> tuple[list[Variable], list[Signal]]:

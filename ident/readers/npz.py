@@ -14,7 +14,8 @@ import numpy as np
 from ident.errors import Unusable
 from ident.readers.archive import ENCRYPTED, METHODS
 from ident.readers.limits import Limits, check_size
-from ident.readers.table import Array, Table, column_of, numeric, split_columns
+from ident.readers.rate_variable import names_a_rate, rate_of
+from ident.readers.table import NUMERIC, Array, Table, column_of, numeric, split_columns
 
 LARGEST_HEADER = 10_000
 MEMBERS = 1000
@@ -57,7 +58,12 @@ def read_npz(data: bytes, where: str, limits: Limits) -> Table:
             found.append(column_of(arrays[member.info.filename], place))
         return found
 
-    return Table(tuple(name for name, _, _ in columns), load)
+    single = [top for top, member in members if math.prod(member.shape) == 1 and member.dtype.kind in NUMERIC]
+    stating = [top for top in single if names_a_rate(top)]
+    numbers = [number for number, (name, _, _) in enumerate(columns) if name in stating]
+    scalars = zip(stating, (float(array[0]) for array in load(numbers)), strict=True)
+    rate, variable = rate_of(scalars)
+    return Table(tuple(name for name, _, _ in columns), load, rate=rate, rate_variable=variable)
 
 
 def broken(where: str) -> Unusable:

@@ -31,7 +31,7 @@ class Table:
     declared sizes before it allocates. `aliases` are further names of the columns, each a row of them, for a heading of
     several lines; `stamps` are the columns that were time stamps and are loaded in seconds, `mostly` those of a
     text that hold numbers, in some rows at least. `rate`, Hz, is the sample rate that the file states, 0 where
-    none; `file` is its name, for messages.
+    none, and `rate_variable` the variable without a unit that states it, if one does; `file` is its name, for messages.
     """
 
     names: tuple[str, ...]
@@ -42,6 +42,7 @@ class Table:
     stamps: frozenset[int] = frozenset()
     mostly: frozenset[int] = frozenset()
     rate: float = 0.0
+    rate_variable: str = ""
     file: str = "the file"
 
     def number(self, column: str | int, where: str) -> int:

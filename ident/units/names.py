@@ -88,15 +88,26 @@ dps = degree / second
 ANGLES = frozenset({"radian", "rad", "degree", "deg", "revolution", "rev", "rpm", "rps", "dps", "mrad"})
 """Dimensionless for pint, so that rad/s would pass for Hz and be wrong by 2π."""
 
+_IN_FULL = {
+    "meter": "m", "millimeter": "mm", "centimeter": "cm", "micrometer": "um", "micron": "um", "newton": "N",
+    "kilonewton": "kN", "pound": "lb", "lb": "lb", "kip": "kip", "kilogram": "kg", "gram": "g", "second": "s",
+    "millisecond": "ms", "microsecond": "us", "minute": "min", "hour": "h", "volt": "V", "millivolt": "mV", "amp": "A",
+    "milliamp": "mA", "radian": "rad", "degree": "deg", "revolution": "rev", "watt": "W", "pascal": "Pa",
+    "kilopascal": "kPa", "liter": "l",
+}  # fmt: skip
+"""Units in full, as a heading writes them: in the plural too, with a capital letter or in capitals."""
+_WORDS = {f"{name}{end}": unit for name, unit in _IN_FULL.items() for end in ("", "s")} | {
+    "inch": "in", "inches": "in", "foot": "ft", "feet": "ft", "percent": "percent", "counts": "counts",
+    "celsius": "degC", "lbf": "lbf",
+}  # fmt: skip
 SPELLINGS = {
+    **{way: unit for name, unit in _WORDS.items() for way in (name, name.capitalize(), name.upper())},
     "%": "percent", "°": "deg", "°C": "degC", "°F": "degF", '"': "inch", "hz": "Hz", "HZ": "Hz", "KHz": "kHz",
     "Khz": "kHz", "khz": "kHz", "KN": "kN", "Kn": "kN", "MPA": "MPa", "Mpa": "MPa", "KPa": "kPa", "kpa": "kPa",
     "KPA": "kPa", "PSI": "psi", "Psi": "psi", "KSI": "ksi", "KG": "kg", "IN": "in", "″": "inch", "μm": "µm",
     "rot": "rev", "turn": "rev", "turns": "rev", "tr": "rev", "upm": "rpm", "Upm": "rpm", "U": "rev", "Umdr": "rev",
-    "RPM": "rpm", "Rpm": "rpm", "Sec": "s", "SEC": "s", "Second": "s", "Seconds": "s", "Sekunden": "s", "Meter": "m",
-    "Meters": "m", "Degrees": "deg", "degrees": "deg", "Newtons": "N", "Hertz": "Hz", "MM": "mm", "CM": "cm",
-    "Bar": "bar", "BAR": "bar", "mBar": "mbar", "LPM": "lpm", "GPM": "gpm", "Amps": "A", "Ampere": "A", "Volt": "V",
-    "Volts": "V", "Newton": "N", "Pascal": "Pa",
+    "RPM": "rpm", "Rpm": "rpm", "Sec": "s", "SEC": "s", "Sekunden": "s", "Hertz": "Hz", "MM": "mm", "CM": "cm", "Bar": "bar", "BAR": "bar", "mBar": "mbar", "LPM": "lpm", "GPM": "gpm",
+    "Ampere": "A",
 }  # fmt: skip
 """Ways of writing that leave no doubt about what is meant."""
 

@@ -139,6 +139,8 @@ def unit_scale(unit: str, dimension: str, where: str) -> Scale:
     powers = known_powers(unit, where, target)
     if target == "rad/s" and powers == {"min": -1.0}:
         powers = {"rev": 1.0, "min": -1.0}  # of a speed of rotation 1/min counts turns
+    if target == "N" and powers == {"lb": 1.0}:
+        powers = {"lbf": 1.0}  # the pounds of a load cell are a force, as those of a torque are
     # pint calls an angle a plain number; so may a user who writes a phase, but no channel does
     apart = target in ("1/s", "rad/s", "rad") or dimension == "dimensionless"
     turns = apart and bool(ANGLES & set(powers)) != target.startswith("rad")

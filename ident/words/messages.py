@@ -18,6 +18,9 @@ DRAFTS: Mapping[str, str] = {
     "draft.rate": "the sample rate {rate:g} Hz is from the lines above the table",
     "draft.rate_without_unit":
         "the sample rate {rate:g} Hz is from the lines above the table, which name no unit: Hz is assumed",
+    "draft.rate_of_file": "the sample rate {rate:g} Hz is stated in the file",
+    "draft.rate_of_variable":
+        "the sample rate {rate:g} Hz is from the variable '{variable}', which names no unit: s or Hz is assumed",
     "draft.file": "{file} ({parts:terms})",
     "draft.columns": "{columns}",
     "draft.more": "so are {count} more",

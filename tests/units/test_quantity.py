@@ -62,6 +62,13 @@ READ = [
     ("2 rot", "angle", 12.566370614359172),
     ("1500 U/min", "angular velocity", 157.07963267948966),
     ("3 turns", "angle", 18.84955592153876),
+    ("20 lb", "force", 88.96443230521),
+    ("20 Pounds", "force", 88.96443230521),
+    ("20 lbs", "mass", 9.0718474),
+    ("2 Inches", "length", 0.0508),
+    ("90 DEGREES", "angle", 1.5707963267948966),
+    ("250 Milliseconds", "time", 0.25),
+    ("3 Radians/second", "angular velocity", 3.0),
 ]
 
 WRITTEN = {
