@@ -106,8 +106,8 @@ SPELLINGS = {
     "Khz": "kHz", "khz": "kHz", "KN": "kN", "Kn": "kN", "MPA": "MPa", "Mpa": "MPa", "KPa": "kPa", "kpa": "kPa",
     "KPA": "kPa", "PSI": "psi", "Psi": "psi", "KSI": "ksi", "KG": "kg", "IN": "in", "″": "inch", "μm": "µm",
     "rot": "rev", "turn": "rev", "turns": "rev", "tr": "rev", "upm": "rpm", "Upm": "rpm", "U": "rev", "Umdr": "rev",
-    "RPM": "rpm", "Rpm": "rpm", "Sec": "s", "SEC": "s", "Sekunden": "s", "Hertz": "Hz", "MM": "mm", "CM": "cm", "Bar": "bar", "BAR": "bar", "mBar": "mbar", "LPM": "lpm", "GPM": "gpm",
-    "Ampere": "A",
+    "RPM": "rpm", "Rpm": "rpm", "Sec": "s", "SEC": "s", "Sekunden": "s", "Hertz": "Hz", "MM": "mm", "CM": "cm",
+    "Bar": "bar", "BAR": "bar", "mBar": "mbar", "LPM": "lpm", "GPM": "gpm", "Ampere": "A",
 }  # fmt: skip
 """Ways of writing that leave no doubt about what is meant."""
 
