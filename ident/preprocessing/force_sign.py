@@ -4,20 +4,10 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-import numpy as np
-from numpy.typing import NDArray
-
 from ident.preprocessing.motion_sign import BALANCED, against_its_drive, drives_mass
-from ident.preprocessing.step import Prepared, Step, Threshold
+from ident.preprocessing.power import GIVES_BACK, mean_power, product
+from ident.preprocessing.step import Prepared, Step
 from ident.run import MOTIONS, Run
-
-Array = NDArray[np.float64]
-GIVES_BACK = Threshold(
-    -0.1,
-    "of the product of the sizes of force and speed",
-    "a mean of force times speed below it says that the specimen gives work back",
-    "a spring or a mass alone takes no work in the mean, and noise neither: they stay around zero",
-)
 
 
 def work(run: Run) -> float | None:
@@ -29,12 +19,7 @@ def work(run: Run) -> float | None:
     if run.output != "force" or "force" not in run.channels or run.channels.keys().isdisjoint(MOTIONS):
         return None
     recorded = run.channels["force"], run.driven_by("velocity").command
-    return max(_product(*recorded), _product(*(samples - samples.mean() for samples in recorded)))
-
-
-def _product(force: Array, speed: Array) -> float:
-    size = float(np.sqrt(np.mean(force**2) * np.mean(speed**2)))
-    return float(np.mean(force * speed)) / size if size > 0 else 0.0
+    return max(product(*recorded), mean_power(*recorded))
 
 
 def gives_work_back(run: Run) -> bool:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from ident.preprocessing.power import GIVES_BACK, mean_power
 from ident.preprocessing.step import Threshold
 from ident.presets.preset import Preset
 from ident.run import Run
@@ -37,6 +38,9 @@ def against_its_drive(run: Run) -> bool | None:
     Of the balance p = m x″ + c x′ + k x + p₀, integrated twice, m, c and k ≥ 0 are found by least squares, which needs
     no derivative of a record; first states and p₀ are a polynomial of second degree in the time. The run tells the sign
     where such a balance leaves less than a tenth of the drive with one sign, and more with the other.
+
+    A controller that drives the motion back to a reference looks like a spring of the other sign, u = k (r − x). So the
+    motion is not turned where it takes work of the drive as it was recorded, which no mass, damper or spring gives.
     """
     drive, motion = run.command, run.measured
     if not (np.ptp(drive) > 0 and np.ptp(motion) > 0):
@@ -47,7 +51,10 @@ def against_its_drive(run: Run) -> bool | None:
     terms = np.column_stack([_integrated(motion, times) for times in range(3)])
     target, terms = (part - smooth @ (smooth.T @ part) for part in (target, terms))
     right, turned = (_left(sign * target, terms / np.linalg.norm(terms, axis=0)) for sign in (1.0, -1.0))
-    return turned < right if min(right, turned) < BALANCED.value < max(right, turned) else None
+    if not min(right, turned) < BALANCED.value < max(right, turned):
+        return None
+    speed = np.gradient(motion) if run.output == "displacement" else motion
+    return turned < right and mean_power(-drive, speed) >= GIVES_BACK.value
 
 
 def _left(target: Array, terms: Array) -> float:

@@ -58,6 +58,34 @@ def test_a_motion_that_the_drive_does_not_explain_tells_no_sign() -> None:
     assert against_its_drive(Run("r", "", RATE, channels, units)) is None
 
 
+def positioned(gain: float, dry: float, share: float, seed: int = 0) -> Run:
+    """A motor that a limited proportional controller steps to 100 counts, by Euler's steps.
+
+    It has dry friction, and a mass on a spring that swings on it; the record is that of the controller's output.
+    """
+    rng, steps, rate = np.random.default_rng(seed), 10, 500.0
+    step, count = 1.0 / (rate * steps), 2000
+    drive, read = np.zeros(count), np.zeros(count)
+    way = speed = stretch = relative = 0.0
+    for k in range(count):
+        read[k] = way + 0.5 * rng.standard_normal()
+        drive[k] = np.clip(gain * ((100.0 if k > 50 else 0.0) - read[k]), -200.0, 200.0)
+        for _ in range(steps):
+            pull = 15.9**2 * stretch
+            gained = 400.0 * drive[k] - 34.0 * speed - dry * np.tanh(speed / 2.0) + share * pull
+            relative, speed = relative - step * (pull + gained), speed + step * gained
+            stretch, way = stretch + step * relative, way + step * speed
+    channels, units = {"command": drive, "displacement": read}, {"command": "1", "displacement": "1"}
+    return Run(f"step-{seed}", "", rate, channels, units, hold="zoh", output="displacement")
+
+
+@pytest.mark.parametrize(("gain", "dry", "share"), [(2.0, 0.0, 1.7), (2.0, 2000.0, 1.7), (4.0, 6000.0, 0.0)])
+def test_a_controller_that_drives_back_is_no_spring_of_the_other_sign(gain: float, dry: float, share: float) -> None:
+    """u = k (r - x) is the balance of a spring that is counted the other way; the motor takes work of its drive."""
+    for seed in range(2):
+        assert not against_its_drive(positioned(gain, dry, share, seed))
+
+
 @pytest.mark.full
 def test_a_muscle_that_contracts_under_pressure_is_a_mass_on_a_spring():
     """As recorded, its motion is counted against the pressure, and its spring would be negative."""
