@@ -69,7 +69,7 @@ def missing_inputs(run: Run) -> tuple[MissingInput, ...]:
         samples = longest // 2**half
         if (half and samples < SHORTEST) or run.length <= (REST + 2) * samples:
             break
-        at_rest = held(inputs, (REST + 2) * samples)[:-1]
+        at_rest = _at_rest(inputs, samples)
         least = max(travel / 2**half, DIGITS * resolution(run.measured), _answer(y, changes, samples, longest))
         motion = Motion.of(y, samples, least, at_rest)
         begins = motion.starts(at_rest)
@@ -81,6 +81,20 @@ def missing_inputs(run: Run) -> tuple[MissingInput, ...]:
             times = [begin / run.sample_rate for begin in begins]
             return tuple(MissingInput(run.id, time, time + samples / run.sample_rate, evidence) for time in times)
     return ()
+
+
+def _at_rest(inputs: Sequence[Samples], samples: int) -> NDArray[np.bool_]:
+    """Whether every input rests over four durations of a quick motion from each sample on, (n − 4 samples,).
+
+    It rests a little longer, as far as the averages reach by which the output is judged: what follows its command at
+    once would seem to set out before it.
+    """
+    ahead = samples // 4 + SPIKE // 2 + 1
+    count, rest = len(inputs[0]) - (REST + 2) * samples, (REST + 2) * samples + ahead
+    found = np.zeros(count, bool)
+    if len(inputs[0]) >= rest:
+        found[: count - ahead + 1] = held(inputs, rest)
+    return found
 
 
 def _changes(inputs: Sequence[Samples]) -> NDArray[np.intp]:

@@ -207,3 +207,16 @@ def test_a_loop_that_hunts_misses_no_input(slide, seed):
 def test_a_loop_that_is_pushed_away_from_its_command_misses_an_input(seed):
     slide = Slide(kp=30.0, ki=(4.0, 8.0), kd=8.0, at_rest=(0.5, 1.0), sliding=0.6)
     assert len(missing_inputs(slide.record(seed, disturbed=True))) >= 5
+
+
+@pytest.mark.parametrize("noise", [0.0, 0.02, 0.3])
+@pytest.mark.parametrize("late", [0, 1, 5])
+def test_what_follows_its_command_at_once_does_not_set_out_before_it(noise: float, late: int) -> None:
+    """A quick loop of speed: ten levels of 2 s each, there within a few samples, in the order of two seeds."""
+    for seed in (1, 2):
+        rng = np.random.default_rng(seed)
+        levels = np.repeat(rng.permutation([14.0, 1.0, 0.5, 0.0, -0.5, -1.0, -1.6, 14.0, -14.0, 3.0]), 400)
+        speed = np.concatenate([np.full(late, levels[0]), levels])[: len(levels)]
+        speed = speed + noise * rng.standard_normal(len(speed))
+        channels, units = {"command": levels, "velocity": speed}, {"command": "rad/s", "velocity": "rad/s"}
+        assert not missing_inputs(Run("quick", "", 200.0, channels, units, hold="zoh", output="velocity"))
