@@ -322,7 +322,7 @@ def _notes(
     if objective.matrix.actuator.piston_area is None and objective.preset.without_area:
         notes.append("Piston area unknown: only the ratios to it are identifiable, and parameters are given as ratios.")
     if floors.measured:
-        notes.append("Noise floor estimated from repeated runs.")
+        notes.append("Noise floor estimated from repeated runs, or from a command that repeats itself.")
     elif floors.of_use(objective.matrix)["fit"] is None:
         notes.append(
             "Noise floor unknown: the command has power up to nearly half the sample rate, so no part of the "

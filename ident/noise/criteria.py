@@ -88,6 +88,27 @@ class PeriodicNoise:
 
 
 @dataclass(frozen=True)
+class OwnPeriods:
+    """The noise of a record whose command is made of many frequencies and repeats itself."""
+
+    settled: float = 1.0
+    """[periods] Of the same command before the first that is compared. Why: a start dies away in it, as a period is
+    chosen longer than the machine's memory.
+    Test: test_criteria.py::test_a_multisine_repeats_itself_from_three_periods_on"""
+    samples_of_a_period: int = 16
+    """[samples] Fewest of a period. Why: what a machine does within fewer is no answer that could be compared.
+    Test: test_criteria.py::test_a_period_of_its_own_has_sixteen_samples"""
+    unlike: float = 0.5
+    """[of the autocorrelation at lag 0] To which it falls within a period. Why: what changes slowly is like itself a
+    few samples later.
+    Test: test_criteria.py::test_a_command_that_changes_slowly_does_not_repeat_itself_a_sample_later"""
+    alike: float = 0.99
+    """[of the autocorrelation at lag 0] That it has after a period. Why: a recorder's noise takes less; sample by
+    sample the periods must then agree as two runs do.
+    Test: test_criteria.py::test_a_noisy_multisine_repeats_itself"""
+
+
+@dataclass(frozen=True)
 class Repeats:
     """When two runs repeat one measurement."""
 
@@ -130,6 +151,7 @@ class Criteria:
     innovations: Innovations = Innovations()
     spectral_floor: SpectralFloor = SpectralFloor()
     periodic_noise: PeriodicNoise = PeriodicNoise()
+    own_periods: OwnPeriods = OwnPeriods()
     repeats: Repeats = Repeats()
 
 

@@ -1,7 +1,7 @@
 """The noise floor: how small eq. (17) can become on a run.
 
-Where a command was measured twice, noise is what does not repeat. Without repeats it is read off the record where the
-command has no power.
+Where a command was measured twice, in two runs or within one, noise is what does not repeat. Without repeats it is
+read off the record where the command has no power.
 """
 
 from __future__ import annotations
@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from ident.matrix import Matrix
 from ident.noise.criteria import NOISE_CRITERIA
 from ident.noise.effective_sample_size import independent_samples
+from ident.noise.own_periods import own_repeats
 from ident.noise.periodic import fundamental, periodic_noise
 from ident.noise.power_density import power_density
 from ident.noise.repeats import Repeat, repeated
@@ -97,7 +98,8 @@ def noise_floors(runs: Sequence[Run], band: float, left_out: Collection[str] = (
     displacement or in proportion to it, as the pairs say, or where these are few, the spectra. Each output is told by
     itself: two of one record are no repeats, and their noise has nothing in common.
     """
-    pairs = repeated([run for run in runs if run.id not in left_out])
+    trusted = [run for run in runs if run.id not in left_out]
+    pairs = repeated(trusted) + [pair for of_run in each(own_repeats, trusted) for pair in of_run]
     by_output: dict[str, list[Run]] = {}
     for run in runs:
         by_output.setdefault(run.output, []).append(run)

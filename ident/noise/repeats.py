@@ -63,6 +63,12 @@ def repeated(runs: Sequence[Run]) -> list[Repeat]:
     return [found for a, b in pairs if (found := _repeat(a, b, outputs)) is not None]
 
 
+def same_inputs(a: Run, b: Run) -> bool:
+    """Whether every input of two runs of one record and length agrees sample by sample, without a shift."""
+    names = _inputs(a, {a.output})
+    return bool(names) and all(_agree(a.channels[name], b.channels[name]) for name in names)
+
+
 def labels(run: Run) -> tuple[object, ...]:
     """What is stated of a run: runs of which this differs are no repeats."""
     stated = (run.use, run.kind, run.specimen, run.gain, run.amplitude, run.frequency, run.position_range)

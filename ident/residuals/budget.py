@@ -124,7 +124,7 @@ def _apart(whole: float, part: float) -> float:
 
 def _notes(measured: bool, floor: bool, several: bool, parts: Mapping[str, tuple[float, float]]) -> Iterator[str]:
     if measured:
-        yield "Noise estimated from repeated runs."
+        yield "Noise estimated from repeated runs, or from a command that repeats itself."
         return
     if floor:
         yield "Noise: a lower bound, from the spectrum above the command bandwidth (white noise assumed)."

@@ -9,6 +9,7 @@ import scipy.signal
 from ident.noise.autoregression import prediction_errors
 from ident.noise.effective_sample_size import independent_samples
 from ident.noise.floor import like_transducer, noise_floor, noise_floors
+from ident.noise.own_periods import own_repeats, period
 from ident.noise.periodic import fundamental, periodic_noise
 from ident.noise.repeats import Repeat, at_rest, repeated
 from ident.run import Run
@@ -184,3 +185,40 @@ def test_steps_repeat_each_other_from_starts_within_a_twentieth_of_their_way(apa
 @pytest.mark.parametrize(("change", "still"), [(0.85e-9, True), (1.15e-9, False)])
 def test_a_record_stands_still_where_it_changes_by_a_billionth(change, still):
     assert at_rest(np.array([5.0, 5.0 * (1.0 - change), 5.0])) is still
+
+
+def many(periods: float, samples: int) -> np.ndarray:
+    """A multisine of so many periods: the lines 2 to 5 at random phases."""
+    t = np.arange(round(periods * samples)) / samples
+    return np.sum([np.sin(2 * np.pi * (k * t + 0.37 * k**2)) for k in (2, 3, 4, 5)], axis=0)
+
+
+def repeats_itself(command: np.ndarray) -> bool:
+    return bool(own_repeats(run("r", command, command + white(len(command)))))
+
+
+@pytest.mark.parametrize(("periods", "told"), [(3.0, True), (2.95, False)])
+def test_a_multisine_repeats_itself_from_three_periods_on(periods, told):
+    assert repeats_itself(many(periods, 200)) is told
+
+
+@pytest.mark.parametrize(("samples", "told"), [(16, True), (15, False)])
+def test_a_period_of_its_own_has_sixteen_samples(samples, told):
+    assert repeats_itself(many(40, samples)) is told
+
+
+@pytest.mark.parametrize(("least", "told"), [(0.45, True), (0.55, False)])
+def test_a_command_that_changes_slowly_does_not_repeat_itself_a_sample_later(least, told):
+    """A multisine about two levels, one in each half of the part that is looked at: the least likeness is `least`."""
+    sines = many(400, 100) / np.std(many(1, 100))
+    lowest = float(np.min([sines[lag:] @ sines[: len(sines) - lag] / (len(sines) - lag) for lag in range(1, 100)]))
+    share = (least - lowest) / (1.0 - lowest)
+    levels = np.where(np.arange(len(sines)) * 3 > len(sines) * 2, 1.0, -1.0)  # of the last two thirds, the half
+    assert (period(np.sqrt(1.0 - share) * sines + np.sqrt(share) * levels) is not None) is told
+
+
+@pytest.mark.parametrize(("noise", "told"), [(0.094, True), (0.107, False)])
+def test_a_noisy_multisine_repeats_itself(noise, told):
+    """The autocorrelation after a period is 1/(1 + σ²) of that at once."""
+    command = many(40, 400)
+    assert (period(command + noise * np.std(command) * white(len(command), 5)) is not None) is told
