@@ -34,7 +34,7 @@ def suggested(columns: Sequence[Column]) -> dict[str, Column]:
 
 
 def _most_usual(columns: Sequence[Column]) -> Sequence[Column]:
-    """The columns without the commands of less usual loops, where there is another: a target speed, a target position."""
+    """The columns without the commands of less usual loops, where there is another: target speed, target way."""
     usual = [column for column in columns if stem_of(column.meaning) not in LESS_USUAL_COMMANDS]
     return usual or columns
 
