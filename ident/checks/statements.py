@@ -27,7 +27,7 @@ def statements(matrix: Matrix) -> Iterator[Finding]:
         if {"command", "drive_force"} & run.channels.keys()
         and run.units.get("command") != "1"
         and run.units.get(run.output) not in _TURNING
-        and run.output != "temperature"
+        and run.output not in ("temperature", "current")
     ]
     hydraulic = [run for run in runs if "drive_force" not in run.channels]
     if not runs or specimen_is_moved(matrix):

@@ -18,15 +18,16 @@ from ident.errors import Unusable
 from ident.readers import PACKED
 from ident.readers.column_names import is_time
 from ident.readers.hold import are_band_limited
+from ident.readers.run_description import LESS
 from ident.readers.table import MINUS, some_of
 from ident.run import BENCH, CHANNELS, MOTIONS
 from ident.units.quantity import shown
 from ident.words.listed import first_of
 from ident.words.message import message
 
-OUTPUTS = ("displacement", "velocity", "acceleration", "force", "load_pressure", "temperature")
-"""Channels that a model may have to reproduce; the first that there is, unless one is named. A temperature is one where
-another column is the command."""
+OUTPUTS = ("displacement", "velocity", "acceleration", "force", "load_pressure", "temperature", "current")
+"""Channels that a model may have to reproduce; the first that there is, unless one is named. A temperature or
+a current is one where another column is the command."""
 _DRIVES = ("command", "current")
 _TO_REPLACE = ("SERIAL", "COLUMN", "UNIT", "RATE", "=NAME")
 """What stands in an option for what only the user knows."""
@@ -155,15 +156,16 @@ class Draft:
             return [Missing("dialect", f"{question} rows and encoding has it?")]
         known, found = self.known(file), []
         output = next((name for name in OUTPUTS if name in known.channels), "")
-        if output == "temperature" and "command" not in known.channels:
-            output = ""  # a temperature drives, too
+        if output in LESS and "command" not in known.channels:
+            output = ""  # a temperature drives, too, and so does a current
         wanted = self.answers.output or output
         bench = self.answers.common.get("kind") in BENCH
         drives = {"command", *(("current",) if bench else ()), *(MOTIONS if wanted == "force" else ())}
         if not drives & known.channels.keys() and self._said(file, "command") != NONE:
             found.append(self._missing_drive(file, known))
         if not wanted or wanted not in known.channels:
-            what = wanted or "displacement, velocity, acceleration, force, load pressure (load_pressure) or temperature"
+            answers = "displacement, velocity, acceleration, force, load pressure (load_pressure), temperature or current"
+            what = wanted or answers
             found.append(Missing(f"channel {wanted or OUTPUTS[0]}", f"which column of {_listed(file)} is the {what}"))
         for channel, answer in known.channels.items():
             if not answer.unit:

@@ -36,14 +36,9 @@ FIRST_ORDER = Preset(
     ),
     chain=Chain(
         stages=(OPENED_BY_COMMAND, INSTANT_VALVE, RIGID_SPOOL, TRACKING_LAG, IDEAL_SENSOR),
-        outputs={
-            "displacement": "y",
-            "velocity": "y",
-            "acceleration": "y",
-            "load_pressure": "y",
-            "force": "y",
-            "temperature": "y",
-        },
+        outputs=dict.fromkeys(
+            ("displacement", "velocity", "acceleration", "load_pressure", "force", "temperature", "current"), "y"
+        ),
     ),
     static_gains=("gain",),
     search=SearchPlan(

@@ -27,7 +27,9 @@ RUN = (
 
 
 ANSWERS = ("displacement", "velocity", "acceleration", "force", "load_pressure")
-"""Channels of a machine's answer, of which one may be the output without a word; where there is none, a temperature."""
+"""Channels of a machine's answer, of which one may be the output without a word; else it is the first of LESS."""
+LESS = ("temperature", "current")
+"""What most runs record beside the answer, and what is the answer of a heater and of a coil."""
 ZERO_CELSIUS = 273.15
 """K. A temperature that answers a command is counted from 0 °C: only its rise over the surroundings is the model's."""
 
@@ -169,7 +171,7 @@ def _refuse_stress(fields: Fields, channels: dict[str, ChannelDescription]) -> N
 
 def _usual(channels: Collection[str]) -> str:
     """The displacement, or what alone was recorded of the answer to a command."""
-    answers = [name for name in ANSWERS if name in channels] or [name for name in ("temperature",) if name in channels]
+    answers = [name for name in ANSWERS if name in channels] or [name for name in LESS if name in channels][:1]
     return answers[0] if len(answers) == 1 and "command" in channels else "displacement"
 
 
