@@ -64,14 +64,13 @@ def read_hdf5(data: bytes, where: str, limits: Limits) -> Table:
 
     names = (*(column for column, _, _, _ in columns), *(column for column, _, _, _ in signals))
     units = (*("" for _ in columns), *(unit for _, _, _, unit in signals))
-    stating = [
-        number
-        for number, (column, _, _, dataset) in enumerate(columns)
-        if names_a_rate(column) and dataset.size == 1 and dataset.dtype.kind in NUMERIC
-    ]
-    scalars = zip((columns[n][0] for n in stating), (float(array[0]) for array in load(stating)), strict=True)
-    rate, variable = rate_of(scalars)
+    single = {column: n for n, (column, _, _, dataset) in enumerate(columns) if _may_state_a_rate(column, dataset)}
+    rate, variable = rate_of(zip(single, (float(array[0]) for array in load(list(single.values()))), strict=True))
     return Table(names, load, units=units if any(units) else (), rate=rate, rate_variable=variable)
+
+
+def _may_state_a_rate(column: str, dataset: Any) -> bool:
+    return names_a_rate(column) and bool(dataset.size == 1 and dataset.dtype.kind in NUMERIC)
 
 
 def walk(group: Any, path: str, where: str, seen: dict[Any, None], depth: int) -> Iterator[tuple[str, Any]]:
