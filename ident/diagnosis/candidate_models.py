@@ -262,13 +262,13 @@ class CandidateModels:
     @cached_property
     def floors(self) -> Floors:
         """The noise floors of all runs of the matrix; over windows with what the noise adds where each begins."""
-        floors = noise_floors(self.matrix.runs, self.band, self.left_out)
+        begun = SimulatedRuns(self.preset, self.matrix, (), self.band, horizon=self.horizon, memory=self.memory)
+        floors = noise_floors(self.matrix.runs, self.band, self.left_out, begun.shown)
         floors = replace(
             floors, by_run={run: None if run in self.contradicted else f for run, f in floors.by_run.items()}
         )
         if self.horizon is None or floors.measured:
             return floors
-        begun = SimulatedRuns(self.preset, self.matrix, (), self.band, horizon=self.horizon, memory=self.memory)
         return floors.times({run.id: float(np.sqrt(begun.anchoring(run).noise)) for run in self.matrix.runs})
 
     @property

@@ -6,7 +6,7 @@ read off the record where the command has no power.
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -91,8 +91,17 @@ class Floors:
         return float(np.sqrt(0.5 / (self.independent_share * samples) + 0.5 / self.degrees_of_freedom))
 
 
-def noise_floors(runs: Sequence[Run], band: float, left_out: Collection[str] = ()) -> Floors:
+Counted = Callable[[Run, Array], Array]
+"""A signal of a run as it is judged: over windows it is counted from where each begins."""
+
+
+def noise_floors(
+    runs: Sequence[Run], band: float, left_out: Collection[str] = (), counted: Counted = lambda _, signal: signal
+) -> Floors:  # fmt: skip
     """The noise floors of runs whose command ends at `band` (rad/s); `left_out` are ids that are not trusted.
+
+    What differs between repeats is `counted` as the residual of a model is: a disturbance that is there where a window
+    begins is known to the model.
 
     From repeats: half the power of their difference, the median over the pairs, for all runs; in the unit of the
     displacement or in proportion to it, as the pairs say, or where these are few, the spectra. Each output is told by
@@ -103,7 +112,10 @@ def noise_floors(runs: Sequence[Run], band: float, left_out: Collection[str] = (
     by_output: dict[str, list[Run]] = {}
     for run in runs:
         by_output.setdefault(run.output, []).append(run)
-    parts = [_of_one_output(of, [p for p in pairs if p.first.output == name], band) for name, of in by_output.items()]
+    parts = [
+        _of_one_output(of, [p for p in pairs if p.first.output == name], band, counted)
+        for name, of in by_output.items()
+    ]
     if len(parts) == 1:
         return parts[0]
     return Floors(
@@ -115,7 +127,7 @@ def noise_floors(runs: Sequence[Run], band: float, left_out: Collection[str] = (
     )
 
 
-def _of_one_output(runs: Sequence[Run], pairs: Sequence[Repeat], band: float) -> Floors:
+def _of_one_output(runs: Sequence[Run], pairs: Sequence[Repeat], band: float, counted: Counted) -> Floors:
     if not pairs:
         fitted = [(run.length, _is_periodic(run)) for run in runs if run.use == "fit"]
         degrees_of_freedom = sum(
@@ -125,7 +137,7 @@ def _of_one_output(runs: Sequence[Run], pairs: Sequence[Repeat], band: float) ->
         in_band = bool(fitted) and all(periodic for _, periodic in fitted)
         seen = zip(runs, by_spectrum(runs, band), strict=True)
         return Floors({run.id: floor for run, floor in seen}, max(degrees_of_freedom, 1.0), in_band=in_band)
-    differences = [pair.difference() for pair in pairs]
+    differences = [counted(pair.first, pair.difference()) for pair in pairs]
     degrees_of_freedom = sum(independent_samples(difference) for difference in differences)
     powers = np.array([0.5 * np.var(difference) for difference in differences])
     shares = powers / [0.5 * (np.var(a.measured) + np.var(b.measured)) for a, b, _ in pairs]
