@@ -164,7 +164,9 @@ class Draft:
         if not drives & known.channels.keys() and self._said(file, "command") != NONE:
             found.append(self._missing_drive(file, known))
         if not wanted or wanted not in known.channels:
-            answers = "displacement, velocity, acceleration, force, load pressure (load_pressure), temperature or current"
+            answers = (
+                "displacement, velocity, acceleration, force, load pressure (load_pressure), temperature or current"
+            )
             what = wanted or answers
             found.append(Missing(f"channel {wanted or OUTPUTS[0]}", f"which column of {_listed(file)} is the {what}"))
         for channel, answer in known.channels.items():
