@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ident.bench.response import filter_gains
-from ident.simulation.jit import jit
+from ident.simulation.jit import jit, within
 
 Array = NDArray[np.float64]
 
@@ -33,7 +33,7 @@ def gains_of(T: float, step: float, parts: tuple[int, ...]) -> tuple[Array, Arra
     return gains, slopes
 
 
-@jit(nogil=True, error_model="numpy")
+@within(error_model="numpy")
 def while_moving(
     h: float, still: float, a0: float, f0: float, f0_slope: float, a1: float, f1: float, f1_slope: float
 ) -> tuple[float, float, float, float, float]:
@@ -55,7 +55,7 @@ def while_moving(
     return W0, W1, by0, by1, -over * (e0 * (A0 + both) + e1 * (both + Z1))
 
 
-@jit(nogil=True, error_model="numpy")
+@within(error_model="numpy")
 def while_starting(
     h: float, still: float, start: float, inner: float, outer: float, f: float, f_slope: float
 ) -> tuple[float, float, float, float, float]:
@@ -74,13 +74,13 @@ def while_starting(
     return W, Ws, e * d * r / gap**2, by_outer, -e * 1.5 * r / gap
 
 
-@jit(nogil=True, error_model="numpy")
+@within(error_model="numpy")
 def simpson_share(part: int) -> float:
     """What the first end of one of two parts weighs in Simpson's rule for both (Abramowitz, Stegun 1964, 25.4.5)."""
     return 1.0 / 3.0 if part == 0 else 2.0 / 3.0
 
 
-@jit(nogil=True, error_model="numpy")
+@within(error_model="numpy")
 def bend(h: float, T: float, slopes: float, ahead: float) -> float:
     """By how much the trapezoidal rule is off over a part h, because a lagged current bends between its ends.
 

@@ -19,7 +19,7 @@ from ident.bench.criteria import BENCH_CRITERIA
 from ident.bench.exact_integrals import bend, gains_of, simpson_share, while_moving, while_starting
 from ident.bench.model import CONSTANTS as NAMES
 from ident.bench.response import cubic, earlier, piece_of
-from ident.simulation.jit import jit
+from ident.simulation.jit import jit, within
 
 Array = NDArray[np.float64]
 _OF = BENCH_CRITERIA.simulation
@@ -44,7 +44,7 @@ def delayed(current: Array, late: float) -> tuple[Array, Array]:
     return out, slope
 
 
-@jit(nogil=True, error_model="numpy")
+@within(error_model="numpy")
 def _speed(a: float, side: int, nodes: Array, pieces: Array) -> tuple[float, float, int, float]:
     """f and its slope at a current `a` from the zero shift; the piece of the table, and the place in it."""
     i = piece_of(a, nodes)
@@ -53,7 +53,7 @@ def _speed(a: float, side: int, nodes: Array, pieces: Array) -> tuple[float, flo
     return f, slope, i, t
 
 
-@jit(nogil=True, error_model="numpy")
+@within(error_model="numpy")
 def _kind(u: float, still: float, full: float) -> int:
     """0 at rest, 1 moving, 2 moving with all of the supply pressure; negative back."""
     a = abs(u)
@@ -63,7 +63,7 @@ def _kind(u: float, still: float, full: float) -> int:
     return kind if u > 0.0 else -kind
 
 
-@jit(nogil=True, error_model="numpy")
+@within(error_model="numpy")
 def division(
     w: float, wm: float, we: float, I0: float, contact: int, reversal: bool, still: float, full: float
 ) -> tuple[int, bool, int]:

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ident.simulation.jit import jit
+from ident.simulation.jit import in_place, jit, within
 
 Array = NDArray[np.float64]
 _ONCE: Any = np.int64(1)
@@ -20,7 +20,7 @@ _LEVEL: Any = np.bool_(False)
 """To numba each constant of Python is a type of its own, for which a function is compiled anew."""
 
 
-@jit(nogil=True, error_model="numpy")
+@within(error_model="numpy")
 def cubic(t: float, width: float, c: Array) -> tuple[float, float]:
     """Value and slope of a piece of the table, c0 + c1 t + c2 t² + c3 t³ (Fritsch and Carlson 1980), (4,).
 
@@ -31,7 +31,7 @@ def cubic(t: float, width: float, c: Array) -> tuple[float, float]:
     return c[0] + within * (c[1] + within * (c[2] + within * c[3])) + (t - within) * slope, slope
 
 
-@jit(nogil=True, error_model="numpy")
+@within(error_model="numpy")
 def piece_of(a: float, nodes: Array) -> int:
     """The piece of the table that a current from the zero shift is in, the last one for what is beyond its end."""
     i = len(nodes) - 2
@@ -40,7 +40,7 @@ def piece_of(a: float, nodes: Array) -> int:
     return i
 
 
-@jit(nogil=True, error_model="numpy")
+@within(error_model="numpy")
 def characteristic(u: float, nodes: Array, pieces: Array) -> float:
     """|f(u)|: odd and even sides have tables of their own; beyond the last node the end slope goes on."""
     side, a = 0 if u >= 0.0 else 1, abs(u)
@@ -57,7 +57,7 @@ def characteristics(currents: Array, nodes: Array, pieces: Array) -> Array:
     return out
 
 
-@jit(nogil=True, error_model="numpy")
+@within(error_model="numpy")
 def filter_gains(T: float, step: float) -> tuple[float, float, float]:
     """(φ, γ0, γ1) of T y' + y = u over a step, exact for an input that is a straight line."""
     if T <= 0.0:
@@ -67,7 +67,7 @@ def filter_gains(T: float, step: float) -> tuple[float, float, float]:
     return phi, (1.0 - phi) - g1, g1
 
 
-@jit(nogil=True, error_model="numpy")
+@within(error_model="numpy")
 def earlier(samples: Array, place: float) -> float:
     """The record between its samples; before its first and behind its last one these go on."""
     last = len(samples) - 1
@@ -130,7 +130,7 @@ def respond(
     start[0], start[1], start[2], start[3] = x, q, q2, w
 
 
-@jit(nogil=True, error_model="numpy")
+@in_place(error_model="numpy")
 def rest(answer: Array, measured: Array, first: int, end: int, scale: float, drifting: bool, out: Array) -> None:
     """Fill `out` with answer − measured of a part, less its mean or, where `drifting`, its straight line; scaled."""
     count = end - first

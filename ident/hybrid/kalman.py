@@ -18,7 +18,7 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from ident.simulation.jit import in_place, inlined
+from ident.simulation.jit import in_place, inlined, within
 
 Y, P, G, DY, DP, DG, UYP, UYG, UPG = range(9)
 """Places in the state: the estimate, and the factors of its covariance U D Uᵀ, U unit upper triangular."""
@@ -95,14 +95,14 @@ def _wander(s: Any, c: Any, r: float) -> None:
         _widen(s, c[GAIN_NOISE] * c[STEP], 0.0, p)
 
 
-@in_place()
+@within()
 def _of_gain(s: Any, p: float, g: float) -> Any:
     """p⁴ times the variance of k = g/p, to first order: a sum of squares, never below 0."""
     by = p - g * s[UPG]
     return s[DP] * g * g + s[DG] * by * by
 
 
-@in_place()
+@within()
 def _widen(s: Any, q: float, xp: float, xg: float) -> None:
     """Add q x xᵀ to the covariance, x = (0, xp, xg): the rank-one update of Agee and Turner."""
     if q == 0.0:
@@ -160,7 +160,7 @@ def _of_y(s: Any) -> Any:
     return s[DY] + s[UYP] * s[UYP] * s[DP] + s[UYG] * s[UYG] * s[DG]
 
 
-@in_place()
+@within()
 def advance(s: Any, c: Any, r0: float, r1: float, y: float) -> Any:
     """One sample: the reference ran from r0 to r1, then y was measured (not finite: it was not).
 

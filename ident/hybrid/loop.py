@@ -19,7 +19,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ident.simulation.jit import in_place, inlined
+from ident.simulation.jit import in_place, inlined, within
 from ident.simulation.machine_call import advance_from
 
 Array = NDArray[np.float64]
@@ -31,6 +31,8 @@ COMMAND, DISPLACEMENT, FORCE, INTERACTION, POSITION, SPEED, ACCELERATION = map(n
 NumPy's integers have one type, and each of Python's constants one of its own, for which a function is compiled anew.
 """
 ROWS = 7
+WHOLE, BEFORE, BEHIND = map(np.int64, range(3))
+"""What of a sample is done: all of it, what comes before controllers are asked, or what follows their commands."""
 _NEVER = 1 << 40  # steps between rows that a kernel writes: the loop reads the buffer itself
 
 
@@ -44,9 +46,10 @@ class Rig(NamedTuple):
     Of what joins specimens: K, C and M beside the diagonal (3, P, P), inverse of the joint mass (L, P, P), masses of
     machine and of specimen (2, C), what acts and what acted at the last two steps (3, C). Of the numerical part: Φ
     (L, N, N), drives (L, 2P + 2, N) of each f(k) and f̂(k+1), then a(k), a(k+1), its places (P,), state (L, N), last
-    forces (C,). Of the controllers: A, B, C, D (P, …), states (C, m) and what was computed `ahead` (…, P). `ground`
-    (n,), noise (P, n, 2), the converters' steps (P, 2). `d`, `y` and `f` (n, C) are what is recorded; a system of which
-    a |d| exceeds its `limit` (C,) is taken out, its last sample then standing in `ended` (L,).
+    forces (C,). Of the controllers: A, B, C, D (P, …), which are such ones (P,), states (C, m) and
+    what was computed `ahead` (…, P). `ground` (n,), noise (P, n, 2), the converters' steps (P, 2). `d`, `y` and `f`
+    (n, C) are what is recorded; a system of which a |d| exceeds its `limit` (C,) is taken out, its last sample then
+    standing in `ended` (L,).
     """
 
     code: Whole
@@ -83,6 +86,7 @@ class Rig(NamedTuple):
     B: Array
     C: Array
     D: Array
+    sampled: NDArray[np.bool_]
     x: Array
     ahead: Array
     ground: Array
@@ -130,8 +134,8 @@ def _feed(k: int, g: int, rig: Any) -> None:
         rig.places[at + lane] = window - k * steps - 1
 
 
-@in_place()
-def advance_machines(k: int, rig: Any) -> None:
+@within()
+def _advance_machines(k: int, rig: Any) -> None:
     """The machines from sample k to k + 1; what their transducers read at k is noted."""
     for g in range(len(rig.code)):
         _feed(k, g, rig)
@@ -177,7 +181,7 @@ def _read(k: int, c: int, beside: float, rig: Any) -> None:
 
 @inlined
 def _advance_joined(k: int, rig: Any) -> None:
-    """As :func:`advance_machines`, step by step: each machine gets the force that the others exert on it."""
+    """As :func:`_advance_machines`, step by step: each machine gets the force that the others exert on it."""
     steps, parts = rig.steps[0], len(rig.place)
     for step in range(k * steps, (k + 1) * steps):
         for g in range(len(rig.code)):
@@ -226,7 +230,7 @@ def _interact(k: int, system: int, parts: int, rig: Any) -> None:
 
 
 @inlined
-def control(k: int, c: int, rig: Any) -> Any:
+def _control(k: int, c: int, rig: Any) -> Any:
     """u(k) of the sampled controller of a column, whose state goes on, with what was computed ahead."""
     p, d, y, n = rig.part[c], rig.d[k, c], rig.y[k, c], rig.x.shape[1]
     u = rig.D[p, 0, 0] * d + rig.D[p, 0, 1] * y + rig.ahead[min(k, len(rig.ahead) - 1), p]
@@ -242,7 +246,7 @@ def control(k: int, c: int, rig: Any) -> Any:
 
 
 @inlined
-def close(k: int, system: int, rig: Any) -> None:
+def _close(k: int, system: int, rig: Any) -> None:
     """Take the numerical part of a system to sample k + 1, by the forces that were measured."""
     parts, n = len(rig.place), rig.z.shape[1]
     a, then = rig.ground[k], rig.ground[min(k + 1, len(rig.ground) - 1)]
@@ -280,12 +284,16 @@ def _ask(k: int, system: int | np.int64, rig: Any) -> None:
 
 
 @in_place()
-def advance_under(first: int, last: int, rig: Any) -> Any:
-    """Samples first to last − 1 under sampled controllers; how many systems have not run away."""
+def advance_under(first: int, last: int, part: int | np.int64, rig: Any) -> Any:
+    """This part of samples first to last − 1; how many systems have not run away.
+
+    The commands of controllers that are not sampled linear ones stand in `held` before what is done :data:`BEHIND`.
+    """
     parts, systems = len(rig.place), len(rig.ended)
     left = systems
     for k in range(first, last):
-        advance_machines(k, rig)
+        if part != BEHIND:
+            _advance_machines(k, rig)
         left = 0
         for system in range(systems):
             columns = range(system * parts, (system + 1) * parts)
@@ -294,17 +302,13 @@ def advance_under(first: int, last: int, rig: Any) -> Any:
                     rig.held[k + rig.delay[c], c] = 0.0
                 continue
             left += 1
-            _ask(k, system, rig)
-            for c in columns:
-                rig.held[k + rig.delay[c], c] = control(k, c, rig)
-            close(k, system, rig)
+            if part != BEHIND:
+                _ask(k, system, rig)
+            if part != BEFORE:
+                for c in columns:
+                    if rig.sampled[rig.part[c]]:
+                        rig.held[k + rig.delay[c], c] = _control(k, c, rig)
+                _close(k, system, rig)
         if left == 0:
             break
     return left
-
-
-@in_place()
-def read(k: int, rig: Any) -> None:
-    """d(k) and y(k) of the one system there is, for controllers that are no sampled linear ones."""
-    advance_machines(k, rig)
-    _ask(k, np.int64(0), rig)

@@ -13,7 +13,7 @@ from ident.chain.chain import INPUT, Chain
 from ident.hybrid.case import Case
 from ident.hybrid.controller import AheadController, Controller, SampledController, no_controller
 from ident.hybrid.coupled_case import CoupledCase, System
-from ident.hybrid.loop import LANES, Rig, advance_under, close, control, read
+from ident.hybrid.loop import BEFORE, BEHIND, LANES, WHOLE, Rig, advance_under
 from ident.hybrid.machine import DISPLACEMENT, FORCE, JOINED, Machine, joined
 from ident.hybrid.substructure import numerical
 from ident.progress import Progress, Report, silent
@@ -31,22 +31,21 @@ def run(rig: Rig, acting: Sequence[Controller], report: Report = silent) -> None
     for first in range(0, n, _CHUNK):
         report(Progress(_STAGE, first, n))
         last = min(first + _CHUNK, n)
-        if not (advance_under(first, last, rig) if compiled else _under(first, last, rig, acting)):
+        if not (advance_under(first, last, WHOLE, rig) if compiled else _under(first, last, rig, acting)):
             break
     report(Progress(_STAGE, n, n))
 
 
 def _under(first: int, last: int, rig: Rig, acting: Sequence[Controller]) -> bool:
     """Samples under controllers that are asked sample by sample; whether the system is still there."""
-    steps = [None if isinstance(one, _COMPILED) else one.step for one in acting]
+    asked = [(c, one.step) for c, one in enumerate(acting) if not isinstance(one, _COMPILED)]
     for k in range(first, last):
-        read(k, rig)
+        advance_under(k, k + 1, BEFORE, rig)
         if rig.ended[0] <= k:
             return False
-        for c, step in enumerate(steps):
-            u = control(k, c, rig) if step is None else step(float(rig.d[k, c]), float(rig.y[k, c]))
-            rig.held[k + rig.delay[c], c] = u
-        close(k, 0, rig)
+        for c, step in asked:
+            rig.held[k + rig.delay[c], c] = step(float(rig.d[k, c]), float(rig.y[k, c]))
+        advance_under(k, k + 1, BEHIND, rig)
     return True
 
 
@@ -82,7 +81,8 @@ def rig_of(
         interaction=np.zeros((3, count)),
         phi=np.array([one.phi for one in numericals]), drives=np.array([one.drives for one in numericals]),
         place=np.array(first.places), z=np.zeros((len(systems), 2 * first.storeys)), before=np.zeros(count),
-        **_controllers(linear, order), x=np.zeros((count, order)), ahead=_ahead(acting), ground=ground, noise=noise,
+        **_controllers(linear, order), sampled=np.array([isinstance(one, _COMPILED) for one in acting]),
+        x=np.zeros((count, order)), ahead=_ahead(acting), ground=ground, noise=noise,
         quantum=np.array([[one.displacement_step, one.force_step] for one in noises]),
         d=np.zeros((n, count)), y=np.zeros((n, count)), f=np.zeros((n, count)),
         limit=limits, ended=np.full(len(systems), n, dtype=np.int64),

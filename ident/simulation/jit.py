@@ -25,6 +25,7 @@ from numba.core.compiler import CompileResult
 from numba.core.compiler_lock import global_compiler_lock
 from numba.core.dispatcher import Dispatcher
 from numba.core.extending import _Intrinsic
+from numba.core.registry import CPUDispatcher
 
 from ident.cached import cached_property
 from ident.simulation.kept import found, in_turn, keep
@@ -48,7 +49,11 @@ def watching(tell: Callable[[], None]) -> Iterator[None]:
 
 
 def jit(**options: Any) -> Callable[[Function], Function]:
-    """As ``numba.njit(**options)``; compiled once for all processes of this user."""
+    """As ``numba.njit(**options)``; compiled once for all processes of this user.
+
+    Without the form for callers in C, which none has: a tenth of the compilation.
+    """
+    options = {"no_cfunc_wrapper": True, **options}
 
     def decorated(function: Function) -> Function:
         with uninterrupted():  # the first of a process loads what numba's compiler calls
@@ -64,6 +69,29 @@ def in_place(**options: Any) -> Callable[[Function], Function]:
     Numba then counts no references to arrays, which takes a quarter of the compilation and of the run.
     """
     return jit(nogil=True, _nrt=False, **options)
+
+
+def within(**options: Any) -> Callable[[Function], Function]:
+    """As :func:`in_place`, for a function that compiled functions call: no form for callers in Python is compiled.
+
+    That form takes each argument apart, which for a tuple of arrays is as long as the function. Python itself carries
+    out the lines of such a function.
+    """
+
+    def decorated(function: Function) -> Function:
+        made: Any = in_place(no_cpython_wrapper=True, **options)(function)
+        made.__class__ = _Within
+        inner: Function = made
+        return inner
+
+    return decorated
+
+
+class _Within(CPUDispatcher):  # type: ignore[misc]  # to the type checker a class of numba is any
+    """A function of which numba compiled no form that Python could call."""
+
+    def __call__(self, *given: Any) -> Any:
+        return self.py_func(*given)
 
 
 inlined = jit(nogil=True, inline="always")

@@ -5,6 +5,7 @@ from __future__ import annotations
 import fcntl
 import importlib
 import math
+import re
 from pathlib import Path
 from types import FunctionType
 from typing import Any
@@ -14,7 +15,7 @@ import numpy as np
 import pytest
 
 from ident.simulation import kept
-from ident.simulation.jit import jit, made_of, shared
+from ident.simulation.jit import jit, made_of, shared, within
 
 ROOT = Path(__file__).resolve().parents[2]
 CALLED = """
@@ -75,6 +76,21 @@ def test_each_change_that_numba_reads_is_another_function(changed):
 def test_a_comment_and_another_line_are_no_change():
     moved = calling("\n\n" + CALLED.replace("return", "# as ever\n    return"))
     assert list(made_of(moved)) == list(made_of(calling()))
+
+
+def test_python_carries_out_a_function_that_compiled_ones_call(folder):  # noqa: ARG001
+    """No form of it for callers in Python is compiled, nor one for callers in C of any function."""
+    other: dict[str, Any] = {"__name__": "other"}
+    exec(CALLED, other)
+    own: dict[str, Any] = {"__name__": "own", "called": within()(other["called"])}
+    exec(CALLING, own)
+    called, outer = own["called"], jit(nogil=True)(own["calling"])
+    assert (outer(1.5), called(1.5)) == (3.5, 3.0)
+    forms = [
+        [form for form in ("@_ZN7cpython", "@cfunc.") if form in next(iter(function.inspect_llvm().values()))]
+        for function in (called, outer)
+    ]
+    assert forms == [[], ["@_ZN7cpython"]]
 
 
 def test_what_a_closure_reads_counts():
@@ -139,7 +155,7 @@ def test_every_compiled_function_of_the_library_can_be_kept():
     for file in (ROOT / "ident").rglob("*.py"):
         text = file.read_text(encoding="utf-8")
         assert "\n@njit" not in text.replace('"""from numba import njit\n\n@njit', ""), file
-        if "\n@jit(" in text:
+        if re.search(r"^@(jit|in_place|within)\(", text, re.MULTILINE):
             module = importlib.import_module(".".join(file.relative_to(ROOT).with_suffix("").parts))
             for function in vars(module).values():
                 if hasattr(function, "py_func"):
