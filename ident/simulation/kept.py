@@ -7,6 +7,7 @@ the hash of what it holds: a change of one equation is another file, and what wa
 from __future__ import annotations
 
 import hashlib
+import threading
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
@@ -18,15 +19,22 @@ from ident.simulation.cache import cache_folder, tidy_daily, used, write
 LONGEST_TURN = 20.0
 """s that a process waits for another one that compiles the same: several times what the slowest text takes."""
 _LOOK = 0.02  # s between two looks whether it is its turn
+_turns: dict[str, threading.Lock] = {}
 _MARK = hashlib.sha256().digest_size  # bytes before the code: its hash
 
 
 def kept(text: str, compiled: Callable[[], bytes]) -> bytes:
-    """The machine code of a text: what is on disk, or what `compiled` makes, which is then kept there if it can be."""
+    """The machine code of a text: what is on disk, or what `compiled` makes, which is then kept there if it can be.
+
+    Threads that need it at once wait for the one that compiles.
+    """
     code = found(text)
     if code is None:
-        code = compiled()
-        keep(text, code)
+        with _one_thread_at(text):
+            code = found(text)
+            if code is None:
+                code = compiled()
+                keep(text, code)
     return code
 
 
@@ -82,6 +90,18 @@ def in_turn(text: str) -> Iterator[None]:
         finally:  # by name: a process that was forked meanwhile has the file open, too
             with suppress(OSError):
                 fcntl.flock(lock, fcntl.LOCK_UN)
+
+
+@contextmanager
+def _one_thread_at(text: str) -> Iterator[None]:
+    """One thread of this process at a time compiles a text: refits side by side begin with the same kernel."""
+    turn = _turns.setdefault(_path(text).name, threading.Lock())
+    has_it = turn.acquire(timeout=LONGEST_TURN)
+    try:
+        yield
+    finally:
+        if has_it:
+            turn.release()
 
 
 def _path(text: str) -> Path:

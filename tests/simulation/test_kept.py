@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import threading
+import time
 from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import numpy as np
@@ -41,6 +44,19 @@ def test_the_second_process_finds_what_the_first_made(answer, folder):
     assert made == 1
     assert answer() == (first, 0)
     assert len(list(folder.iterdir())) == 1
+
+
+def test_threads_that_need_one_at_once_compile_it_once(folder):  # noqa: ARG001
+    """Refits side by side begin with the same kernel."""
+    begun, compiled = threading.Barrier(4), []
+
+    def asked(_: int) -> bytes:
+        begun.wait()
+        return kept.kept("a text", lambda: compiled.append("once") or time.sleep(0.1) or b"code")  # type: ignore[func-returns-value]
+
+    with ThreadPoolExecutor(4) as threads:
+        assert set(threads.map(asked, range(4))) == {b"code"}
+    assert compiled == ["once"]
 
 
 @pytest.mark.parametrize("harm", [lambda b: b[:-7], lambda b: b[:40] + b"\x00\x01" + b[42:], lambda _: b""])
