@@ -7,9 +7,10 @@ import sys
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
 from dataclasses import dataclass
-from functools import cache, partial
+from functools import partial
 from importlib import import_module
 from importlib.metadata import version
+from typing import Any
 
 import uvicorn
 from fastapi import APIRouter, Depends, FastAPI
@@ -30,6 +31,7 @@ from app.jobs.engine import Jobs
 from app.jobs.service import resume
 from app.jobs.steps import Runs
 from app.kinds import KINDS
+from app.lru import LRU
 from app.operation.logs import in_json
 from app.operation.metrics import Requests
 from app.operation.observed import Observed
@@ -85,7 +87,8 @@ _PATIENCE = 5  # s in which what is being answered ends, before the service does
 _KEPT = 75  # s that a connection waits for its next request: clients let go after 5, proxies after 60, and first
 _TURN = 1e-3  # s after which a figure that is drawn lets an answer take its turn: the interpreter's own are 5
 READERS = 2  # uploads that are read at once
-WORK = "app.kinds"  # what processes apart have imported when they begin
+WORK = ("app.kinds", "ident.simulation.ready")  # what processes apart have imported when they begin
+_documents: LRU[dict[str, Any]] = LRU(1)  # all applications of a process have the same calls, and it takes 2 s to write
 
 
 def create_app(settings: Settings, apart: bool = False) -> FastAPI:
@@ -110,7 +113,7 @@ def routed() -> FastAPI:
         generate_unique_id_function=openapi.named, dependencies=[Depends(refuse_undeclared)],
         webhooks=told,
     )  # fmt: skip
-    app.openapi = cache(partial(openapi.write, app))  # type: ignore[method-assign]
+    app.openapi = partial(_documents.get, app.version, partial(openapi.write, app))  # type: ignore[method-assign]
     api = APIRouter(prefix=API)
     for feature in FEATURES:
         api.include_router(import_module(f"app.{feature}.endpoints").router)
@@ -182,7 +185,7 @@ def make_context(settings: Settings, apart: bool = False) -> Context:
     engine = connect(settings.database)
     makers, storage = sessions(engine), open_storage(settings)
     carry(makers)
-    worker, readers = (Apart(1, WORK), Apart(READERS, WORK)) if apart else (Here(), Here())
+    worker, readers = (Apart(1, *WORK), Apart(READERS, *WORK)) if apart else (Here(), Here())
     runs = Runs(makers, storage, settings.executor, *KINDS, place=worker)
     return Context(settings, engine, makers, storage, Jobs(settings, runs), readers, worker)
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 import contextvars
 import gc
+import importlib
 import io
 import logging
 import os
@@ -50,6 +51,7 @@ def pytest_collection_finish(session: pytest.Session) -> None:
         from tests.running import nursery
 
         nursery()  # one for all workers
+        importlib.import_module("ident.simulation.ready")  # behind it: the two go on side by side
     if "hypothesis" in sys.modules and not asked_for_full(session.config):
         from hypothesis.internal.conjecture import providers
 

@@ -26,7 +26,7 @@ from typing import Any, ClassVar
 
 IMPORTED = ("app.cli.program", "app.main", "app.operation.migration", "ident.workflows", "uvicorn.protocols.http.auto",
             "uvicorn.loops.auto", "uvicorn.lifespan.on", "psycopg", "obstore", "dbos", "app.fits.work",
-            "app.diagnoses.work", "app.kinds")  # fmt: skip
+            "app.diagnoses.work", "app.kinds", "ident.simulation.ready")  # fmt: skip
 COMMAND = "from app.cli.program import main; main()"
 WAIT = 240.0  # s, for a machine that is busy with other things
 
@@ -100,6 +100,7 @@ def main() -> None:
     gc.disable()
     for name in IMPORTED:
         importlib.import_module(name)
+    importlib.import_module("app.main").routed()  # with which all calls of the service are imported
     gc.freeze()
     gc.enable()
     resource_tracker.ensure_running()

@@ -27,8 +27,8 @@ class Apart:
     What they need is imported when the first is, or some seconds after the start, when a service has been opened.
     """
 
-    def __init__(self, count: int, ready: str) -> None:
-        """`ready` names a module that they have imported when they begin."""
+    def __init__(self, count: int, *ready: str) -> None:
+        """`ready` names modules that they have imported when they begin."""
         self._context = _context(ready)
         self._turn = threading.BoundedSemaphore(count)
         self._lock = threading.Lock()
@@ -98,12 +98,12 @@ class Apart:
         child.end()
 
 
-def _context(ready: str) -> Context:
+def _context(ready: tuple[str, ...]) -> Context:
     """How processes are begun: forked from one that has imported what they need and runs no thread, or each anew."""
     if "forkserver" not in multiprocessing.get_all_start_methods():
         return multiprocessing.get_context("spawn")
     context = multiprocessing.get_context("forkserver")
-    context.set_forkserver_preload([ready])
+    context.set_forkserver_preload([*ready])
     return context
 
 

@@ -34,6 +34,11 @@ def test_no_client_of_the_kept_document_is_broken() -> None:
     assert list(breaks(KEPT, now())) == [], "keep the call as it was, or: .venv/bin/python docs/generate.py --break"
 
 
+def test_it_is_written_once_for_all_applications_of_a_process() -> None:
+    """It takes two seconds, and no application has other calls."""
+    assert routed().openapi() is routed().openapi()
+
+
 def test_operations_are_called_by_words_each_its_own() -> None:
     ids = [call["operationId"] for call in calls()]
     assert len(set(ids)) == len(ids) > 50

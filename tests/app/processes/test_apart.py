@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import importlib
 import multiprocessing
 import os
 import signal
@@ -14,9 +15,11 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
+from numba.core.registry import cpu_target
 
 from app.errors import Removed
 from app.jobs.lease import Superseded
+from app.main import WORK
 from app.processes import Apart, Here, Place, Stopped
 from app.processes.child import LESS
 from ident.errors import Cancelled, Unusable
@@ -44,6 +47,17 @@ def test_it_is_another_process_that_stands_back(apart: Apart) -> None:
     assert first == second
     assert first[0] != os.getpid()
     assert first[1] == min(os.nice(0) + LESS, 19)
+
+
+def test_what_numba_looks_through_is_there_before_the_first_fork(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Each process of a service looked through it at its first fit, for 0.2 s."""
+    looked: list[str] = []
+    for context in ("typing_context", "target_context"):
+        monkeypatch.setattr(type(getattr(cpu_target, context)), "refresh", lambda of: looked.append(type(of).__name__))
+    for module in WORK:
+        monkeypatch.delitem(sys.modules, module, raising=False)
+        importlib.import_module(module)
+    assert looked == ["Context", "CPUContext"]
 
 
 @pytest.mark.parametrize("error", [
