@@ -95,15 +95,15 @@ def script(file: Path) -> str:
 
 def literals(file: Path) -> Iterator[str]:
     """String literals of a module that are words, without its docstrings; those of a command are its help."""
-    tree = ast.parse(file.read_text(encoding="utf-8"))
+    nodes = list(ast.walk(ast.parse(file.read_text(encoding="utf-8"))))
     docstrings = {
         id(line.value)
-        for node in ast.walk(tree)
+        for node in nodes
         if isinstance(node, ast.Module | ast.ClassDef | ast.FunctionDef | ast.AsyncFunctionDef)
         for line in node.body
         if isinstance(line, ast.Expr)
     }
-    for node in ast.walk(tree):
+    for node in nodes:
         if isinstance(node, ast.Constant) and isinstance(node.value, str) and id(node) not in docstrings:
             yield node.value
 

@@ -7,6 +7,7 @@ import os
 import re
 import subprocess
 import sys
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
@@ -78,13 +79,22 @@ def test_source_files_are_short():
     assert not found.keys() - WHOLE
 
 
+def statements(node: ast.AST) -> Iterator[ast.AST]:
+    """The statements below a node, without the expressions in them, which hold no function: a fifth of the nodes."""
+    for inner in (
+        each for part in ("body", "orelse", "finalbody", "handlers", "cases") for each in getattr(node, part, ())
+    ):
+        yield inner
+        yield from statements(inner)
+
+
 def test_functions_are_short():
     """No function of the packages is longer than a screen, but for those that are a story told in one go."""
     found = {
         f"{path.relative_to(ROOT)}: {node.name}"
         for package in ("ident", "app", "schemas")
         for path in sorted((ROOT / package).rglob("*.py"))
-        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8")))
+        for node in statements(ast.parse(path.read_text(encoding="utf-8")))
         if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef)
         and (node.end_lineno or 0) - node.body[0].lineno + 1 > LONGEST_FUNCTION
     }
