@@ -35,6 +35,17 @@ os.environ["PYTHONWARNINGS"] = "error::RuntimeWarning"
 gc.set_threshold(1_000_000, 20, 50)
 
 
+def pytest_configure(config: pytest.Config) -> None:
+    """What the processes of all workers are forked from imports the program while the tests are collected.
+
+    That is a core's work, and the other one waited. In a fresh clone each compiles half of the modules for both.
+    """
+    if config.getoption("--workers") > 1 and hasattr(os, "fork"):
+        from tests.running import nursery
+
+        nursery()
+
+
 def pytest_collection_finish(session: pytest.Session) -> None:
     """Loops of the references are compiled once for all processes, though they know nothing of the library's way.
 
@@ -47,11 +58,8 @@ def pytest_collection_finish(session: pytest.Session) -> None:
             for function in vars(module).values():
                 if hasattr(function, "py_func"):
                     shared(function)
-    if session.config.getoption("--workers") > 1 and hasattr(os, "fork"):
-        from tests.running import nursery
-
-        nursery()  # one for all workers
-        importlib.import_module("ident.simulation.ready")  # behind it: the two go on side by side
+    if session.config.getoption("--workers") > 1:
+        importlib.import_module("ident.simulation.ready")
     if "hypothesis" in sys.modules and not asked_for_full(session.config):
         from hypothesis.internal.conjecture import providers
 
