@@ -26,9 +26,9 @@ def cubic(t: float, width: float, c: Array) -> tuple[float, float]:
 
     `t` counts from its left node; beyond its width the slope at its end goes on.
     """
-    within = min(t, width)
-    slope = c[1] + within * (2.0 * c[2] + 3.0 * within * c[3])
-    return c[0] + within * (c[1] + within * (c[2] + within * c[3])) + (t - within) * slope, slope
+    inside = min(t, width)
+    slope = c[1] + inside * (2.0 * c[2] + 3.0 * inside * c[3])
+    return c[0] + inside * (c[1] + inside * (c[2] + inside * c[3])) + (t - inside) * slope, slope
 
 
 @within(error_model="numpy")
