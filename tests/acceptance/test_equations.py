@@ -177,7 +177,7 @@ def in_order(equation: Equation) -> list[str]:
     return names
 
 
-SILENT = {"f", "Ff", "M"}  # dry friction, which a linear chain has none of
+SILENT = {"f", "Ff", "M", "aB"}  # dry friction, which a linear chain has none of, and a base, which stands still
 SHOWN = {equation.target for equation in CHAIN.needed("displacement")}
 MUTATIONS = [
     (equation, wanted)

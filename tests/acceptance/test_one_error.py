@@ -22,6 +22,7 @@ from tests.fit import rig
 from tests.fit.test_windows import cylinder
 from tests.presets.test_composed import force_loop
 from tests.presets.test_machines import motor, specimen
+from tests.presets.test_moving_base import Storey
 from tests.presets.test_position_servo import servo
 from tests.presets.test_pressure_drive import CYLINDER
 from tests.presets.test_sprung_motor import machine as swinging
@@ -104,6 +105,7 @@ MACHINES: dict[str, tuple[str, Callable[[], Matrix], tuple[str, ...]]] = {
     "a motor with an effect": ("motor", lambda: motor(5, 1.0), ("dead_zone",)),
     "a mass that a pressure drives": ("pressure_drive", lambda: CYLINDER.recorded(1), ()),
     "a motor against a spring": ("sprung_motor", lambda: swinging(1), ()),
+    "a storey": ("moving_base", lambda: Storey().measured("acceleration", 8.0), ()),
     "a servo": ("position_servo", lambda: servo(1), ()),
     "a motor as a cylinder": ("open_valve", lambda: motor(5), ()),
     "a specimen": ("specimen", lambda: specimen(4), ()),
