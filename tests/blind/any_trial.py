@@ -79,9 +79,10 @@ def trial(seed: int, hidden: bool, seconds: float | None = None) -> Outcome:
     matrix = lab.measured()
     fit = identify(matrix, Settings(model=""))
     found = diagnose(matrix, fit, seconds=seconds, propose=False)
+    last = found.ladder[-1].error if found.ladder else fit.error  # there was no time for a step
     group = next((group for group in found.verdict.indistinguishable if lab.hidden in group), ())
     return Outcome(
-        lab, fit.model, _differs(lab, fit.model), fit.error["fit"] or 0.0, found.ladder[-1].error["fit"] or 0.0,
+        lab, fit.model, _differs(lab, fit.model), fit.error["fit"] or 0.0, last["fit"] or 0.0,
         found.verdict.effects, found.verdict.standing, group, worth, sure(found),
     )  # fmt: skip
 
