@@ -77,7 +77,7 @@ def compared_structures(
     """The models in question, the chosen one first: the simplest whose held-out error is not worse.
 
     Where its residual exceeds the noise, each has one effect, and the most probable one is first. A machine that moves
-    otherwise as a rule, as a motor along a way, is rare.
+    otherwise as a rule, as a motor along a way, counts as the usual one.
 
     Raises Unusable where the channels allow none.
     """
@@ -234,10 +234,6 @@ def _as_probable(models: Collection[_JudgedStructure], probable: Mapping[str, fl
     """Those of the models that are at least half as probable as the most probable one."""
     most = max(probable.get(model.machine, 0.0) for model in models)
     return [model for model in models if probable.get(model.machine, 0.0) >= 0.5 * most]
-
-
-def _parameters(model: _JudgedStructure) -> int:
-    return model.parameters
 
 
 def _simplest(models: Collection[_JudgedStructure]) -> _JudgedStructure:
