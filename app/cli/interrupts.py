@@ -1,4 +1,8 @@
-"""Ctrl-C is not lost: it ends the work at once, or at its next report where a compiler has swallowed it."""
+"""Ctrl-C is not lost: it ends the work at once, or as soon as the compiler is left.
+
+An exception that a signal raises within the compiler leaves its lock taken: whatever needs the compiler next, another
+thread or the end of the process, would wait for ever. So Ctrl-C within it is heard again a little later.
+"""
 
 from __future__ import annotations
 
@@ -9,6 +13,10 @@ from contextlib import contextmanager
 from types import FrameType
 
 _pressed = threading.Event()
+_COMPILER = {"numba", "llvmlite"}
+_AGAIN = (signal.SIGALRM,) if hasattr(signal, "SIGALRM") else ()  # Windows has no such timer
+_LATER = 0.02
+"""Seconds after which Ctrl-C is heard again. Shorter than anybody notices, longer than the handler takes."""
 
 
 @contextmanager
@@ -17,12 +25,14 @@ def heard() -> Iterator[None]:
     if threading.current_thread() is not threading.main_thread():  # which alone may handle signals
         yield
         return
-    _pressed.clear()
-    before = signal.signal(signal.SIGINT, _press)
+    before = {number: signal.signal(number, _press) for number in (signal.SIGINT, *_AGAIN)}
     try:
         yield
     finally:
-        signal.signal(signal.SIGINT, before)
+        _be_silent()
+        _pressed.clear()
+        for number, handler in before.items():
+            signal.signal(number, handler)
 
 
 def ended_as_by_ctrl_c() -> None:
@@ -34,9 +44,26 @@ def ended_as_by_ctrl_c() -> None:
 def heed() -> None:
     """Raise KeyboardInterrupt where Ctrl-C was pressed."""
     if _pressed.is_set():
+        _be_silent()
         raise KeyboardInterrupt
 
 
-def _press(_signal: int, _frame: FrameType | None) -> None:
+def _press(_signal: int, frame: FrameType | None) -> None:
     _pressed.set()
-    raise KeyboardInterrupt
+    if _AGAIN and _is_compiling(frame):
+        signal.setitimer(signal.ITIMER_REAL, _LATER)
+    else:
+        raise KeyboardInterrupt
+
+
+def _be_silent() -> None:
+    """Ctrl-C that was to be heard again is not."""
+    if _AGAIN and threading.current_thread() is threading.main_thread():
+        signal.setitimer(signal.ITIMER_REAL, 0.0)
+
+
+def _is_compiling(frame: FrameType | None) -> bool:
+    """Whether the compiler was interrupted, or what it calls."""
+    while frame is not None and frame.f_globals.get("__name__", "").partition(".")[0] not in _COMPILER:
+        frame = frame.f_back
+    return frame is not None
