@@ -17,7 +17,7 @@ from ident.fit.settling import Settling
 from ident.fit.simulated_runs import SimulatedRuns
 from ident.parallel import each
 from ident.run import Run
-from ident.simulation.kernel import WIDE
+from ident.simulation.kernel import WIDE, exponents_in_code
 from ident.simulation.simulate import side_by_side
 
 Array = NDArray[np.float64]
@@ -59,9 +59,8 @@ class _Model:
 
     @property
     def together(self) -> tuple[object, ...]:
-        """What has to be the same in one simulation: the steps, in its code the powers, and the runs that settle."""
-        powers = (self.values[name].item() for name in self.runs.chain.exponents if name in self.values)
-        return (self.steps, *powers, self.pending)
+        """What has to be the same in one simulation: the steps, the exponents in its code, and the runs that settle."""
+        return (self.steps, exponents_in_code(self.runs.chain, self.values), self.pending)
 
 
 def _settle(models: Sequence[_Model]) -> None:

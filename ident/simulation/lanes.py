@@ -18,7 +18,7 @@ Array = NDArray[np.float64]
 Places = NDArray[np.int64]
 _MANY = 500_000
 """Steps of all lanes of a simulation from which a kernel of sixteen lanes is worth its compilation. Why: such a
-simulation takes a millisecond less, and the compilation fifty, which a refit or two make good.
+simulation takes a millisecond less, and the compilation twenty, which a refit or two make good.
 
 Test: tests/simulation/test_lanes.py::test_a_kernel_of_sixteen_lanes_is_compiled_for_what_takes_many_steps"""
 

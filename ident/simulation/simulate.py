@@ -17,7 +17,7 @@ from ident.parallel import LEAST_SHARED, cores, each
 from ident.run import Run
 from ident.simulation.filters import pack_filter
 from ident.simulation.inputs import fine, jump_share
-from ident.simulation.kernel import HELD, LANES, SHARE, WIDE, Kernel, constant, kernel
+from ident.simulation.kernel import HELD, LANES, SHARE, WIDE, Kernel, constant, exponents_in_code, kernel
 from ident.simulation.lanes import Lanes
 from ident.simulation.machine_call import advance_groups
 from ident.time_budget import LONGEST_BATCH, check_time
@@ -128,12 +128,7 @@ class Simulation:
             begin, size = end, min(2 * size, most)
 
     def _kernel(self) -> Kernel:
-        exponents = {
-            (name, float(np.ravel(self.values[name])[0]))
-            for name in self.chain.exponents
-            if np.ptp(self.values[name]) == 0
-        }
-        return kernel(self.chain, self.runs[0].output, frozenset(exponents), recorded=True)
+        return kernel(self.chain, self.runs[0].output, exponents_in_code(self.chain, self.values), recorded=True)
 
     def _lanes(self, lanes: int) -> dict[str, Array]:
         """Every symbol lane by lane, the spare lanes repeating the last."""

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from ident.chain.chain import STEP, Chain
 from ident.errors import Unusable
 from ident.simulation.filters import pack_filter
-from ident.simulation.kernel import HELD, LANES, SHARE, WIDE, Kernel, constant, kernel
+from ident.simulation.kernel import HELD, LANES, SHARE, WIDE, Kernel, constant, exponents_in_code, kernel
 
 Array = NDArray[np.float64]
 
@@ -66,8 +66,7 @@ def packed_kernel(
     known = {name: np.array(values[name], dtype=np.float64) for name in chain.symbols}
     known[STEP] = np.array(1.0 / (sample_rate * steps))
     lane = {name: _filled(np.broadcast_to(value, (count,))) for name, value in known.items()}
-    exponents = {(name, float(lane[name][0])) for name in chain.exponents if np.ptp(lane[name]) == 0}
-    built = kernel(chain, channels[0], frozenset(exponents), channels[1:])
+    built = kernel(chain, channels[0], exponents_in_code(chain, lane), channels[1:])
     if set(built.measured) - set(driven):
         raise Unusable("no-loop", "its displacement depends on measured signals other than the command", "model",
                        "use a model that the command alone drives")  # fmt: skip

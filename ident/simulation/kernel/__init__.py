@@ -10,13 +10,17 @@ One flat buffer holds everything at constant offsets, and comparisons stand for 
 compiler see that nothing overlaps and put the lanes side by side.
 """
 
+from collections.abc import Mapping
 from functools import lru_cache
+from typing import Any
+
+import numpy as np
 
 from ident.chain.chain import Chain
 from ident.chain.exact_lags import exact_lags, with_exact_lags
 from ident.simulation.kernel.layout import BEYOND, HELD, SHARE, Filter, Kernel
 from ident.simulation.kernel.machine_code import LANES, WIDE
-from ident.simulation.kernel.source import constant
+from ident.simulation.kernel.source import WRITTEN_OUT, constant
 from ident.simulation.kernel.writer import Writer
 
 
@@ -35,4 +39,24 @@ def kernel(
     return Writer(written, output, dict(plain), beside=beside, followers=followers, recorded=recorded).kernel()
 
 
-__all__ = ["BEYOND", "HELD", "LANES", "SHARE", "WIDE", "Filter", "Kernel", "constant", "kernel"]
+def exponents_in_code(chain: Chain, values: Mapping[str, Any]) -> frozenset[tuple[str, float]]:
+    """The exponents of a chain that are `plain` for some `values` of its symbols: one number that is written out.
+
+    Any other number is data of the kernel, so that a fit that searches for it compiles nothing.
+    """
+    found = {name: np.ravel(values[name]) for name in chain.exponents if name in values}
+    return frozenset((name, float(of[0])) for name, of in found.items() if of[0] in WRITTEN_OUT and np.all(of == of[0]))
+
+
+__all__ = [
+    "BEYOND",
+    "HELD",
+    "LANES",
+    "SHARE",
+    "WIDE",
+    "Filter",
+    "Kernel",
+    "constant",
+    "exponents_in_code",
+    "kernel",
+]

@@ -18,6 +18,9 @@ from ident.equations.grammar import ARITHMETIC, DYNAMIC, TABLES, TIME, reads, tr
 from ident.equations.interpolation import coefficient
 from ident.errors import Unusable
 
+WRITTEN_OUT = (0.25, 0.5, 1.0, 2.0, 3.0, 4.0)
+"""Exponents for which roots and products stand in the code: a number there is worth code of its own."""
+
 
 @dataclass
 class Source:
@@ -184,12 +187,14 @@ class Source:
         if not isinstance(exponent, ast.Constant):
             return f"pow({base}, {self._lower(exponent, stage)})"
         value = float(exponent.value)  # type: ignore[arg-type]
+        if value not in WRITTEN_OUT:
+            return f"pow({base}, {value!r})"
         if value == 1.0:
             return base
-        if value in (2.0, 3.0, 4.0):
+        if value > 1.0:
             x = self._temporary(base)
             return "(" + " * ".join([x] * int(value)) + ")"
-        return {0.5: f"sqrt({base})", 0.25: f"sqrt(sqrt({base}))"}.get(value, f"pow({base}, {value!r})")
+        return f"sqrt({base})" if value == 0.5 else f"sqrt(sqrt({base}))"
 
 
 _SIGNS: dict[type[ast.AST], str] = {

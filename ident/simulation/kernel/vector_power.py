@@ -1,0 +1,175 @@
+"""The power of eight lanes at once, in the language of LLVM: a mathematics library takes them one by one.
+
+x^y = 2^(y log2 x) with x = m 2^e, √½ ≤ m < √2: log2 m = 2/ln 2 · atanh((m − 1)/(m + 1)) by its series, and 2^r with
+|r| ≤ ½ by that of the exponential function. Both series go on until a term is below the last bit. The relative error is
+below 1e-14 where |y log2 x| < 10. What is not positive follows C: 0 and what is not a number give what pow gives, and a
+negative x gives a number where y is whole.
+"""
+
+from __future__ import annotations
+
+import math
+import struct
+from dataclasses import dataclass, field
+
+LOGARITHM_TERMS = 11
+"""Terms of atanh s = s Σ s^2k/(2k + 1): with |s| ≤ 0.172 the first that is left out is 6e-19 of the first."""
+EXPONENTIAL_TERMS = 14
+"""Terms of 2^r = Σ (r ln 2)^k/k!: with |r| ≤ ½ the first that is left out is 4e-18 of the first."""
+_SHIFT = 52  # bits of a number behind its exponent
+_BIAS = 1023  # what is added to an exponent
+_ROUND = 1.5 * 2.0**52
+"""Added to a number, it leaves the nearest whole one in the last bits: few processors round eight numbers otherwise."""
+_WHOLE = 2.0**52
+"""A number whose last bits are a whole one, after which it is the sum of both."""
+_RANGE = 2200.0
+"""Exponents beyond which 2^n is 0 or infinite by far."""
+
+
+@dataclass
+class _Function:
+    """Instructions on a vector of so many lanes, in turn."""
+
+    lanes: int
+    written: list[str] = field(default_factory=list)
+
+    @property
+    def real(self) -> str:
+        return f"<{self.lanes} x double>"
+
+    @property
+    def whole(self) -> str:
+        return f"<{self.lanes} x i64>"
+
+    def new(self, operation: str) -> str:
+        self.written.append(f"%r{len(self.written)} = {operation}")
+        return f"%r{len(self.written) - 1}"
+
+    def number(self, value: float) -> str:
+        return everywhere(value, self.lanes)
+
+    def integer(self, value: int) -> str:
+        return f"<{', '.join([f'i64 {value}'] * self.lanes)}>"
+
+    def do(self, name: str, a: str, b: str) -> str:
+        """Of two vectors, a + b for ``fadd`` and so on; nothing is put into another order."""
+        kind = self.real if name[0] == "f" else self.whole
+        return self.new(f"{name} {kind} {a}, {b}")
+
+    def fused(self, a: str, b: str, c: str) -> str:
+        """a b + c, rounded once."""
+        given = ", ".join(f"{self.real} {one}" for one in (a, b, c))
+        return self.new(f"call {self.real} @llvm.fma.v{self.lanes}f64({given})")
+
+    def rounded(self, a: str) -> str:
+        """The nearest whole number, and the bits of it that :meth:`bits_of` reads."""
+        return self.do("fadd", a, self.number(_ROUND))
+
+    def bits_of(self, a: str) -> str:
+        return self.new(f"bitcast {self.real} {a} to {self.whole}")
+
+    def real_of(self, a: str) -> str:
+        return self.new(f"bitcast {self.whole} {a} to {self.real}")
+
+    def holds(self, relation: str, a: str, b: str) -> str:
+        return self.new(f"fcmp {relation} {self.real} {a}, {b}")
+
+    def choice(self, holds: str, a: str, b: str) -> str:
+        return self.new(f"select <{self.lanes} x i1> {holds}, {self.real} {a}, {self.real} {b}")
+
+    def series(self, z: str, coefficients: list[float]) -> str:
+        """Σ c_k z^k, the even and the odd terms side by side: half as long a chain."""
+        square = self.do("fmul", z, z)
+        even, odd = (self._horner(square, coefficients[first::2]) for first in (0, 1))
+        return self.fused(odd, z, even)
+
+    def _horner(self, z: str, coefficients: list[float]) -> str:
+        *others, last = (self.number(c) for c in coefficients)
+        for c in reversed(others):
+            last = self.fused(last, z, c)
+        return last
+
+
+def power(lanes: int) -> str:
+    """The function ``@power(x, y)`` of vectors of so many lanes."""
+    of = _Function(lanes)
+    zero, one = of.number(0.0), of.number(1.0)
+    size = of.new(f"call {of.real} @llvm.fabs.v{lanes}f64({of.real} %x)")
+    logarithm, exponent = _logarithm(of, size)
+    # n is the nearest whole number to y log2 x, and r the rest: y e − n is exact
+    product = of.do("fmul", "%y", logarithm)
+    whole = _clipped(of, of.fused("%y", exponent, product))
+    shifted = of.rounded(whole)
+    n = of.do("fsub", shifted, of.number(_ROUND))
+    rest = of.do("fadd", of.fused("%y", exponent, of.do("fsub", zero, n)), product)
+    ln2 = math.log(2.0)
+    value = of.series(rest, [ln2**k / math.factorial(k) for k in range(EXPONENTIAL_TERMS)])
+    value = _scaled(of, value, n)
+    value = of.choice(of.holds("ogt", whole, of.number(_RANGE - 1.0)), of.number(math.inf), value)
+    value = of.choice(of.holds("olt", whole, of.number(1.0 - _RANGE)), zero, value)
+    value = _at_the_ends(of, value, size)
+    value = of.choice(of.holds("oeq", "%y", zero), one, value)
+    given, functions = f"{of.real} %x, {of.real} %y", f"v{lanes}f64"
+    return (
+        f"declare {of.real} @llvm.fabs.{functions}({of.real})\n"
+        f"declare {of.real} @llvm.floor.{functions}({of.real})\n"
+        f"declare {of.real} @llvm.fma.{functions}({', '.join([of.real] * 3)})\n"
+        f"define internal {of.real} @power({given}) {{\n  " + "\n  ".join(of.written) + f"\n  ret {of.real} {value}\n}}"
+    )
+
+
+def everywhere(value: float, lanes: int) -> str:
+    """A number to its last bit, in every lane."""
+    bits = f"double 0x{_bits(value) % 2**64:016X}"
+    return f"<{', '.join([bits] * lanes)}>"
+
+
+def _logarithm(of: _Function, size: str) -> tuple[str, str]:
+    """log2 m and e of positive numbers m 2^e; those too small for all bits are taken 2^54 times as large."""
+    is_small = of.holds("olt", size, of.number(2.0**-1022))
+    bits = of.bits_of(of.choice(is_small, of.do("fmul", size, of.number(2.0**54)), size))
+    lifted = of.do("add", bits, of.integer((_BIAS << _SHIFT) - _bits(math.sqrt(0.5))))
+    biased = of.do("lshr", lifted, of.integer(_SHIFT))
+    power_of_two = of.do("shl", biased, of.integer(_SHIFT))
+    m = of.real_of(of.do("add", of.do("sub", bits, power_of_two), of.integer(_BIAS << _SHIFT)))
+    read = of.real_of(of.do("or", biased, of.integer(_bits(_WHOLE))))
+    exponent = of.do("fsub", read, of.number(_WHOLE + _BIAS))
+    exponent = of.choice(is_small, of.do("fsub", exponent, of.number(54.0)), exponent)
+    s = of.do("fdiv", of.do("fsub", m, of.number(1.0)), of.do("fadd", m, of.number(1.0)))
+    scale = 2.0 / math.log(2.0)
+    series = of.series(of.do("fmul", s, s), [scale / (2 * k + 1) for k in range(LOGARITHM_TERMS)])
+    return of.do("fmul", s, series), exponent
+
+
+def _clipped(of: _Function, value: str) -> str:
+    low, high = of.number(-_RANGE), of.number(_RANGE)
+    value = of.choice(of.holds("ogt", value, high), high, value)
+    return of.choice(of.holds("olt", value, low), low, value)
+
+
+def _scaled(of: _Function, value: str, n: str) -> str:
+    """Value · 2^n in three factors, none of which is beyond the range of numbers."""
+    third = of.do("fsub", of.rounded(of.do("fmul", n, of.number(1.0 / 3.0))), of.number(_ROUND))
+    last = of.do("fsub", of.do("fsub", n, third), third)
+    for part in (third, third, last):
+        bits = of.do("sub", of.bits_of(of.rounded(part)), of.integer(_bits(_ROUND) - _BIAS))
+        value = of.do("fmul", value, of.real_of(of.do("shl", bits, of.integer(_SHIFT))))
+    return value
+
+
+def _at_the_ends(of: _Function, value: str, size: str) -> str:
+    """The power where x is zero, infinite, negative, or where x or y is not a number."""
+    zero, infinite, none = of.number(0.0), of.number(math.inf), of.number(math.nan)
+    grows = of.holds("ogt", "%y", zero)
+    value = of.choice(of.holds("oeq", size, zero), of.choice(grows, zero, infinite), value)
+    value = of.choice(of.holds("oeq", size, infinite), of.choice(grows, infinite, zero), value)
+    half = of.do("fmul", "%y", of.number(0.5))
+    is_even = of.holds("oeq", of.new(f"call {of.real} @llvm.floor.v{of.lanes}f64({of.real} {half})"), half)
+    is_whole = of.holds("oeq", of.new(f"call {of.real} @llvm.floor.v{of.lanes}f64({of.real} %y)"), "%y")
+    turned = of.choice(is_even, value, of.do("fsub", zero, value))
+    value = of.choice(of.holds("olt", "%x", zero), of.choice(is_whole, turned, none), value)
+    return of.choice(of.holds("uno", "%x", "%y"), none, value)
+
+
+def _bits(value: float) -> int:
+    return int(struct.unpack("<q", struct.pack("<d", value))[0])
