@@ -21,7 +21,8 @@ def test_an_exponent_stands_in_the_code_where_it_is_written_out_and_the_same_in_
 
 def test_all_other_exponents_share_a_kernel():
     lines = [
-        kernel(CHAIN, "displacement", exponents_in_code(CHAIN, {EXPONENT: np.array([n])})).lines for n in (2.5, 2.6, 3.0)
+        kernel(CHAIN, "displacement", exponents_in_code(CHAIN, {EXPONENT: np.array([n])})).lines
+        for n in (2.5, 2.6, 3.0)
     ]
     assert lines[0] == lines[1]
     assert lines[0] != lines[2]

@@ -30,7 +30,7 @@ from numpy.typing import NDArray
 
 from ident.equations.grammar import statement_of
 from ident.simulation.kept import kept
-from ident.simulation.kernel.vector_power import everywhere, power
+from ident.simulation.kernel.vector_functions import FUNCTIONS, declared, everywhere, function
 from ident.simulation.uninterrupted import uninterrupted
 
 LANES = 16
@@ -196,8 +196,8 @@ class Writer:
             case ast.Call(func=ast.Name(id=name), args=arguments) if len(arguments) == _CALLS.get(name):
                 self.called.add(name)
                 given = ", ".join(f"{VECTOR} {self._value(argument)}" for argument in arguments)
-                function = "@power" if name == "pow" else f"@llvm.{name}.v{WIDE}f64"
-                return self._once(f"call {VECTOR} {function}({given})")
+                called = f"@lanes_{name}" if name in FUNCTIONS else f"@llvm.{name}.v{WIDE}f64"
+                return self._once(f"call {VECTOR} {called}({given})")
         raise TypeError(f"{ast.unparse(node)!r} is nothing that a kernel can do")
 
 
@@ -247,18 +247,18 @@ def _program(lines: Sequence[str], fed: Sequence[Fed], shown: int, lanes: int) -
             f"store {VECTOR} {output}, ptr %target_{of.lane}, align 8",
         )
     ]
-    called = sorted(parts[0].called)
-    declared = (
-        power(WIDE) if name == "pow" else f"declare {VECTOR} @llvm.{name}.v{WIDE}f64({VECTOR})" for name in called
-    )
+    functions = [declared(WIDE)] if FUNCTIONS.keys() & parts[0].called else []
+    for name in sorted(parts[0].called):
+        is_own = name in FUNCTIONS
+        functions.append(function(name, WIDE) if is_own else f"declare {VECTOR} @llvm.{name}.v{WIDE}f64({VECTOR})")
     steps = [line for of in parts for line in of.written]
     return _PROGRAM.format(
-        declared="\n".join(declared), begins="\n  ".join(begins), steps="\n  ".join(steps), stores="\n  ".join(stores)
+        functions="\n".join(functions), begins="\n  ".join(begins), steps="\n  ".join(steps), stores="\n  ".join(stores)
     )
 
 
 # The step is counted in memory: LLVM took a fifth of the compilation to look for better ways to count it.
-_PROGRAM = """{declared}
+_PROGRAM = """{functions}
 
 define void @advance(ptr noalias %b, ptr noalias readonly %commands, ptr noalias readonly %forces,
     ptr noalias readonly %command_at, ptr noalias readonly %force_at, i64 %first, i64 %last, i64 %every,
@@ -318,7 +318,7 @@ def _host() -> tuple[str, str]:
 @cache
 def written_by(*files: str) -> str:
     """What writes programs, these files among it: a change of one makes others of the same lines."""
-    all_files = (__file__, Path(__file__).with_name("vector_power.py"), *files)
+    all_files = (__file__, Path(__file__).with_name("vector_functions.py"), *files)
     return hashlib.sha256(b"".join(Path(file).read_bytes() for file in all_files)).hexdigest()
 
 

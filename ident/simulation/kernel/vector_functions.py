@@ -1,21 +1,29 @@
-"""The power of eight lanes at once, in the language of LLVM: a mathematics library takes them one by one.
+"""Power, sine and cosine of eight lanes at once, in the language of LLVM: a library of functions takes them one by one.
 
-x^y = 2^(y log2 x) with x = m 2^e, √½ ≤ m < √2: log2 m = 2/ln 2 · atanh((m − 1)/(m + 1)) by its series, and 2^r with
-|r| ≤ ½ by that of the exponential function. Both series go on until a term is below the last bit. The relative error is
-below 1e-14 where |y log2 x| < 10. What is not positive follows C: 0 and what is not a number give what pow gives, and a
-negative x gives a number where y is whole.
+**x^y** = 2^(y log2 x) with x = m 2^e, √½ ≤ m < √2: log2 m = 2/ln 2 · atanh((m − 1)/(m + 1)) by its series, and 2^r with
+|r| ≤ ½ by that of the exponential function. The relative error is below 1e-14 where |y log2 x| < 10. What is not
+positive follows C: 0 and what is not a number give what pow gives, and a negative x gives a number where y is whole.
+
+**sin x** and **cos x** are those of r = x − k π/2 with |r| ≤ π/4, by their series, and k tells which of them and its
+sign. The error is below 1e-15 where |x| < 1e9; beyond 1e15, where a number no longer tells an angle, they give none.
+
+Each series goes on until a term is below the last bit.
 """
 
 from __future__ import annotations
 
 import math
 import struct
+from collections.abc import Callable
 from dataclasses import dataclass, field
+from functools import partial
 
 LOGARITHM_TERMS = 11
 """Terms of atanh s = s Σ s^2k/(2k + 1): with |s| ≤ 0.172 the first that is left out is 6e-19 of the first."""
 EXPONENTIAL_TERMS = 14
 """Terms of 2^r = Σ (r ln 2)^k/k!: with |r| ≤ ½ the first that is left out is 4e-18 of the first."""
+CIRCULAR_TERMS = 9
+"""Terms of sin r and cos r: with |r| ≤ π/4 the first that is left out is 2e-18."""
 _SHIFT = 52  # bits of a number behind its exponent
 _BIAS = 1023  # what is added to an exponent
 _ROUND = 1.5 * 2.0**52
@@ -24,6 +32,10 @@ _WHOLE = 2.0**52
 """A number whose last bits are a whole one, after which it is the sum of both."""
 _RANGE = 2200.0
 """Exponents beyond which 2^n is 0 or infinite by far."""
+_LARGEST = 1e15
+"""rad; beyond it neighbouring numbers are an eighth apart."""
+_QUARTER = (1.5707963267948966, 6.123233995736766e-17, -1.4973849048591833e-33)
+"""π/2 as the sum of three numbers."""
 
 
 @dataclass
@@ -58,8 +70,12 @@ class _Function:
 
     def fused(self, a: str, b: str, c: str) -> str:
         """a b + c, rounded once."""
-        given = ", ".join(f"{self.real} {one}" for one in (a, b, c))
-        return self.new(f"call {self.real} @llvm.fma.v{self.lanes}f64({given})")
+        return self.call("fma", a, b, c)
+
+    def call(self, name: str, *given: str) -> str:
+        """What LLVM's own function of so many vectors gives."""
+        arguments = ", ".join(f"{self.real} {one}" for one in given)
+        return self.new(f"call {self.real} @llvm.{name}.v{self.lanes}f64({arguments})")
 
     def rounded(self, a: str) -> str:
         """The nearest whole number, and the bits of it that :meth:`bits_of` reads."""
@@ -90,11 +106,25 @@ class _Function:
         return last
 
 
-def power(lanes: int) -> str:
-    """The function ``@power(x, y)`` of vectors of so many lanes."""
-    of = _Function(lanes)
+def function(name: str, lanes: int) -> str:
+    """The function ``@lanes_NAME`` of vectors of so many lanes, for a name in :data:`FUNCTIONS`."""
+    of, count = _Function(lanes), 2 if name == "pow" else 1
+    value = FUNCTIONS[name](of)
+    given = ", ".join(f"{of.real} {argument}" for argument in ("%x", "%y")[:count])
+    lines = "\n  ".join([*of.written, f"ret {of.real} {value}"])
+    return f"define internal {of.real} @lanes_{name}({given}) {{\n  {lines}\n}}"
+
+
+def declared(lanes: int) -> str:
+    """What the functions call."""
+    real = f"<{lanes} x double>"
+    calls = {"fabs": 1, "floor": 1, "fma": 3}
+    return "\n".join(f"declare {real} @llvm.{name}.v{lanes}f64({', '.join([real] * n)})" for name, n in calls.items())
+
+
+def _power(of: _Function) -> str:
     zero, one = of.number(0.0), of.number(1.0)
-    size = of.new(f"call {of.real} @llvm.fabs.v{lanes}f64({of.real} %x)")
+    size = of.call("fabs", "%x")
     logarithm, exponent = _logarithm(of, size)
     # n is the nearest whole number to y log2 x, and r the rest: y e − n is exact
     product = of.do("fmul", "%y", logarithm)
@@ -108,14 +138,7 @@ def power(lanes: int) -> str:
     value = of.choice(of.holds("ogt", whole, of.number(_RANGE - 1.0)), of.number(math.inf), value)
     value = of.choice(of.holds("olt", whole, of.number(1.0 - _RANGE)), zero, value)
     value = _at_the_ends(of, value, size)
-    value = of.choice(of.holds("oeq", "%y", zero), one, value)
-    given, functions = f"{of.real} %x, {of.real} %y", f"v{lanes}f64"
-    return (
-        f"declare {of.real} @llvm.fabs.{functions}({of.real})\n"
-        f"declare {of.real} @llvm.floor.{functions}({of.real})\n"
-        f"declare {of.real} @llvm.fma.{functions}({', '.join([of.real] * 3)})\n"
-        f"define internal {of.real} @power({given}) {{\n  " + "\n  ".join(of.written) + f"\n  ret {of.real} {value}\n}}"
-    )
+    return of.choice(of.holds("oeq", "%y", zero), one, value)
 
 
 def everywhere(value: float, lanes: int) -> str:
@@ -164,11 +187,39 @@ def _at_the_ends(of: _Function, value: str, size: str) -> str:
     value = of.choice(of.holds("oeq", size, zero), of.choice(grows, zero, infinite), value)
     value = of.choice(of.holds("oeq", size, infinite), of.choice(grows, infinite, zero), value)
     half = of.do("fmul", "%y", of.number(0.5))
-    is_even = of.holds("oeq", of.new(f"call {of.real} @llvm.floor.v{of.lanes}f64({of.real} {half})"), half)
-    is_whole = of.holds("oeq", of.new(f"call {of.real} @llvm.floor.v{of.lanes}f64({of.real} %y)"), "%y")
+    is_even = of.holds("oeq", of.call("floor", half), half)
+    is_whole = of.holds("oeq", of.call("floor", "%y"), "%y")
     turned = of.choice(is_even, value, of.do("fsub", zero, value))
     value = of.choice(of.holds("olt", "%x", zero), of.choice(is_whole, turned, none), value)
     return of.choice(of.holds("uno", "%x", "%y"), none, value)
+
+
+def _circular(of: _Function, turned: int) -> str:
+    """Sine of x, which is `turned` by so many right angles."""
+    zero = of.number(0.0)
+    shifted = of.rounded(of.do("fmul", "%x", of.number(2.0 / math.pi)))
+    against = of.do("fsub", zero, of.do("fsub", shifted, of.number(_ROUND)))
+    rest = "%x"
+    for part in _QUARTER:
+        rest = of.fused(against, of.number(part), rest)
+    square = of.do("fmul", rest, rest)
+    signs = [(-1.0) ** k for k in range(CIRCULAR_TERMS)]
+    sines = of.series(square, [sign / math.factorial(2 * k + 1) for k, sign in enumerate(signs)])
+    cosine = of.series(square, [sign / math.factorial(2 * k) for k, sign in enumerate(signs)])
+    angle = of.do("add", of.bits_of(shifted), of.integer(turned))
+    is_even = of.new(f"icmp eq {of.whole} {of.do('and', angle, of.integer(1))}, {of.integer(0)}")
+    value = of.choice(is_even, of.do("fmul", rest, sines), cosine)
+    sign = of.do("shl", of.do("lshr", angle, of.integer(1)), of.integer(63))
+    value = of.real_of(of.do("xor", of.bits_of(value), sign))
+    return of.choice(of.holds("olt", of.call("fabs", "%x"), of.number(_LARGEST)), value, of.number(math.nan))
+
+
+FUNCTIONS: dict[str, Callable[[_Function], str]] = {
+    "pow": _power,
+    "sin": partial(_circular, turned=0),
+    "cos": partial(_circular, turned=1),
+}
+"""By their names in the lines of a kernel."""
 
 
 def _bits(value: float) -> int:
