@@ -164,7 +164,7 @@ def _probabilities(
     residuals = [model.best.residuals_held_out for model in sound]
     disturbance = common_disturbance(residuals)
     gains = [gain(residuals[0], of, disturbance) for of in residuals]
-    counts = [model.parameters + len(model.best.effects) for model in sound]
+    counts = [model.size for model in sound]
     priors = [criteria.no_parts if model.machine in lags else 1.0 for model in sound]
     machines = [model.machine for model in sound]
     probable = dict(zip(machines, structure_probabilities(gains, counts, priors), strict=True))
@@ -201,7 +201,24 @@ def _with_an_effect_each(
     if helped[first.machine].above_noise:
         others = (judged.helped(report) for judged in larger)
         helped |= {judged.machine: judged for judged in others if _gains_half(helped[first.machine], judged)}
-    return helped
+    return {machine: _as_large(judged, helped.values(), report) for machine, judged in helped.items()}
+
+
+def _as_large(judged: _JudgedStructure, others: Collection[_JudgedStructure], report: Report) -> _JudgedStructure:
+    """A model with an effect, with further ones while it has fewer parameters than the largest of the others with
+    theirs.
+
+    A larger machine makes up for several effects of a smaller one. So what is left of it is compared at equal size,
+    where the smaller one has come near.
+    """
+    largest = max(one.size for one in others)
+    near = CRITERIA.structure.within_reach * min(one.error for one in others)
+    while judged.with_effect is not None and judged.size < largest and judged.error <= near and judged.above_noise:
+        more = judged.helped(report)
+        if more.size <= judged.size:
+            break
+        judged = more
+    return judged
 
 
 def _gains_half(first: _JudgedStructure, larger: _JudgedStructure) -> bool:
@@ -371,6 +388,11 @@ class _JudgedStructure:
         return self.models.given.model
 
     @property
+    def size(self) -> int:
+        """The number of its parameters, of each effect one."""
+        return self.parameters + len(self.best.effects)
+
+    @property
     def error(self) -> float:
         """Its error on held-out data; infinite where a simulation diverges."""
         return _held_out(self.best)
@@ -409,9 +431,10 @@ class _JudgedStructure:
         return self.helped(report, further=True) if self.untried and self.models.is_short(self.refit) else self
 
     def helped(self, report: Report, further: bool = False) -> _JudgedStructure:
-        """The model with the effect of the catalogue that improves it most; unchanged where none does.
+        """The model with one more effect of the catalogue, the one that improves it most; unchanged where none does.
 
-        Tried are the effects that promise about as much as the best; `further`, those that were left then.
+        Tried are the effects that promise about as much as the best, of short records more; `further`, those that were
+        left then.
 
         Effects are added to a machine that integrates about its operating point: see
         :mod:`ident.diagnosis.operating_point`. An effect that no simulation confirms is not taken: it would make a
@@ -423,9 +446,10 @@ class _JudgedStructure:
         def told(progress: Progress) -> None:
             report(replace(progress, stage="models with an effect", expected=()))
 
-        base = at_operating_point(self.models, self.refit)
+        more = self.with_effect is not None and not further
+        base = self.best if more else at_operating_point(self.models, self.refit)
         names = self.untried if further else [name for name in self.models.effects if name not in base.effects]
-        ranking = rank(self.models, base, names, told, thorough=further)
+        ranking = rank(self.models, base, names, told, thorough=further or self.models.is_quick(base))
         refits = [one.refit for one in ranking if one.refit is not None and one.worth_adding and one.refit.finite]
         before = self.best if further else base
         best = min([before, *refits] if before.effects else refits, key=_held_out, default=None)

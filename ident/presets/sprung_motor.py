@@ -28,7 +28,7 @@ SPRUNG_MOTOR = Preset(
         drive_scale="U",
     ),
     data=RequiredData(
-        command_units=("V", "A"),
+        command_units=("V", "A", "1"),
         rings=True,
         share_force=("m0", "c0", "k0", "Kt"),
     ),

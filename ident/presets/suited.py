@@ -219,8 +219,13 @@ def _rank(model: Preset, runs: Sequence[Described], oil: bool) -> int:
 
 
 def _by_force(model: Preset, run: Described) -> bool:
-    """Whether a drive's force may be what was recorded as the command: by its unit, or for that is not known."""
-    is_force = run.units.get("command") in ("N", "N*m", "1")
+    """Whether a drive's force may be what was recorded as the command: by its unit, or for that is not known.
+
+    Of a position, a motor against a spring makes the force of a command in an unknown unit: its drive may be late, or
+    have a dead zone.
+    """
+    unit = run.units.get("command")
+    is_force = unit in ("N", "N*m") or (unit == "1" and run.output not in ("displacement", "acceleration"))
     return model.data.driven_by == "drive_force" and is_force and "drive_force" not in run.channels
 
 

@@ -285,7 +285,7 @@ STRUCTURES: Mapping[str, str] = {
     "structure.parameters": "{count} parameters",
     "structure.effect": "{error:error} with {effects:titles}",
     "structure.probability": "probability {probability:probability}",
-    "structure.more_probable": "with one effect it is the most probable",
+    "structure.more_probable": "with its effects it is the most probable",
     "structure.within": "the error is smaller with one effect, and no parameter is at its bound",
     "structure.simplest": "the simplest whose error is not larger",
     "structure.rather": "more probable than the first: if the machine is one, name it by --model {machine}",

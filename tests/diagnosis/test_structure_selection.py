@@ -324,7 +324,7 @@ def test_one_that_leaves_as_little_has_to_be_as_likely(left, taken):
         best = SimpleNamespace(
             finite=True, held_out=SimpleNamespace(error=0.03), residuals_held_out=residuals, effects=()
         )
-        return SimpleNamespace(machine=machine, parameters=parameters, error=0.03, best=best, at_bound=False)
+        return SimpleNamespace(machine=machine, size=parameters, error=0.03, best=best, at_bound=False)
 
     models = first, _ = model("open_valve", 6, 0.0), model("motor", 2, left)
     probable = _probabilities(models, (), ())
@@ -349,8 +349,8 @@ def test_the_most_probable_machine_is_taken(probabilities, taken):
 def of_gains(integrates: bool = True, **gains: float) -> list[Any]:
     """Models of two parameters by their gains, in place of residuals."""
     return [
-        SimpleNamespace(machine=name, parameters=2, error=-gain, integrates=integrates,
-                        best=SimpleNamespace(residuals_held_out=gain, effects=()))
+        SimpleNamespace(machine=name, size=2, error=-gain, integrates=integrates,
+                        best=SimpleNamespace(residuals_held_out=gain))
         for name, gain in gains.items()
     ]  # fmt: skip
 
@@ -409,7 +409,8 @@ def test_a_machine_with_more_parameters_has_to_explain_most_with_its_effect(alon
             fitness=horizon,
             residuals_held_out=Residuals((noise + left * shape,), bands),
         )
-        of = SimpleNamespace(machine=machine, parameters=parameters, error=alone, best=best, above_noise=left > 0.01)
+        of = SimpleNamespace(machine=machine, parameters=parameters, error=alone, best=best, above_noise=left > 0.01,
+                             size=parameters, with_effect=None)  # fmt: skip
         of.helped = of.helped_further = lambda _report: of
         return of
 
@@ -424,7 +425,8 @@ def test_a_model_about_as_good_as_the_best_is_tried_with_more_effects_where_none
     """The tanks without their overflow lie so far off that a prediction from there promises little of it."""
 
     def model(machine: str, error: float, left: float) -> SimpleNamespace:
-        of = SimpleNamespace(machine=machine, parameters=3, error=error, above_noise=left > 0.1, asked=False)
+        of = SimpleNamespace(machine=machine, parameters=3, error=error, above_noise=left > 0.1, asked=False,
+                             size=3, with_effect=None)  # fmt: skip
 
         def helped_further(_report: object) -> SimpleNamespace:
             of.asked = True
@@ -464,7 +466,7 @@ def test_an_effect_that_no_simulation_confirms_helps_no_model(monkeypatch):
     )
     offered = [SimpleNamespace(refit=unsound, worth_adding=True, trial=unsound)]
     monkeypatch.setattr(structure_selection, "rank", lambda *_args, **_kwargs: offered)
-    models = SimpleNamespace(effects={"dead_zone": None}, horizon=None)
+    models = SimpleNamespace(effects={"dead_zone": None}, horizon=None, is_quick=lambda _base: False)
     judged = structure_selection._JudgedStructure(models, 2, {}, fitted)
     assert judged.helped(silent).with_effect is None
 

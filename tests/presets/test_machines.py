@@ -373,7 +373,7 @@ def test_in_unknown_units_a_loop_is_known_by_where_its_output_is(seed):
     assert [model.name for model in in_question([of_force])] == ["force_loop"]
 
 
-@pytest.mark.parametrize(("end", "models"), [(1.0, ["qian2014"]), (0.8, ["drive"])])
+@pytest.mark.parametrize(("end", "models"), [(1.0, ["qian2014"]), (0.8, ["motor"])])
 def test_in_unknown_units_a_loop_is_known_by_where_its_output_arrives(end, models):
     """At a limited speed, which no lag is: 40 counts a sample towards each target, or `end` of the way to it."""
     target = np.repeat(np.random.default_rng(67).integers(0, 9000, 6), 300).astype(float)
