@@ -32,7 +32,7 @@ def test_a_machine_with_two_effects_is_compared_with_a_larger_one_at_equal_size(
 
 
 def link(number: int, use: str) -> Run:
-    """A motor with dry friction that turns a link behind a spring, whose angle is recorded; steps of a 30th of a sample.
+    """A motor with dry friction that turns a link behind a spring, whose angle is recorded; 30 steps a sample.
 
     T ω' = u − ω − k (θ − θ₁) − friction, θ₁'' = ω₁² (θ − θ₁) − 2 ζ ω₁ (θ₁' − ω), in samples.
     """
