@@ -201,24 +201,21 @@ def _with_an_effect_each(
     if helped[first.machine].above_noise:
         others = (judged.helped(report) for judged in larger)
         helped |= {judged.machine: judged for judged in others if _gains_half(helped[first.machine], judged)}
-    return {machine: _as_large(judged, helped.values(), report) for machine, judged in helped.items()}
+    return {machine: _explaining(judged, helped.values(), report) for machine, judged in helped.items()}
 
 
-def _as_large(judged: _JudgedStructure, others: Collection[_JudgedStructure], report: Report) -> _JudgedStructure:
-    """A model with an effect, with further ones while it has fewer parameters than the largest of the others with
-    theirs.
+def _explaining(judged: _JudgedStructure, others: Collection[_JudgedStructure], report: Report) -> _JudgedStructure:
+    """A model with a second effect, where it then explains the records and has fewer parameters than the largest of
+    the others with their effects.
 
-    A larger machine makes up for several effects of a smaller one. So what is left of it is compared at equal size,
-    where the smaller one has come near.
+    A machine of many parameters makes up for one of two effects that a smaller one lacks, but not for both.
     """
     largest = max(one.size for one in others)
     near = CRITERIA.structure.within_reach * min(one.error for one in others)
-    while judged.with_effect is not None and judged.size < largest and judged.error <= near and judged.above_noise:
-        more = judged.helped(report)
-        if more.size <= judged.size:
-            break
-        judged = more
-    return judged
+    if judged.with_effect is None or judged.size >= largest or judged.error > near or not judged.above_noise:
+        return judged
+    more = judged.helped(report)
+    return judged if more.above_noise else more
 
 
 def _gains_half(first: _JudgedStructure, larger: _JudgedStructure) -> bool:
@@ -433,8 +430,8 @@ class _JudgedStructure:
     def helped(self, report: Report, further: bool = False) -> _JudgedStructure:
         """The model with one more effect of the catalogue, the one that improves it most; unchanged where none does.
 
-        Tried are the effects that promise about as much as the best, of short records more; `further`, those that were
-        left then.
+        Tried are the effects that promise about as much as the best, and all of a lag, which has few; `further`, those
+        that were left then.
 
         Effects are added to a machine that integrates about its operating point: see
         :mod:`ident.diagnosis.operating_point`. An effect that no simulation confirms is not taken: it would make a
@@ -449,7 +446,7 @@ class _JudgedStructure:
         more = self.with_effect is not None and not further
         base = self.best if more else at_operating_point(self.models, self.refit)
         names = self.untried if further else [name for name in self.models.effects if name not in base.effects]
-        ranking = rank(self.models, base, names, told, thorough=further or self.models.is_quick(base))
+        ranking = rank(self.models, base, names, told, thorough=further or has_no_parts(self.models.preset))
         refits = [one.refit for one in ranking if one.refit is not None and one.worth_adding and one.refit.finite]
         before = self.best if further else base
         best = min([before, *refits] if before.effects else refits, key=_held_out, default=None)

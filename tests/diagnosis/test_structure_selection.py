@@ -466,7 +466,7 @@ def test_an_effect_that_no_simulation_confirms_helps_no_model(monkeypatch):
     )
     offered = [SimpleNamespace(refit=unsound, worth_adding=True, trial=unsound)]
     monkeypatch.setattr(structure_selection, "rank", lambda *_args, **_kwargs: offered)
-    models = SimpleNamespace(effects={"dead_zone": None}, horizon=None, is_quick=lambda _base: False)
+    models = SimpleNamespace(effects={"dead_zone": None}, horizon=None, preset=preset("motor"))
     judged = structure_selection._JudgedStructure(models, 2, {}, fitted)
     assert judged.helped(silent).with_effect is None
 
