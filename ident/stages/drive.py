@@ -8,6 +8,13 @@ DIRECT_FORCE = stage("pressure", (Quantity("D", "N", "force that drives the load
 
 NOT_DRIVEN = stage("pressure", (Quantity("D", "N", "force that drives the load"),), ("D = 0", "no drive is there"))
 
+BASE_AS_RECORDED = stage(
+    "controller",
+    (Quantity("r", "m/s^2", "acceleration of the base as it acts"),),
+    ("r = u", "the recorders of base and mass have one clock"),
+)
+"""Nothing is controlled; a delay between the records of the base and of the mass acts here."""
+
 CASCADE = stage(
     "controller",
     (
