@@ -37,9 +37,10 @@ def drives_mass(model: Preset) -> bool:
 def against_its_drive(run: Run) -> bool | None:
     """Whether the motion of a run is counted against the force that drives it; None where the run does not tell.
 
-    Of the balance p = m x″ + c x′ + k x + p₀, integrated as often as the motion is of an order below x″, m, c and k ≥ 0 are found by least squares, which needs
-    no derivative of a record; first states and p₀ are a polynomial of second degree in the time. The run tells the sign
-    where such a balance leaves less than a tenth of the drive with one sign, and more with the other.
+    Of the balance p = m x″ + c x′ + k x + p₀, m, c and k ≥ 0 are found by least squares. It is integrated twice for a
+    position and once for a speed, which needs no derivative of a record; first states and p₀ are a polynomial of second
+    degree in the time. The run tells the sign where such a balance leaves less than a tenth of the drive with one sign,
+    and more with the other.
 
     A controller that drives the motion back to a reference looks like a spring of the other sign, u = k (r − x). So the
     motion is not turned where it takes work of the drive as it was recorded, which no mass, damper or spring gives.
