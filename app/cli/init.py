@@ -148,6 +148,8 @@ def _with_command(draft: Draft, files: list[Path], said: Mapping[str, object]) -
     what = str(message("draft.missing", questions=[one.question for one in draft.missing]))
     command = f"servoident init {' '.join((named.strip(), *draft.options))}"
     remedy = str(message("draft.command_whole" if draft.is_whole else "draft.command", command=command))
+    if draft.is_parted:
+        remedy = str(message("draft.parted"))
     return Unusable("not-stated", what, "init", remedy)
 
 

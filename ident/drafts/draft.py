@@ -150,6 +150,13 @@ class Draft:
         """Whether something is missing in every file, so that one answer holds for all of them."""
         return len(missing.files) in (0, len(self.files))
 
+    @property
+    def is_parted(self) -> bool:
+        """Whether some files have the command alone and others the output alone, as of two loggers of one run."""
+        known = [self.known(file).channels for file in self.files]
+        ends = {("command" in channels, any(name in channels for name in OUTPUTS)) for channels in known}
+        return {(True, False), (False, True)} <= ends
+
     def _missing_of(self, file: RawFile) -> list[Missing]:
         if file.problem:
             question = f"{shown(file_name(file))} cannot be read: {file.problem}. Which delimiter, decimal sign, header"

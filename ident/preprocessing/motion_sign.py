@@ -14,6 +14,8 @@ from ident.stages import ACTING_PRESSURE, DIRECT_FORCE, OPENED_BY_COMMAND, TORQU
 Array = NDArray[np.float64]
 _DRIVES = (DIRECT_FORCE, ACTING_PRESSURE, TORQUE)
 """Stages whose force has the sign of what drives."""
+_INTEGRALS = {"displacement": 2, "velocity": 1, "acceleration": 0}
+"""How often the balance of forces is integrated, so that a motion stands in it without a derivative."""
 BALANCED = Threshold(
     0.1,
     "of the power of the drive, integrated twice",
@@ -35,9 +37,10 @@ def drives_mass(model: Preset) -> bool:
 def against_its_drive(run: Run) -> bool | None:
     """Whether the motion of a run is counted against the force that drives it; None where the run does not tell.
 
-    Of the balance p = m x″ + c x′ + k x + p₀, integrated twice, m, c and k ≥ 0 are found by least squares, which needs
-    no derivative of a record; first states and p₀ are a polynomial of second degree in the time. The run tells the sign
-    where such a balance leaves less than a tenth of the drive with one sign, and more with the other.
+    Of the balance p = m x″ + c x′ + k x + p₀, m, c and k ≥ 0 are found by least squares. It is integrated twice for a
+    position and once for a speed, which needs no derivative of a record; first states and p₀ are a polynomial of second
+    degree in the time. The run tells the sign where such a balance leaves less than a tenth of the drive with one sign,
+    and more with the other.
 
     A controller that drives the motion back to a reference looks like a spring of the other sign, u = k (r − x). So the
     motion is not turned where it takes work of the drive as it was recorded, which no mass, damper or spring gives.
@@ -47,13 +50,14 @@ def against_its_drive(run: Run) -> bool | None:
         return None
     time = np.linspace(-1.0, 1.0, len(drive))
     smooth = np.linalg.qr(np.column_stack([time**power for power in range(3)]))[0]
-    target = _integrated(drive, 2 if run.output == "displacement" else 1)
+    target = _integrated(drive, _INTEGRALS.get(run.output, 1))
     terms = np.column_stack([_integrated(motion, times) for times in range(3)])
     target, terms = (part - smooth @ (smooth.T @ part) for part in (target, terms))
     right, turned = (_left(sign * target, terms / np.linalg.norm(terms, axis=0)) for sign in (1.0, -1.0))
     if not min(right, turned) < BALANCED.value < max(right, turned):
         return None
-    speed = np.gradient(motion) if run.output == "displacement" else motion
+    speeds = {"displacement": np.gradient(motion), "acceleration": terms[:, 1]}
+    speed = speeds.get(run.output, motion)
     return turned < right and mean_power(-drive, speed) >= GIVES_BACK.value
 
 

@@ -2,7 +2,7 @@
 
 from ident.chain.chain import Chain
 from ident.presets.preset import Combined, Preset, RequiredData, SearchPlan
-from ident.stages import CASCADE, DIRECT_FORCE, DRIVEN_MASS, IDEAL_DRIVE, IDEAL_SENSOR, Scale
+from ident.stages import CASCADE, DIRECT_FORCE, DRIVEN_MASS, FORCE_AS_RECORDED, IDEAL_DRIVE, IDEAL_SENSOR, Scale
 
 OUTPUTS = {"displacement": "y", "force": "F"}
 OPEN_OUTPUTS = {**OUTPUTS, "velocity": "vy", "acceleration": "ay"}
@@ -37,7 +37,7 @@ DRIVE = Preset(
     name="drive",
     title="Drive",
     citation=CITATION,
-    chain=Chain(stages=(DIRECT_FORCE, DRIVEN_MASS, IDEAL_SENSOR), outputs=OPEN_OUTPUTS),
+    chain=Chain(stages=(FORCE_AS_RECORDED, DIRECT_FORCE, DRIVEN_MASS, IDEAL_SENSOR), outputs=OPEN_OUTPUTS),
     search=SearchPlan(
         rescaled=(
             Scale("m0", "U / (L * W**2)", 1e-3, 1e7),

@@ -2,7 +2,7 @@
 
 from ident.chain.chain import Chain
 from ident.presets.preset import Combined, Preset, RequiredData, SearchPlan
-from ident.stages import IDEAL_SENSOR, MASS_ON_BASE, NOT_DRIVEN
+from ident.stages import BASE_AS_RECORDED, IDEAL_SENSOR, MASS_ON_BASE
 
 MOVING_BASE = Preset(
     name="moving_base",
@@ -12,7 +12,7 @@ MOVING_BASE = Preset(
         "motion against the base; an accelerometer on the mass shows r'' + a_B."
     ),
     chain=Chain(
-        stages=(NOT_DRIVEN, MASS_ON_BASE, IDEAL_SENSOR),
+        stages=(BASE_AS_RECORDED, MASS_ON_BASE, IDEAL_SENSOR),
         outputs={"acceleration": "ay", "displacement": "y", "velocity": "vy"},
     ),
     listed=("m0", "c0", "k0"),

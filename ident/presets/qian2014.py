@@ -33,7 +33,7 @@ QIAN2014 = Preset(
             MASS_SPRING_DAMPER,
             IDEAL_SENSOR,
         ),
-        outputs={"displacement": "y", "load_pressure": "P", "force": "F"},
+        outputs={"displacement": "y", "load_pressure": "P", "force": "F", "acceleration": "ay"},
     ),
     stated=(
         Parameter("Z0", "Z₀", "m^4/s", 1.751e-6, 3.503e-6, 2.592e-6, "gain of valve, spool and piston", TABLE_2),

@@ -240,7 +240,14 @@ def moved_by_command(model: Preset, runs: Sequence[Described]) -> bool:
 
 
 def _comparable(run: Described, channel: str) -> bool:
-    """Whether a controller could compare the command with a channel."""
+    """Whether a controller could compare the command with a channel, or with a position that nobody recorded beside an
+    acceleration, as of a shaking table."""
     units = {"displacement": ("m", "rad"), "velocity": ("m/s", "rad/s"), "force": ("N", "N*m")}
     unit = run.units.get("command")
-    return (unit in units[channel] and unit == run.units.get(channel)) or _follows(run, channel)
+    shown = (f"{unit}/s^2", "acceleration") if _only_shaken(run, channel) else (unit, channel)
+    return (unit in units[channel] and shown[0] == run.units.get(shown[1])) or _follows(run, channel)
+
+
+def _only_shaken(run: Described, channel: str) -> bool:
+    """Whether an acceleration alone shows the position that is commanded."""
+    return channel == "displacement" and channel not in run.channels and run.output == "acceleration"

@@ -64,6 +64,11 @@ class _Row:
         return max((n for n, field in enumerate(self.fields, 1) if field), default=0)
 
     @property
+    def is_remark(self) -> bool:
+        """Whether the line begins with the sign of a remark."""
+        return bool(self.raw) and bool(_REMARK.match(self.raw[0]))
+
+    @property
     def has_numbers(self) -> bool:
         """Whether any field is a number, or a date."""
         filled_in = [field for field in self.fields if field]
@@ -149,7 +154,7 @@ def _describes(rows: Sequence[_Row], columns: int) -> bool:
     """Whether the first of some lines, from the lowest up, describes the columns that the next one names.
 
     It does by its first word, or because it holds units; of two lines of words that both could be names the upper one
-    holds them, unless the lower one has a word of a bench.
+    holds them, unless the lower one has a word of a bench, or the upper one alone is a remark.
     """
     row, above = rows[0], rows[1] if len(rows) > 1 else None
     if above is None or above.width < min(row.width, columns):
@@ -164,6 +169,8 @@ def _describes(rows: Sequence[_Row], columns: int) -> bool:
         return False  # a name of its own
     if 2 * sum(map(_is_pure_unit, words)) >= len(words):
         return True
+    if above.is_remark and not row.is_remark:
+        return False
     return len(rows) == 2 and _is_whole(above, columns) and not any(map(is_known, words))
 
 

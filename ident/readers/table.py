@@ -115,7 +115,7 @@ def split_columns(name: str, shape: tuple[int, ...]) -> list[str]:
     long = [length for length in shape if length != 1]
     if len(long) <= 1 or 0 in shape:
         return [name]
-    count = shape[0] if _in_rows(shape) else shape[1]
+    count = shape[0] if is_in_rows(shape) else shape[1]
     return [f"{name}/{number}" for number in range(count)] if len(shape) == 2 and count <= 1000 else []
 
 
@@ -124,9 +124,9 @@ def column_of(array: Array, number: int) -> Array:
     vector = sum(length != 1 for length in array.shape) <= 1 or not array.size
     if vector:
         return np.ravel(array)
-    return array[number] if _in_rows(array.shape) else array[:, number]
+    return array[number] if is_in_rows(array.shape) else array[:, number]
 
 
-def _in_rows(shape: tuple[int, ...]) -> bool:
+def is_in_rows(shape: tuple[int, ...]) -> bool:
     """Whether the rows of a matrix are its signals: a record has many more samples than signals."""
     return len(shape) == 2 and shape[1] >= _WIDE * shape[0]

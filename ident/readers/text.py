@@ -23,6 +23,7 @@ from ident.readers.limits import Limits, check_size
 from ident.readers.numeral import NO_VALUE, has_no_value, is_prefixed
 from ident.readers.table import Array, Table
 from ident.readers.time_stamp import seconds
+from ident.readers.upright import upright
 from ident.units.quantity import shown
 
 _HEAD = 1 << 20  # bytes by which an encoding is told
@@ -43,8 +44,10 @@ def read_text(data: bytes, where: str, limits: Limits, stated: Dialect = FOUND) 
     Raises Unusable: ``empty-file``, ``not-text``, ``comma-twice``, and on loading ``not-numeric``, ``ragged-row``,
     ``too-large``, ``bad-time-stamp``.
     """
-    text = as_utf8(data, stated.encoding)
+    plain = decoded(data, stated.encoding)
+    text = upright(plain)
     layout = recognise(text, where, stated)
+    turned = () if text is plain else (f"{where}: each of its lines was read as a signal",)
 
     def load(numbers: Sequence[int]) -> list[Array]:
         plain = [number for number in dict.fromkeys(numbers) if number not in layout.stamps]
@@ -54,7 +57,7 @@ def read_text(data: bytes, where: str, limits: Limits, stated: Dialect = FOUND) 
         return [found[n] if n in found else _stamped(text, layout, n, where, limits) for n in numbers]
 
     return Table(
-        layout.heading.names, load, layout.notices, _units(layout), layout.heading.aliases, layout.stamps,
+        layout.heading.names, load, (*turned, *layout.notices), _units(layout), layout.heading.aliases, layout.stamps,
         layout.numbers,
     )  # fmt: skip
 
@@ -76,6 +79,11 @@ def _stamped(text: bytes, layout: Layout, number: int, where: str, limits: Limit
 
 
 def as_utf8(data: bytes, encoding: str = "") -> bytes:
+    """The text as it is read: :func:`decoded`, and its lines turned into columns where they are signals."""
+    return upright(decoded(data, encoding))
+
+
+def decoded(data: bytes, encoding: str = "") -> bytes:
     """The text without a byte order mark, other encodings turned into UTF-8, old Macintosh line ends into newlines.
 
     An encoding that is not stated is found.

@@ -1,7 +1,13 @@
 """A place of the chain in, its core out: the equations that a preset picks there, with the parameters they bring."""
 
 from ident.stages.controller import OPENED_BY_COMMAND, PI, PID, PROPORTIONAL, SPEED_INSIDE
-from ident.stages.drive import CASCADE, DIRECT_FORCE, IDEAL_DRIVE, NOT_DRIVEN
+from ident.stages.drive import (
+    BASE_AS_RECORDED,
+    CASCADE,
+    DIRECT_FORCE,
+    FORCE_AS_RECORDED,
+    IDEAL_DRIVE,
+)
 from ident.stages.flow import FLOW_TO_SPEED, LINEAR_FLOW, SQUARE_ROOT_FLOW
 from ident.stages.level import LOWER_LEVEL, UPPER_LEVEL
 from ident.stages.load import (
@@ -26,6 +32,7 @@ from ident.stages.valve import FIRST_ORDER_VALVE, INSTANT_VALVE, SECOND_ORDER_VA
 
 __all__ = [
     "ACTING_PRESSURE",
+    "BASE_AS_RECORDED",
     "BLOCKED",
     "CASCADE",
     "COMPRESSIBLE",
@@ -35,6 +42,7 @@ __all__ = [
     "FIRST_ORDER_VALVE",
     "FLOW_TO_SPEED",
     "FOLLOWING",
+    "FORCE_AS_RECORDED",
     "IDEAL_DRIVE",
     "IDEAL_SENSOR",
     "INSTANT_VALVE",
@@ -44,7 +52,6 @@ __all__ = [
     "MASS_SPRING_DAMPER",
     "MEASURED_LOAD",
     "MOVED_SPECIMEN",
-    "NOT_DRIVEN",
     "OPENED_BY_COMMAND",
     "OVERLAP",
     "PI",

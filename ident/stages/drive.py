@@ -4,9 +4,22 @@ from ident.parameter import Parameter
 from ident.stages.scale import ORDER_OF_MAGNITUDE, Scale
 from ident.stages.stage import Quantity, stage
 
-DIRECT_FORCE = stage("pressure", (Quantity("D", "N", "force that drives the load"),), ("D = u", "the recorded force"))
+FORCE_AS_RECORDED = stage(
+    "controller",
+    (Quantity("r", "N", "force as it acts"),),
+    ("r = u", "the recorded force acts without delay"),
+)
+"""Nothing is controlled; a delay between the force that is asked for, or its record, and the load acts here."""
 
-NOT_DRIVEN = stage("pressure", (Quantity("D", "N", "force that drives the load"),), ("D = 0", "no drive is there"))
+DIRECT_FORCE = stage("pressure", (Quantity("D", "N", "force that drives the load"),), ("D = r", "the recorded force"))
+
+BASE_AS_RECORDED = stage(
+    "controller",
+    (Quantity("r", "m/s^2", "acceleration of the base as it acts"), Quantity("D", "N", "force that drives the load")),
+    ("r = u", "the recorders of base and mass have one clock"),
+    ("D = 0", "no drive is there"),
+)
+"""Nothing is controlled, and nothing drives; a delay between the records of the base and of the mass acts here."""
 
 CASCADE = stage(
     "controller",

@@ -66,7 +66,7 @@ DRIVEN_MASS = replace(
 )
 """A mass with spring and damper of its own, beside the specimen's."""
 
-MASS_ON_BASE = DRIVEN_MASS.with_equations(("aB = u", "the recorded acceleration moves the base"))
+MASS_ON_BASE = DRIVEN_MASS.with_equations(("aB = r", "the recorded acceleration moves the base"))
 """A mass with spring and damper on a base that is moved: positions and speeds are those against the base."""
 
 PRESSED_SPECIMEN = replace(

@@ -11,6 +11,9 @@ DRAFTS: Mapping[str, str] = {
     "draft.missing": "the files do not say: {questions:terms}",
     "draft.command": "replace the words in capitals, and type: {command}",
     "draft.command_whole": "type: {command}",
+    "draft.parted":
+        "command and output are in different files: join the files of each run first, servoident join A.csv B.csv "
+        "--out run.csv, and describe the joined files",
     "draft.say": "say it, as {options:listed}",
     "draft.named": "'{column}' is used as {use}, because of its name",
     "draft.unused": "no channel is taken from {columns}",

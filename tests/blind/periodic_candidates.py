@@ -80,7 +80,7 @@ _OF_DRIVE = (
 APPLICABLE: dict[str, tuple[str, ...]] = {
     "specimen": (*_OF_LOAD, "specimen_hysteresis", "specimen_free_play"),
     "motor": (*_OF_DRIVE, *_OF_LOAD),
-    "drive": (*_OF_LOAD, "sensor_lag", "acquisition_lag", "sensor_nonlinearity"),
+    "drive": ("command_delay", *_OF_LOAD, "sensor_lag", "acquisition_lag", "sensor_nonlinearity"),
     "loop": (
         *_OF_DRIVE, *_OF_LOAD, "integral_action", "lead", "loop_delay", "sensor_lag", "acquisition_lag", "sensor_gain",
         "sensor_nonlinearity",

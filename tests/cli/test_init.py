@@ -155,6 +155,17 @@ def test_a_rate_and_columns_of_some_files_are_said_with_their_name(servoident, r
     assert (refused.returncode, "write --rate @FILE=VALUE" in refused.stderr) == (2, True)
 
 
+def test_command_and_output_in_files_of_their_own_are_to_be_joined(servoident, record, tmp_path):
+    """Two loggers of several columns each: no option says that two files are one run."""
+    other = tmp_path / "b.csv"
+    other.write_text(record.read_text())
+    done = servoident("init", record, other, "--serial", "SW-1", "--channel", "command@a.csv=c0:mm", "--channel",
+                      "displacement@b.csv=c1:mm", "--time", "time:s", "--out", tmp_path / "m")  # fmt: skip
+    assert done.returncode == 2
+    assert "servoident join A.csv B.csv --out run.csv" in done.stderr
+    assert done.stderr.count("\n") == 1
+
+
 def test_the_layout_of_a_text_is_stated_as_an_option(servoident, tmp_path):
     """Of all files or of some; what stands in matrix.yaml is what was stated, and a word that is none is refused."""
     rows = "".join(f"{n / 100:g};{n % 7};{n % 5}\n" for n in range(50))

@@ -68,6 +68,17 @@ def test_several_runs_of_several_files_are_a_matrix():
         np.testing.assert_allclose(run.measured, np.radians(sine(TIME)), atol=1e-9)
 
 
+@pytest.mark.parametrize("signals", [("d1", "u"), ("a6", "d1", "u")])
+def test_the_remark_that_tells_of_files_without_names_has_no_names_of_columns(signals):
+    """It has as many commas as the table; the columns keep the names that their files gave them."""
+    values = [f"{value:.6f}" for value in np.sin(TIME)]
+    files = [(f"{one}_{run}.txt", "\n".join(values).encode()) for run in ("A", "B") for one in signals]
+    whole = with_runs_joined(files)
+    assert [name for name, _ in whole] == ["A.csv", "B.csv"]
+    for name, data in whole:
+        assert tuple(one.name for one in read_raw(data, name).columns) == signals
+
+
 def test_signals_with_clocks_of_their_own_are_brought_to_the_fastest_and_it_is_said():
     """Over the time that all cover, in seconds where one clock counts milliseconds; sin and cos tell how well."""
     slow = 1000 * (np.arange(120) / 50 - 0.1)

@@ -29,8 +29,9 @@ def test_the_mat_file_is_the_machine_where_that_is_linear():
     machine, u = with_effects(), command()
     held = scipy.io.loadmat(io.BytesIO(as_mat(machine)))
     found = answered(held["A"], held["B"], held["C"], held["D"], u)
-    assert [str(name[0][0]) for name in held["OutputName"]] == ["displacement", "load_pressure", "force"]
-    assert [str(name[0][0]) for name in held["OutputUnit"]] == ["m", "Pa", "N"]
+    names = ["displacement", "load_pressure", "force", "acceleration"]
+    assert [str(name[0][0]) for name in held["OutputName"]] == names
+    assert [str(name[0][0]) for name in held["OutputUnit"]] == ["m", "Pa", "N", "m/s^2"]
     assert held["Ts"].item() == 1 / RATE
     for i, channel in enumerate(machine.outputs):
         assert largest_error(found[:, i], simulated(finely(machine), channel, u)) <= 1e-6

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from scipy.signal import cont2discrete, lfilter
+from scipy.signal import butter, cont2discrete, lfilter, lsim, sosfiltfilt
 
 from ident.fit.settings import Settings
 from ident.matrix import Actuator, Matrix
@@ -42,6 +42,18 @@ def test_mass_damper_and_spring_have_the_sign_of_what_drives_them(
     """Whatever the reading's zero is."""
     for sign in (1.0, -1.0):
         assert against_its_drive(driven(machine, sign, output)) is (sign < 0)
+
+
+@pytest.mark.parametrize("machine", [MASS, SWINGING, (2.0, 8.0, 32.0)])
+def test_an_accelerometer_that_is_mounted_the_other_way_round_is_told(machine: tuple[float, float, float]) -> None:
+    """Its zero counts no more than that of a position: a(s) = s² p(s) / (m s² + c s + k), by SciPy."""
+    rng, time = np.random.default_rng(2), np.arange(3000) / RATE
+    force = sosfiltfilt(butter(2, [0.2, 10.0], "bandpass", fs=RATE, output="sos"), rng.standard_normal(len(time)))
+    _, shown, _ = lsim(([1.0, 0.0, 0.0], machine), force, time)
+    shown = shown + shown.std() * (1.0 + 0.005 * rng.standard_normal(len(shown)))
+    for sign in (1.0, -1.0):
+        channels, units = {"command": force, "acceleration": sign * shown}, {"command": "V", "acceleration": "m/s^2"}
+        assert against_its_drive(Run("r", "", RATE, channels, units, output="acceleration")) is (sign < 0)
 
 
 def test_a_drift_of_a_mass_alone_is_turned_by_nothing() -> None:

@@ -53,16 +53,20 @@ class Storey:
                 x += dt * v
         return shown
 
-    def measured(self, sensor: str, seconds: float = 20.0, seed: int = 5) -> Matrix:
-        """Three runs of noise at three amplitudes, the last to validate."""
+    def measured(self, sensor: str, seconds: float = 20.0, seed: int = 5, late: int = 0) -> Matrix:
+        """Three runs of noise at three amplitudes, the last to validate; the sensor's clock is so many samples late.
+
+        Where it is late the base rests at first.
+        """
         rng, runs = np.random.default_rng(seed), []
         band = butter(2, [0.3, 8.0], "bandpass", fs=RATE, output="sos")
         output = "displacement" if sensor == "displacement" else "acceleration"
         units = {"command": "m/s^2", output: "m" if output == "displacement" else "m/s^2"}
         for number, size in enumerate((2.0, 1.0, 1.5)):
             base = sosfiltfilt(band, rng.standard_normal(round(seconds * RATE)))
-            base *= size / base.std()
-            shown = self.shaken(base)[sensor]
+            base = np.append(np.zeros(2 * late), base * size / base.std())
+            shown = self.shaken(base)[sensor][: len(base) - late]
+            base = base[late:]
             shown = shown + NOISE * shown.std() * rng.standard_normal(len(shown))
             runs.append(Run(f"r{number}", "", RATE, {"command": base, output: shown}, units,
                             output=output, use="verify" if number == 2 else "fit"))  # fmt: skip
@@ -90,6 +94,20 @@ def test_a_second_storey_is_named_by_its_accelerations(full):
     assert found.verdict.effects == ("elastic_load",)
     assert found.ladder[0].error["verify"] > 10 * NOISE
     assert found.ladder[-1].error["verify"] < 1.1 * NOISE
+
+
+def test_recorders_of_base_and_mass_whose_clocks_differ(full):
+    """By a fifth of a period of the mass: its frequency and damping are lost until the delay is named."""
+    late = 22
+    matrix = Storey().measured("acceleration", 15.0, late=late)
+    with of_few_effects(full, "command_delay", "elastic_load", "presliding_friction"):
+        found = diagnose(matrix, identify(matrix), propose=False)
+    assert found.verdict.effects == ("command_delay",)
+    assert found.ladder[0].error["verify"] > 0.5
+    last = found.ladder[-1]
+    assert last.error["verify"] < 2 * NOISE
+    assert last.parameters["command_delay.delay"].value == pytest.approx(late / RATE, rel=1e-2)
+    assert np.sqrt(last.parameters["k0"].value) == pytest.approx(FREQUENCY, rel=1e-3)
 
 
 def test_the_upper_storey_may_be_the_one_that_is_recorded():

@@ -236,3 +236,22 @@ def test_a_last_row_with_a_word_for_a_number_is_a_row_with_a_flaw():
     table = read("\n".join(["u\tx", *lines(delimiter="\t"), "1.5\toops", ""]))
     with pytest.raises(Unusable, match="line 42"):
         table.load([1])
+
+
+@pytest.mark.parametrize("delimiter", ["\t", "; ", " ", ", "])
+@pytest.mark.parametrize("names", [(), ("command", "position")])
+def test_lines_that_are_signals_are_columns(delimiter, names):
+    """As long as a record is, far beyond the longest line of a table; the same numbers in columns are read alike."""
+    record = np.random.default_rng(3).normal(scale=30, size=(9000, 2))
+    rows = [[*names[n : n + 1], *map("{:.4f}".format, signal)] for n, signal in enumerate(record.T)]
+    table = read("\n".join(map(delimiter.join, rows)) + "\n")
+    assert table.names == (names or ("0", "1"))
+    assert table.notices[0] == "run.csv: each of its lines was read as a signal"
+    np.testing.assert_allclose(table.load([0, 1]), record.T, atol=1e-4)
+
+
+def test_one_long_line_is_one_signal_and_a_short_table_stays_as_it_is():
+    (x,) = read("   " + "   ".join(f"{value:.7e}" for value in ROWS[:, 0])).load([0])
+    np.testing.assert_allclose(x, ROWS[:, 0], atol=1e-6)
+    assert len(read("\n".join(["u,x", *lines(rows=ROWS[:5])])).load([0])[0]) == 5
+    assert len(read("\n".join(lines(rows=np.ones((5, 8))))).load([7])[0]) == 5
