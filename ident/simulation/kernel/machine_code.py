@@ -318,8 +318,8 @@ def _host() -> tuple[str, str]:
 @cache
 def written_by(*files: str) -> str:
     """What writes programs, these files among it: a change of one makes others of the same lines."""
-    all_files = (__file__, Path(__file__).with_name("vector_functions.py"), *files)
-    return hashlib.sha256(b"".join(Path(file).read_bytes() for file in all_files)).hexdigest()
+    beside = str(Path(__file__).with_name("vector_functions.py"))
+    return hashlib.sha256(b"".join(Path(file).read_bytes() for file in (__file__, beside, *files))).hexdigest()
 
 
 def engine(program: Callable[[], str], written: Sequence[str]) -> llvm.ExecutionEngine:
