@@ -2,8 +2,9 @@
 
 A collection takes ten seconds of a core, and half a minute in a fresh clone; so it is made once, and each worker begins
 with all that is imported. A worker takes a file whenever it has run the last: the tests of a file share what they set
-up. What its tests say goes through a pipe to the process that collected, which counts and prints it. A system that
-cannot fork runs the tests one after another.
+up. What its tests say goes through a pipe to the process that collected, which counts and prints it: the reports of a
+test with the next word, since each message wakes that process. A system that cannot fork runs the tests one after
+another.
 """
 
 from __future__ import annotations
@@ -76,6 +77,7 @@ class Worker:
 
     def __init__(self, session: pytest.Session, pipe: Connection) -> None:
         self.session, self.config, self.pipe = session, session.config, pipe
+        self._reports: list[Any] = []
 
     def work(self) -> None:
         """Run file after file until there is none."""
@@ -93,11 +95,17 @@ class Worker:
             following = next(given, None)
             self.config.hook.pytest_runtest_protocol(item=item, nextitem=following)
             item = following
+        self._say("ends")
+
+    def _say(self, what: str, *said: Any) -> None:
+        """A word to the process that collected, and the reports that came before it."""
+        reports, self._reports = self._reports, []
+        self.pipe.send((reports, what, *said))
 
     def _given(self) -> Iterator[pytest.Item]:
         """The tests, of one more file whenever those of a file have been handed out."""
         while True:
-            self.pipe.send(("next",))
+            self._say("next")
             places = self.pipe.recv()
             if places is None:
                 return
@@ -105,19 +113,19 @@ class Worker:
 
     def pytest_runtest_logstart(self, nodeid: str, location: Any) -> None:
         """A test begins."""
-        self.pipe.send(("begins", nodeid, location))
+        self._say("begins", nodeid, location)
 
     def pytest_runtest_logreport(self, report: pytest.TestReport) -> None:
         """A part of a test has ended."""
         data = self.config.hook.pytest_report_to_serializable(config=self.config, report=report)
-        self.pipe.send(("report", data))
+        self._reports.append(data)
 
     def pytest_warning_recorded(
         self, warning_message: warnings.WarningMessage, when: str, nodeid: str, location: Any
     ) -> None:
         """A test warned: the class of a warning may be known to this process alone, its name goes."""
         said = (str(warning_message.message), warning_message.category.__name__, warning_message.filename)
-        self.pipe.send(("warning", (*said, warning_message.lineno), when, nodeid, location))
+        self._say("warning", (*said, warning_message.lineno), when, nodeid, location)
 
 
 def _listen(session: pytest.Session, files: Files, begun: dict[Connection, int]) -> None:
@@ -127,13 +135,19 @@ def _listen(session: pytest.Session, files: Files, begun: dict[Connection, int])
         for pipe in wait(list(begun)):
             assert isinstance(pipe, Connection)
             try:
-                what, *said = pipe.recv()
+                reports, what, *said = pipe.recv()
             except EOFError:
                 _, status = os.waitpid(begun.pop(pipe), 0)
                 if pipe in running:
                     hook.pytest_runtest_logreport(report=_lost(*running.pop(pipe), status))
                     ended += 1
                 continue
+            for data in reports:
+                report = hook.pytest_report_from_serializable(config=session.config, data=data)
+                hook.pytest_runtest_logreport(report=report)
+                if report.when == "teardown":
+                    running.pop(pipe, None)
+                    ended += 1
             if what == "next":
                 pipe.send(files.popleft() if files else None)
             elif what == "begins":
@@ -141,12 +155,6 @@ def _listen(session: pytest.Session, files: Files, begun: dict[Connection, int])
                 hook.pytest_runtest_logstart(nodeid=said[0], location=said[1])
             elif what == "warning":
                 _warn(hook, *said)
-            else:
-                report = hook.pytest_report_from_serializable(config=session.config, data=said[0])
-                hook.pytest_runtest_logreport(report=report)
-                if report.when == "teardown":
-                    running.pop(pipe, None)
-                    ended += 1
         if session.shouldfail:
             raise session.Failed(session.shouldfail)
     if ended < len(session.items):
