@@ -127,14 +127,13 @@ def _frame(alike: _Alike, look: Look) -> Frame:
     columns[0][0] = columns[0][0].add_params(brush())
     panels = [panel for row in zip(*columns, strict=True) for panel in row]
     heading = {} if look.small else {"title": alt.TitleParams(blank("headline"), subtitle=blank("told"))}
-    chart = (
-        alt.concat(*panels, columns=alike.columns, spacing={"row": 12, "column": _GAP}, bounds="flush", **heading)
-        .add_params(*band_params(OPEN), *(alt.param(name=name, value=0) for name in ("lowest", "highest")))
-        .add_params(*(alt.param(name=name, value=[]) for name in ("near", "far")))
-        .resolve_scale(color="shared", opacity="shared")
-        .configure(**look.config())
-    )
-    return frame(chart)
+    chart = alt.concat(
+        *panels, columns=alike.columns, spacing={"row": 12, "column": _GAP}, bounds="flush",
+        resolve=alt.Resolve(scale={"color": "shared", "opacity": "shared"}), config=look.config(), **heading,
+    )  # fmt: skip
+    ends = (alt.param(name=name, value=0) for name in ("lowest", "highest"))
+    marked = (alt.param(name=name, value=[]) for name in ("near", "far"))
+    return frame(chart, *band_params(OPEN), *ends, *marked)
 
 
 def _told(

@@ -46,9 +46,14 @@ def blank(name: str) -> Any:
     return alt.ExprRef(expr=name)
 
 
-def frame(chart: alt.TopLevelMixin) -> Frame:
-    """A chart with blanks as a frame, not to be changed."""
-    built: Frame = chart.to_dict(validate=False)
+def frame(chart: alt.TopLevelMixin, *params: alt.Parameter) -> Frame:
+    """A chart with blanks as a frame, not to be changed, and the values that its expressions name.
+
+    Altair would hand each value on to every panel and back, with a copy of the whole chart at each step.
+    """
+    built: dict[str, Any] = chart.to_dict(validate=False)
+    if params:
+        built["params"] = [*built.get("params", ()), *(param.param.to_dict() for param in params)]
     return built
 
 
