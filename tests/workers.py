@@ -21,7 +21,11 @@ from multiprocessing.connection import Connection, wait
 from typing import Any
 
 import pytest
+from _pytest.unraisableexception import gc_collect_iterations_key
 
+SEARCHES = 2
+"""Of the collector at the end of a worker, for what a finalizer may have complained of. pytest makes ten, each of
+which looks through all that the tests left there: Python's finds all in the first, and in the second what it freed."""
 Files = deque[list[int]]
 """Of each file that no worker has yet, the places of its tests among all."""
 
@@ -59,16 +63,21 @@ def pytest_runtestloop(session: pytest.Session) -> bool | None:
     return True
 
 
-def of_files(items: list[pytest.Item]) -> Files:
-    """The tests of each file, in the order in which the files come; those of the browser are one.
+def goes_with(nodeid: str) -> str:
+    """What goes to one worker with a test: its file, or the folder whose files share a service and what it holds.
 
-    They share a service and its window, but for the one file that has its own.
+    One file of the browser has a service and a window of its own.
     """
+    file = nodeid.partition("::")[0]
+    folder = next((folder for folder in ("tests/app", "tests/browser") if file.startswith(f"{folder}/")), file)
+    return file if file == "tests/browser/test_workbench.py" else folder
+
+
+def of_files(items: list[pytest.Item]) -> Files:
+    """The tests of each file, in the order in which the files come; those of a folder that goes together are one."""
     files: dict[str, list[int]] = {}
     for place, item in enumerate(items):
-        file = item.nodeid.partition("::")[0]
-        own = not file.startswith("tests/browser/") or file == "tests/browser/test_workbench.py"
-        files.setdefault(file if own else "tests/browser", []).append(place)
+        files.setdefault(goes_with(item.nodeid), []).append(place)
     return deque(files.values())
 
 
@@ -82,6 +91,7 @@ class Worker:
     def work(self) -> None:
         """Run file after file until there is none."""
         self.config.workerinput = {}  # type: ignore[attr-defined]  # by which plugins know a process that does not sum up
+        self.config.stash[gc_collect_iterations_key] = SEARCHES
         plugins = self.config.pluginmanager
         plugins.unregister(name="terminalreporter")
         capture = plugins.getplugin("capturemanager")
