@@ -76,23 +76,23 @@ def pytest_addoption(parser: pytest.Parser) -> None:
 
 
 LONGEST = (
-    "browser/test_workbench", "app/backup/test_backup", "test_project", "diagnosis/test_diagnose",
-    "bench/test_figures", "diagnosis/discovery/test_search", "browser/test_pages", "presets/test_moving_base",
-    "cli/test_postgresql", "cli/test_commands", "diagnosis/test_structure_selection", "cli/test_service_commands",
-    "acceptance/test_identification", "test_readme", "checks/test_check", "test_windows", "checks/test_unit_factor",
-    "presets/test_machines", "diagnosis/test_beyond_bounds", "diagnosis/test_drive_hysteresis",
-    "figures/test_figures", "diagnosis/test_measured", "bench/test_acceptance", "test_warnings",
-    "readers/test_lab_formats", "cli/test_diagnose", "effects/test_contract", "test_wheel", "hybrid/test_what_if",
-    "acceptance/test_fitness", "residuals/test_curves", "presets/test_two_masses", "fit/test_windows",
-    "diagnosis/test_recommended", "fit/test_fifth_order", "design/test_proposal", "faults/test_kill",
-    "bench/test_procedures", "test_site", "bench/test_continued", "words/test_message",
+    "browser/test_workbench", "app/test_hybrid", "test_project", "diagnosis/test_diagnose", "bench/test_figures",
+    "diagnosis/discovery/test_search", "browser/test_pages", "presets/test_moving_base", "cli/test_postgresql",
+    "cli/test_commands", "app/backup/test_backup", "diagnosis/test_structure_selection",
+    "cli/test_service_commands", "acceptance/test_identification", "test_readme", "checks/test_check",
+    "test_windows", "checks/test_unit_factor", "presets/test_machines", "diagnosis/test_beyond_bounds",
+    "diagnosis/test_drive_hysteresis", "figures/test_figures", "diagnosis/test_measured", "bench/test_acceptance",
+    "test_warnings", "readers/test_lab_formats", "cli/test_diagnose", "effects/test_contract", "test_wheel",
+    "hybrid/test_what_if", "acceptance/test_fitness", "residuals/test_curves", "presets/test_two_masses",
+    "fit/test_windows", "diagnosis/test_recommended", "fit/test_fifth_order", "design/test_proposal",
+    "faults/test_kill", "bench/test_procedures", "test_site", "bench/test_continued", "words/test_message",
     "diagnosis/test_free_shapes", "test_results", "diagnosis/test_time_budget", "hybrid/test_rig",
     "noise/test_noise", "test_docs", "test_alone",
 )  # fmt: skip
 """Files that take longest, the dearest first; those that wait for a browser or a process stand between others.
 
-What goes to one worker together (tests/workers.py) goes with its first: tests/app, which takes longest of all, and the
-browser. Of tests/app the backup comes first: what it compares is all that the shared service holds.
+What goes to one worker together (tests/workers.py) goes with its first. Of the folders of tests/app the backup comes
+first: what it compares is all that the shared service holds.
 """
 
 

@@ -64,17 +64,20 @@ def pytest_runtestloop(session: pytest.Session) -> bool | None:
 
 
 def goes_with(nodeid: str) -> str:
-    """What goes to one worker with a test: its file, or the folder whose files share a service and what it holds.
+    """What goes to one worker with a test: its file, or the files that share a service and what it holds.
 
-    One file of the browser has a service and a window of its own.
+    One file of the browser has a service and a window of its own. The files of tests/app, which take longest of all,
+    are two parts: those in folders of it, and those beside them.
     """
     file = nodeid.partition("::")[0]
-    folder = next((folder for folder in ("tests/app", "tests/browser") if file.startswith(f"{folder}/")), file)
-    return file if file == "tests/browser/test_workbench.py" else folder
+    folder, _, name = file.rpartition("/")
+    if folder == "tests/browser" and name != "test_workbench.py":
+        return folder
+    return "folders of tests/app" if folder.startswith("tests/app/") else folder if folder == "tests/app" else file
 
 
 def of_files(items: list[pytest.Item]) -> Files:
-    """The tests of each file, in the order in which the files come; those of a folder that goes together are one."""
+    """The tests of each file, in the order in which the files come; those that go together are one."""
     files: dict[str, list[int]] = {}
     for place, item in enumerate(items):
         files.setdefault(goes_with(item.nodeid), []).append(place)
