@@ -24,8 +24,8 @@ import pytest
 from _pytest.unraisableexception import gc_collect_iterations_key
 
 SEARCHES = 2
-"""Of the collector at the end of a worker, for what a finalizer may have complained of. pytest makes ten, each of
-which looks through all that the tests left there: Python's finds all in the first, and in the second what it freed."""
+"""Of the collector at each of two moments at the end, for what a finalizer may have complained of. pytest makes five,
+and each looks through all that the tests left: the first finds it, the second what finalizers let go."""
 Files = deque[list[int]]
 """Of each file that no worker has yet, the places of its tests among all."""
 
