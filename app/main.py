@@ -7,7 +7,7 @@ import sys
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
 from dataclasses import dataclass
-from functools import partial
+from functools import cache, partial
 from importlib import import_module
 from importlib.metadata import version
 from typing import Any
@@ -15,6 +15,7 @@ from typing import Any
 import uvicorn
 from fastapi import APIRouter, Depends, FastAPI
 from fastapi.concurrency import run_in_threadpool
+from starlette.routing import BaseRoute
 from uvicorn.middleware.proxy_headers import ProxyHeadersMiddleware
 
 from app import errors, openapi
@@ -88,6 +89,10 @@ _KEPT = 75  # s that a connection waits for its next request: clients let go aft
 _TURN = 1e-3  # s after which a figure that is drawn lets an answer take its turn: the interpreter's own are 5
 READERS = 2  # uploads that are read at once
 WORK = ("app.kinds", "ident.simulation.ready")  # what processes apart have imported when they begin
+_OF_EACH: dict[str, Any] = {
+    "generate_unique_id_function": openapi.named, "dependencies": [Depends(refuse_undeclared)],
+}  # fmt: skip
+"""Of each call."""
 _documents: LRU[dict[str, Any]] = LRU(1)  # all applications of a process have the same calls, and it takes 2 s to write
 
 
@@ -106,20 +111,26 @@ def create_app(settings: Settings, apart: bool = False) -> FastAPI:
     return app
 
 
-def routed() -> FastAPI:
-    """The calls and the pages, of no service yet: enough for their document."""
-    app = FastAPI(
-        title="servoident", version=version("servoident"), lifespan=_lifespan, openapi_url=None,
-        generate_unique_id_function=openapi.named, dependencies=[Depends(refuse_undeclared)],
-        webhooks=told,
-    )  # fmt: skip
-    app.openapi = partial(_documents.get, app.version, partial(openapi.write, app))  # type: ignore[method-assign]
-    api = APIRouter(prefix=API)
+@cache
+def _calls() -> tuple[BaseRoute, ...]:
+    """The calls and the pages, once a process: what each takes and answers is worked out in 0.1 s."""
+    app, api = FastAPI(openapi_url=None, **_OF_EACH), APIRouter(prefix=API)
     for feature in FEATURES:
         api.include_router(import_module(f"app.{feature}.endpoints").router)
     api.include_router(openapi.router)
     app.include_router(api)
     app.include_router(pages)
+    return tuple(app.router.routes)
+
+
+def routed() -> FastAPI:
+    """The calls and the pages, of no service yet: enough for their document."""
+    app = FastAPI(
+        title="servoident", version=version("servoident"), lifespan=_lifespan, openapi_url=None, webhooks=told,
+        **_OF_EACH,
+    )  # fmt: skip
+    app.openapi = partial(_documents.get, app.version, partial(openapi.write, app))  # type: ignore[method-assign]
+    app.router.routes.extend(_calls())
     return app
 
 

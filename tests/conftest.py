@@ -59,7 +59,8 @@ def pytest_collection_finish(session: pytest.Session) -> None:
                 if hasattr(function, "py_func"):
                     shared(function)
     if session.config.getoption("--workers") > 1:
-        importlib.import_module("ident.simulation.ready")
+        for name in ("ident.simulation.ready", "control"):  # what each worker would import in its tests, for a second
+            importlib.import_module(name)
     if "hypothesis" in sys.modules and not asked_for_full(session.config):
         from hypothesis.internal.conjecture import providers
 
@@ -75,25 +76,23 @@ def pytest_addoption(parser: pytest.Parser) -> None:
 
 
 LONGEST = (
-    "browser/test_workbench", "browser/test_pages", "cli/test_postgresql", "cli/test_service_commands",
-    "test_readme", "test_project", "test_windows", "test_wheel", "diagnosis/test_diagnose",
-    "diagnosis/discovery/test_search", "cli/test_commands", "acceptance/test_identification",
-    "diagnosis/test_structure_selection", "effects/test_every_pair", "reference/test_nonlinear_reference",
-    "cli/test_diagnose", "bench/test_figures", "fit/test_windows", "bench/test_procedures",
-    "diagnosis/test_time_budget", "test_docs", "bench/test_acceptance", "test_wrong_arguments",
-    "residuals/test_curves", "hybrid/test_what_if", "test_imports", "bench/test_identification",
-    "presets/test_machines", "checks/test_check", "test_alone", "acceptance/test_one_error", "fit/test_beginnings",
-    "diagnosis/test_measured", "fit/test_custom_fit", "cli/test_effects", "acceptance/test_measured",
-    "diagnosis/discovery/test_any_machine", "stability/test_hybrid_judgement", "figures/test_figures",
-    "readers/test_lab_formats", "app/backup/test_backup", "app/test_hybrid", "app/test_bench",
-    "app/access/test_roles", "app/test_adding", "app/test_diagnoses", "app/test_older_database",
-    "app/webhooks/test_webhooks", "app/access/test_audit", "app/test_contract", "app/test_own_effects",
-    "app/test_size", "app/test_service", "app/test_bad_inputs", "app/test_side_by_side",
+    "browser/test_workbench", "app/test_hybrid", "test_project", "diagnosis/test_diagnose", "bench/test_figures",
+    "diagnosis/discovery/test_search", "browser/test_pages", "presets/test_moving_base", "cli/test_postgresql",
+    "cli/test_commands", "app/backup/test_backup", "diagnosis/test_structure_selection",
+    "cli/test_service_commands", "acceptance/test_identification", "test_readme", "checks/test_check",
+    "test_windows", "checks/test_unit_factor", "presets/test_machines", "diagnosis/test_beyond_bounds",
+    "diagnosis/test_drive_hysteresis", "figures/test_figures", "diagnosis/test_measured", "bench/test_acceptance",
+    "test_warnings", "readers/test_lab_formats", "cli/test_diagnose", "effects/test_contract", "test_wheel",
+    "hybrid/test_what_if", "acceptance/test_fitness", "residuals/test_curves", "presets/test_two_masses",
+    "fit/test_windows", "diagnosis/test_recommended", "fit/test_fifth_order", "design/test_proposal",
+    "faults/test_kill", "bench/test_procedures", "test_site", "bench/test_continued", "words/test_message",
+    "diagnosis/test_free_shapes", "test_results", "diagnosis/test_time_budget", "hybrid/test_rig",
+    "noise/test_noise", "test_docs", "test_alone",
 )  # fmt: skip
-"""Files that take longest, those that wait for a browser or a service before the others, the dearest first.
+"""Files that take longest, the dearest first; those that wait for a browser or a process stand between others.
 
-The files of the browser stay together and go with their first. Of tests/app the
-backup comes first: what it compares is all that the shared service holds.
+What goes to one worker together (tests/workers.py) goes with its first. Of the folders of tests/app the backup comes
+first: what it compares is all that the shared service holds.
 """
 
 
@@ -103,22 +102,26 @@ def asked_for_full(config: pytest.Config) -> bool:
 
 
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
-    """Long files go first, so that no core is left alone with one at the end; then those of tests/app, on end.
+    """Long files go first, so that no core is left alone with one at the end; what goes together is on end.
 
-    They share a service, which takes a fortieth of a core for as long as it is there, whatever runs meanwhile. What is
-    marked `full` is skipped in the short form before its fixtures are made: docs/decisions/tests.md says what stands
-    in for it.
+    What is marked `full` is skipped in the short form before its fixtures are made: docs/decisions/tests.md says what
+    stands in for it.
     """
+    from tests.workers import goes_with
+
     if not asked_for_full(config):
         for item in items:
             if item.get_closest_marker("full"):
                 item.add_marker(pytest.mark.skip(reason="run with --full: docs/decisions/tests.md"))
-    places = {f"{name}.py": number for number, name in enumerate(LONGEST)}
+    places = {f"tests/{name}.py": number for number, name in enumerate(LONGEST)}
+    of_file = {file: places.get(file, len(places)) for file in {item.nodeid.partition("::")[0] for item in items}}
+    first: dict[str, int] = {}
+    for file, place in of_file.items():
+        first[goes_with(file)] = min(place, first.get(goes_with(file), place))
 
-    def turn(item: pytest.Item) -> tuple[int, int, str]:
-        name = item.path.relative_to(ROOT / "tests").as_posix()
-        place = places.get(name, len(places))
-        return (1 if name.startswith("app/") else 0 if name in places else 2), place, name
+    def turn(item: pytest.Item) -> tuple[int, str, int, str]:
+        file = item.nodeid.partition("::")[0]
+        return first[goes_with(file)], goes_with(file), of_file[file], file
 
     items.sort(key=turn)
 

@@ -30,6 +30,8 @@ CHROMIUM = str(next((program for program in BROWSERS if program.exists()), BROWS
 """The browser without a window of its own, where there is one, takes half as much of the processor."""
 TOKEN = "a-token-for-tests"
 ENDED = ("succeeded", "failed", "cancelled")
+_CERTIFICATES = httpx.create_ssl_context()
+"""Read once: no test's service shows one, and each client would read all that this machine trusts."""
 FEW_EFFECTS = "from tests.conftest import of_few_effects; few = of_few_effects(full=False); few.__enter__()"
 """Done first, has a service rank a few effects: for a story whose point is another than the whole catalogue."""
 LITTLE = f"{FEW_EFFECTS}; from tests.conftest import short_searches as short; less = short(False); less.__enter__()"
@@ -50,7 +52,7 @@ class Service:
     def __init__(self, address: str, token: str) -> None:
         self.address, self.token = address, token
         headers = {"Authorization": f"Bearer {token}"}
-        self.client = httpx.Client(base_url=f"{address}/api/v1", headers=headers, timeout=120)
+        self.client = httpx.Client(base_url=f"{address}/api/v1", headers=headers, timeout=120, verify=_CERTIFICATES)
 
     @classmethod
     def that_said(cls, line: str) -> Service:

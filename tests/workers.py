@@ -2,8 +2,9 @@
 
 A collection takes ten seconds of a core, and half a minute in a fresh clone; so it is made once, and each worker begins
 with all that is imported. A worker takes a file whenever it has run the last: the tests of a file share what they set
-up. What its tests say goes through a pipe to the process that collected, which counts and prints it. A system that
-cannot fork runs the tests one after another.
+up. What its tests say goes through a pipe to the process that collected, which counts and prints it: the reports of a
+test with the next word, since each message wakes that process. A system that cannot fork runs the tests one after
+another.
 """
 
 from __future__ import annotations
@@ -20,7 +21,11 @@ from multiprocessing.connection import Connection, wait
 from typing import Any
 
 import pytest
+from _pytest.unraisableexception import gc_collect_iterations_key
 
+SEARCHES = 2
+"""Of the collector at each of two moments at the end, for what a finalizer may have complained of. pytest makes five,
+and each looks through all that the tests left: the first finds it, the second what finalizers let go."""
 Files = deque[list[int]]
 """Of each file that no worker has yet, the places of its tests among all."""
 
@@ -58,16 +63,24 @@ def pytest_runtestloop(session: pytest.Session) -> bool | None:
     return True
 
 
-def of_files(items: list[pytest.Item]) -> Files:
-    """The tests of each file, in the order in which the files come; those of the browser are one.
+def goes_with(nodeid: str) -> str:
+    """What goes to one worker with a test: its file, or the files that share a service and what it holds.
 
-    They share a service and its window, but for the one file that has its own.
+    One file of the browser has a service and a window of its own. The files of tests/app, which take longest of all,
+    are two parts: those in folders of it, and those beside them.
     """
+    file = nodeid.partition("::")[0]
+    folder, _, name = file.rpartition("/")
+    if folder == "tests/browser" and name != "test_workbench.py":
+        return folder
+    return "folders of tests/app" if folder.startswith("tests/app/") else folder if folder == "tests/app" else file
+
+
+def of_files(items: list[pytest.Item]) -> Files:
+    """The tests of each file, in the order in which the files come; those that go together are one."""
     files: dict[str, list[int]] = {}
     for place, item in enumerate(items):
-        file = item.nodeid.partition("::")[0]
-        own = not file.startswith("tests/browser/") or file == "tests/browser/test_workbench.py"
-        files.setdefault(file if own else "tests/browser", []).append(place)
+        files.setdefault(goes_with(item.nodeid), []).append(place)
     return deque(files.values())
 
 
@@ -76,10 +89,12 @@ class Worker:
 
     def __init__(self, session: pytest.Session, pipe: Connection) -> None:
         self.session, self.config, self.pipe = session, session.config, pipe
+        self._reports: list[Any] = []
 
     def work(self) -> None:
         """Run file after file until there is none."""
         self.config.workerinput = {}  # type: ignore[attr-defined]  # by which plugins know a process that does not sum up
+        self.config.stash[gc_collect_iterations_key] = SEARCHES
         plugins = self.config.pluginmanager
         plugins.unregister(name="terminalreporter")
         capture = plugins.getplugin("capturemanager")
@@ -93,11 +108,17 @@ class Worker:
             following = next(given, None)
             self.config.hook.pytest_runtest_protocol(item=item, nextitem=following)
             item = following
+        self._say("ends")
+
+    def _say(self, what: str, *said: Any) -> None:
+        """A word to the process that collected, and the reports that came before it."""
+        reports, self._reports = self._reports, []
+        self.pipe.send((reports, what, *said))
 
     def _given(self) -> Iterator[pytest.Item]:
         """The tests, of one more file whenever those of a file have been handed out."""
         while True:
-            self.pipe.send(("next",))
+            self._say("next")
             places = self.pipe.recv()
             if places is None:
                 return
@@ -105,19 +126,19 @@ class Worker:
 
     def pytest_runtest_logstart(self, nodeid: str, location: Any) -> None:
         """A test begins."""
-        self.pipe.send(("begins", nodeid, location))
+        self._say("begins", nodeid, location)
 
     def pytest_runtest_logreport(self, report: pytest.TestReport) -> None:
         """A part of a test has ended."""
         data = self.config.hook.pytest_report_to_serializable(config=self.config, report=report)
-        self.pipe.send(("report", data))
+        self._reports.append(data)
 
     def pytest_warning_recorded(
         self, warning_message: warnings.WarningMessage, when: str, nodeid: str, location: Any
     ) -> None:
         """A test warned: the class of a warning may be known to this process alone, its name goes."""
         said = (str(warning_message.message), warning_message.category.__name__, warning_message.filename)
-        self.pipe.send(("warning", (*said, warning_message.lineno), when, nodeid, location))
+        self._say("warning", (*said, warning_message.lineno), when, nodeid, location)
 
 
 def _listen(session: pytest.Session, files: Files, begun: dict[Connection, int]) -> None:
@@ -127,13 +148,19 @@ def _listen(session: pytest.Session, files: Files, begun: dict[Connection, int])
         for pipe in wait(list(begun)):
             assert isinstance(pipe, Connection)
             try:
-                what, *said = pipe.recv()
+                reports, what, *said = pipe.recv()
             except EOFError:
                 _, status = os.waitpid(begun.pop(pipe), 0)
                 if pipe in running:
                     hook.pytest_runtest_logreport(report=_lost(*running.pop(pipe), status))
                     ended += 1
                 continue
+            for data in reports:
+                report = hook.pytest_report_from_serializable(config=session.config, data=data)
+                hook.pytest_runtest_logreport(report=report)
+                if report.when == "teardown":
+                    running.pop(pipe, None)
+                    ended += 1
             if what == "next":
                 pipe.send(files.popleft() if files else None)
             elif what == "begins":
@@ -141,12 +168,6 @@ def _listen(session: pytest.Session, files: Files, begun: dict[Connection, int])
                 hook.pytest_runtest_logstart(nodeid=said[0], location=said[1])
             elif what == "warning":
                 _warn(hook, *said)
-            else:
-                report = hook.pytest_report_from_serializable(config=session.config, data=said[0])
-                hook.pytest_runtest_logreport(report=report)
-                if report.when == "teardown":
-                    running.pop(pipe, None)
-                    ended += 1
         if session.shouldfail:
             raise session.Failed(session.shouldfail)
     if ended < len(session.items):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 from urllib.parse import quote
@@ -14,6 +15,8 @@ from app.cli.local_service import running
 from ident.errors import Unusable
 
 if TYPE_CHECKING:
+    import ssl
+
     import httpx
 
 Server = Annotated[
@@ -37,6 +40,14 @@ USUAL = "http://127.0.0.1:8000"
 PATIENCE = 60.0  # s without an answer; fits are jobs, so nothing that is asked here takes longer
 
 
+@cache
+def _certificates() -> ssl.SSLContext:
+    """The certificates that this machine trusts: 24 ms to read, once for all requests of a command."""
+    import httpx
+
+    return httpx.create_ssl_context()
+
+
 def request(server: str, token: str, method: str, path: str, **content: Any) -> httpx.Response:
     """The answer of the service to one request. Raises Unusable where it refuses, or where there is none."""
     import httpx
@@ -49,7 +60,7 @@ def request(server: str, token: str, method: str, path: str, **content: Any) -> 
         headers["Authorization"] = f"Bearer {token}"
     url = f"{server.rstrip('/')}/api/v1{path}"
     try:
-        answer = httpx.request(method, url, headers=headers, timeout=PATIENCE, **content)
+        answer = httpx.request(method, url, headers=headers, timeout=PATIENCE, verify=_certificates(), **content)
     except UnicodeEncodeError:
         raise Unusable(
             "bad-token", "it is not plain ASCII", "--token", "give the token that the service printed"

@@ -35,4 +35,5 @@ def read(storage: Storage, blob: str | None, content: bytes) -> list[Any]:
 
 
 def _packed(evolution: list[Any]) -> bytes:
-    return zlib.compress(json.dumps(evolution, separators=(",", ":")).encode(), 9)
+    """With the usual effort of zlib: the most takes five times as long for 3 % less."""
+    return zlib.compress(json.dumps(evolution, separators=(",", ":")).encode())

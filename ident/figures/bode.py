@@ -23,7 +23,7 @@ from ident.figures.options import AXIS, BAND, CANDIDATE, CONDITIONS, OTHER, RUN,
 from ident.figures.others import others_of, titles_of
 from ident.figures.render import Panel
 from ident.figures.responses import Responses
-from ident.figures.selection import HIGH, LOW, OPEN, Band, band_of, band_params, band_values, brush, zoomed
+from ident.figures.selection import HIGH, LOW, OPEN, Band, band_of, band_values, brush, zoomed
 from ident.figures.study import Study
 from ident.figures.thin import decade_ticks, fine_ticks
 from ident.fit.result import FitResult
@@ -127,14 +127,11 @@ def _frame(alike: _Alike, look: Look) -> Frame:
     columns[0][0] = columns[0][0].add_params(brush())
     panels = [panel for row in zip(*columns, strict=True) for panel in row]
     heading = {} if look.small else {"title": alt.TitleParams(blank("headline"), subtitle=blank("told"))}
-    chart = (
-        alt.concat(*panels, columns=alike.columns, spacing={"row": 12, "column": _GAP}, bounds="flush", **heading)
-        .add_params(*band_params(OPEN), *(alt.param(name=name, value=0) for name in ("lowest", "highest")))
-        .add_params(*(alt.param(name=name, value=[]) for name in ("near", "far")))
-        .resolve_scale(color="shared", opacity="shared")
-        .configure(**look.config())
-    )
-    return frame(chart)
+    chart = alt.concat(
+        *panels, columns=alike.columns, spacing={"row": 12, "column": _GAP}, bounds="flush",
+        resolve=alt.Resolve(scale={"color": "shared", "opacity": "shared"}), config=look.config(), **heading,
+    )  # fmt: skip
+    return frame(chart, {**band_values(OPEN), "lowest": 0, "highest": 0, "near": [], "far": []})
 
 
 def _told(

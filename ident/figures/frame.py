@@ -46,9 +46,15 @@ def blank(name: str) -> Any:
     return alt.ExprRef(expr=name)
 
 
-def frame(chart: alt.TopLevelMixin) -> Frame:
-    """A chart with blanks as a frame, not to be changed."""
-    built: Frame = chart.to_dict(validate=False)
+def frame(chart: alt.TopLevelMixin, values: Mapping[str, Any] | None = None) -> Frame:
+    """A chart with blanks as a frame, not to be changed, with the `values` by name that its expressions read.
+
+    Altair would hand each value on to every panel and back, with a copy of the whole chart at each step.
+    """
+    built: dict[str, Any] = chart.to_dict(validate=False)
+    if values:
+        declared = ({"name": name, "value": value} for name, value in values.items())
+        built["params"] = [*built.get("params", ()), *declared]
     return built
 
 

@@ -12,6 +12,7 @@ has died away. The period is the first lag at which the command agrees with itse
 from __future__ import annotations
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
 
 from ident.noise.criteria import NOISE_CRITERIA
@@ -62,8 +63,9 @@ def period(command: Array) -> int | None:
 def _variogram(signal: Array, most: int) -> Array:
     """⟨(u[k+L] − u[k])²⟩ for every lag L from 0 to `most`, by the fast Fourier transform."""
     n = len(signal)
-    spectrum = np.fft.rfft(signal, 2 * n)
-    products = np.fft.irfft(np.abs(spectrum) ** 2, 2 * n)[: most + 1]
+    length = scipy.fft.next_fast_len(n + most, real=True)  # no lag up to `most` wraps round
+    spectrum = np.fft.rfft(signal, length)
+    products = np.fft.irfft(np.abs(spectrum) ** 2, length)[: most + 1]
     squares = np.concatenate([[0.0], np.cumsum(signal**2)])
     lags = np.arange(most + 1)
     found: Array = (squares[n - lags] + squares[n] - squares[lags] - 2.0 * products) / (n - lags)
