@@ -20,7 +20,7 @@ def test_a_machine_is_written_with_what_it_moves_and_its_gain(servoident, tmp_pa
     text = out.read_text()
     for line in ("#define SERVOIDENT_SAMPLE_RATE 2048.0 ", " *   Kp = 7\n", " *   mL = 0.87\n", " *   k = 36300\n"):
         assert line in text
-    assert "command in, displacement, load_pressure, force out, at 2048 Hz" in done.stdout
+    assert "command in, displacement, load_pressure, force, acceleration out, at 2048 Hz" in done.stdout
 
 
 def test_the_state_space_says_what_it_leaves_out(servoident, tmp_path):
