@@ -185,13 +185,17 @@ def _with_an_effect_each(
 
     A model with more parameters and as small an error is among them where, with its effect, it gains half of all that
     can be gained in addition to the first with its own. Only the first, without an effect, is returned where it is the
-    only one or its residual is noise. Where no model explains the records with its effect, those that were about as
-    good as the best without one are tried with the effects of which little was predicted, too.
+    only one. Where its residual is noise, the others are those that explain the records with an effect and have fewer
+    parameters even so. Where no model explains the records with its effect, those that were about as good as the best
+    without one are tried with the effects of which little was predicted, too.
     """
     as_good = CRITERIA.equality.practically_equal * min(judged.error for judged in tried)
     simple = [judged for judged in tried if judged.parameters <= first.parameters]
     larger = [judged for judged in tried if judged.parameters > first.parameters and judged.error <= as_good]
-    if len(simple) + len(larger) == 1 or not first.above_noise:
+    if not first.above_noise:
+        smaller = (judged.helped(report) for judged in simple if judged.parameters + 1 < first.parameters)
+        return {one.machine: one for one in (first, *smaller) if one is first or not one.above_noise}
+    if len(simple) + len(larger) == 1:
         return {first.machine: first}
     helped = {judged.machine: judged.helped(report) for judged in simple}
     if all(judged.above_noise for judged in helped.values()):

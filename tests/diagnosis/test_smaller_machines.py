@@ -1,4 +1,4 @@
-"""Machines that lack two effects: each takes a part of the error, and a larger machine makes up for one of them."""
+"""A larger machine makes up for an effect that a smaller one lacks: the smaller ones are compared with theirs."""
 
 from __future__ import annotations
 
@@ -30,6 +30,23 @@ def test_a_smaller_machine_with_two_effects_is_compared_where_it_explains_the_re
     found = structure_selection._explaining(motor, [valve, motor], silent)  # type: ignore[arg-type]
     assert found.size == 2 + effects
     assert structure_selection._explaining(valve, [valve, motor], silent) is valve  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize(
+    ("size", "noise", "machines"),
+    [(2, True, {"open_valve", "motor"}), (2, False, {"open_valve"}), (4, True, {"open_valve"})],
+)
+def test_a_smaller_machine_that_explains_the_records_with_an_effect_is_compared(size, noise, machines):
+    """A late motor: the lags of a valve and of oil explain it as well, by two parameters more."""
+
+    def model(machine: str, size: int, above_noise: bool) -> SimpleNamespace:
+        of = SimpleNamespace(machine=machine, parameters=size, error=1.0, above_noise=above_noise)
+        of.helped = lambda _report: SimpleNamespace(machine=machine, above_noise=not noise)
+        return of
+
+    valve, motor = model("open_valve", 5, above_noise=False), model("motor", size, above_noise=True)
+    found = structure_selection._with_an_effect_each(valve, [valve, motor], silent)  # type: ignore[arg-type, list-item]
+    assert found.keys() == machines
 
 
 @pytest.mark.parametrize(("model", "all_of_them"), [("first_order", True), ("motor", False)])
