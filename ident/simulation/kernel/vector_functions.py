@@ -74,7 +74,7 @@ class _Function:
 
     def call(self, name: str, *given: str) -> str:
         """What LLVM's own function of so many vectors gives."""
-        arguments = ", ".join(f"{self.real} {one}" for one in given)
+        arguments = ", ".join(f"{self.real} {vector}" for vector in given)
         return self.new(f"call {self.real} @llvm.{name}.v{self.lanes}f64({arguments})")
 
     def rounded(self, a: str) -> str:
@@ -123,7 +123,7 @@ def declared(lanes: int) -> str:
 
 
 def _power(of: _Function) -> str:
-    zero, one = of.number(0.0), of.number(1.0)
+    zero = of.number(0.0)
     size = of.call("fabs", "%x")
     logarithm, exponent = _logarithm(of, size)
     # n is the nearest whole number to y log2 x, and r the rest: y e − n is exact
@@ -138,7 +138,7 @@ def _power(of: _Function) -> str:
     value = of.choice(of.holds("ogt", whole, of.number(_RANGE - 1.0)), of.number(math.inf), value)
     value = of.choice(of.holds("olt", whole, of.number(1.0 - _RANGE)), zero, value)
     value = _at_the_ends(of, value, size)
-    return of.choice(of.holds("oeq", "%y", zero), one, value)
+    return of.choice(of.holds("oeq", "%y", zero), of.number(1.0), value)
 
 
 def everywhere(value: float, lanes: int) -> str:
