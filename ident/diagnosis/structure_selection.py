@@ -194,7 +194,7 @@ def _with_an_effect_each(
     larger = [judged for judged in tried if judged.parameters > first.parameters and judged.error <= as_good]
     if not first.above_noise:
         smaller = (judged.helped(report) for judged in simple if judged.parameters + 1 < first.parameters)
-        return {one.machine: one for one in (first, *smaller) if one is first or not one.above_noise}
+        return {judged.machine: judged for judged in (first, *smaller) if not judged.above_noise}
     if len(simple) + len(larger) == 1:
         return {first.machine: first}
     helped = {judged.machine: judged.helped(report) for judged in simple}
@@ -214,8 +214,8 @@ def _explaining(judged: _JudgedStructure, others: Collection[_JudgedStructure], 
 
     A machine of many parameters makes up for one of two effects that a smaller one lacks, but not for both.
     """
-    largest = max(one.size for one in others)
-    near = CRITERIA.structure.within_reach * min(one.error for one in others)
+    largest = max(other.size for other in others)
+    near = CRITERIA.structure.within_reach * min(other.error for other in others)
     if judged.with_effect is None or judged.size >= largest or judged.error > near or not judged.above_noise:
         return judged
     more = judged.helped(report)
