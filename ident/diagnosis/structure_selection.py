@@ -194,7 +194,8 @@ def _with_an_effect_each(
     larger = [judged for judged in tried if judged.parameters > first.parameters and judged.error <= as_good]
     if not first.above_noise:
         smaller = (judged.helped(report) for judged in simple if judged.parameters + 1 < first.parameters)
-        return {judged.machine: judged for judged in (first, *smaller) if not judged.above_noise}
+        sound = (judged for judged in (first, *smaller) if np.isfinite(judged.error))
+        return {judged.machine: judged for judged in sound if not judged.above_noise}
     if len(simple) + len(larger) == 1:
         return {first.machine: first}
     helped = {judged.machine: judged.helped(report) for judged in simple}

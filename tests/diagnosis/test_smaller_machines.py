@@ -41,7 +41,7 @@ def test_a_smaller_machine_that_explains_the_records_with_an_effect_is_compared(
 
     def model(machine: str, size: int, above_noise: bool) -> SimpleNamespace:
         of = SimpleNamespace(machine=machine, parameters=size, error=1.0, above_noise=above_noise)
-        of.helped = lambda _report: SimpleNamespace(machine=machine, above_noise=not noise)
+        of.helped = lambda _report: SimpleNamespace(machine=machine, error=1.0, above_noise=not noise)
         return of
 
     valve, motor = model("open_valve", 5, above_noise=False), model("motor", size, above_noise=True)
