@@ -220,7 +220,7 @@ class Chain:
 
     @cached_property
     def exponents(self) -> tuple[str, ...]:
-        """Symbols that stand as exponents: a number there is worth code of its own."""
+        """Symbols that stand as exponents."""
         powers = (node for e in self.equations for node in ast.walk(e.tree) if isinstance(node, ast.BinOp))
         names = {p.right.id for p in powers if isinstance(p.op, ast.Pow) and isinstance(p.right, ast.Name)}
         return tuple(sorted(names & set(self.symbols)))

@@ -14,8 +14,9 @@ from ident.fit.settings import Settings
 from ident.workflows import diagnose, identify
 from tests.blind.any_machine import Lab, sound
 from tests.blind.campaign import add
+from tests.blind.interval import rate
 from tests.blind.sure import sure
-from tests.blind.table import LABS, interval
+from tests.blind.table import LABS
 from tests.blind.worth import COUNTS, TRUE, nats
 
 SAME = 0.5  # of the noise: so much may a simpler model differ from the machine and be called right
@@ -98,15 +99,10 @@ def rates(outcomes: list[Outcome]) -> str:
     """How often each thing was right, as counts with 95 % intervals."""
     hidden, sound_ones = [o for o in outcomes if o.counts], [o for o in outcomes if not o.lab.hidden]
     return "; ".join((
-        f"structure right {_rate([o.structure_right for o in outcomes])}",
-        f"hidden effect named {_rate([o.named for o in hidden])}",
-        f"nothing found where nothing is hidden {_rate([o.standing != 'found' for o in sound_ones])}",
+        f"structure right {rate([o.structure_right for o in outcomes])}",
+        f"hidden effect named {rate([o.named for o in hidden])}",
+        f"nothing found where nothing is hidden {rate([o.standing != 'found' for o in sound_ones])}",
     ))  # fmt: skip
-
-
-def _rate(right: list[bool]) -> str:
-    lower, upper = interval(sum(right), len(right))
-    return f"{sum(right)} of {len(right)} ({100 * lower:.0f} to {100 * upper:.0f} %)"
 
 
 def main() -> None:

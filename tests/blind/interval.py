@@ -12,6 +12,12 @@ def interval(hits: int, trials: int) -> tuple[float, float]:
     return lower, upper
 
 
+def rate(right: list[bool]) -> str:
+    """How often something was right, as a count with its interval."""
+    lower, upper = interval(sum(right), len(right))
+    return f"{sum(right)} of {len(right)} ({100 * lower:.0f} to {100 * upper:.0f} %)"
+
+
 def rate_line(what: str, hits: int, trials: int, goal: str) -> str:
     """A row of a table: what was counted, how often it was so, the rate with its interval, and the goal."""
     lower, upper = interval(hits, trials)

@@ -22,7 +22,7 @@ from ident.fit.settings import Settings
 from ident.matrix import Matrix
 from ident.readers import read_matrix
 from ident.workflows import diagnose, identify
-from tests.blind.table import interval
+from tests.blind.interval import rate
 
 Array = NDArray[np.float64]
 _PARTS, _SAMPLES = 30, 1800
@@ -171,8 +171,8 @@ class Several:
         friction, drag = self._of("dry friction", 0.3), self._of("drag", 0.8)
         constant = {"servo": 0.3}.get(kind, 1.0) * s
         swing = 2.6 / s
-        mass, beside = 0.4 * constant, kind == "link" or "second mass" in self.hidden
-        spring = mass * swing**2 if beside else 0.0
+        mass, has_load = 0.4 * constant, kind == "link" or "second mass" in self.hidden
+        spring = mass * swing**2 if has_load else 0.0
         stays = 2.9 / s if kind == "sprung" else 0.0
         cubic = self._of("cubic spring", 0.5) * stays * (2.9 / s) ** 2
         inertia, gain = constant, 3.0 / s if kind == "servo" else 0.0
@@ -191,7 +191,7 @@ class Several:
             free, stop = speed + step / inertia * rate, step / inertia * friction
             speed = free - stop if free > stop else free + stop if free < -stop else 0.0
             angle += step * speed
-            if beside:
+            if has_load:
                 turning += step * (swing**2 * (angle - load) - 0.12 * swing * (turning - speed))
                 load += step * turning
         return np.array(out)
@@ -255,12 +255,7 @@ def rates(outcomes: list[Outcome]) -> str:
         "all that is hidden named": [len(one.found) == len(one.of.truth) for one in outcomes],
         "nothing wrong named": [not one.wrong for one in outcomes],
     }
-    return "; ".join(f"{what} {_rate(right)}" for what, right in asked.items())
-
-
-def _rate(right: list[bool]) -> str:
-    lower, upper = interval(sum(right), len(right))
-    return f"{sum(right)} of {len(right)} ({100 * lower:.0f} to {100 * upper:.0f} %)"
+    return "; ".join(f"{what} {rate(right)}" for what, right in asked.items())
 
 
 def main() -> None:

@@ -318,8 +318,8 @@ def _host() -> tuple[str, str]:
 @cache
 def written_by(*files: str) -> str:
     """What writes programs, these files among it: a change of one makes others of the same lines."""
-    beside = str(Path(__file__).with_name("vector_functions.py"))
-    return hashlib.sha256(b"".join(Path(file).read_bytes() for file in (__file__, beside, *files))).hexdigest()
+    functions = str(Path(__file__).with_name("vector_functions.py"))
+    return hashlib.sha256(b"".join(Path(file).read_bytes() for file in (__file__, functions, *files))).hexdigest()
 
 
 def engine(program: Callable[[], str], written: Sequence[str]) -> llvm.ExecutionEngine:

@@ -31,7 +31,7 @@ _ROUND = 1.5 * 2.0**52
 _WHOLE = 2.0**52
 """A number whose last bits are a whole one, after which it is the sum of both."""
 _RANGE = 2200.0
-"""Exponents beyond which 2^n is 0 or infinite by far."""
+"""Exponents from which on 2^n is 0 or infinite by far: larger ones would not be whole numbers of a few bits."""
 _LARGEST = 1e15
 """rad; beyond it neighbouring numbers are an eighth apart."""
 _QUARTER = (1.5707963267948966, 6.123233995736766e-17, -1.4973849048591833e-33)
@@ -134,10 +134,7 @@ def _power(of: _Function) -> str:
     rest = of.do("fadd", of.fused("%y", exponent, of.do("fsub", zero, n)), product)
     ln2 = math.log(2.0)
     value = of.series(rest, [ln2**k / math.factorial(k) for k in range(EXPONENTIAL_TERMS)])
-    value = _scaled(of, value, n)
-    value = of.choice(of.holds("ogt", whole, of.number(_RANGE - 1.0)), of.number(math.inf), value)
-    value = of.choice(of.holds("olt", whole, of.number(1.0 - _RANGE)), zero, value)
-    value = _at_the_ends(of, value, size)
+    value = _at_the_ends(of, _scaled(of, value, n), size)
     return of.choice(of.holds("oeq", "%y", zero), of.number(1.0), value)
 
 
