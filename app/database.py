@@ -21,9 +21,12 @@ from ident.errors import Unusable
 
 MIGRATIONS = Path(__file__).resolve().parent.parent / "migrations"
 HEEDFUL = {
-    "connect_timeout": 5, "keepalives_idle": 5, "keepalives_interval": 2, "keepalives_count": 3,
+    "connect_timeout": 5,
+    "keepalives_idle": 5,
+    "keepalives_interval": 2,
+    "keepalives_count": 3,
     "tcp_user_timeout": 10_000,
-}  # fmt: skip
+}
 """Of connections to PostgreSQL: a cut line is noticed within seconds (s, the last ms), not after the system's hours."""
 
 APART = {"apart": True}

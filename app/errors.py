@@ -27,11 +27,24 @@ _CONFLICTS = frozenset({EFFECT_THERE})
 """Codes of input that is sound but does not go with what is there."""
 _log = logging.getLogger("servoident")
 _TITLES = {
-    400: "Bad request", 401: "Token needed", 403: "Not allowed", 404: "Not found", 405: "Method not allowed",
-    408: "Idle", 409: "Conflict", 410: "Gone", 411: "Length needed", 413: "Too large", 415: "Unsupported media type",
-    422: "Unusable input", 426: "WebSocket needed", 429: "Too often", 500: "A defect of the program", 503: "Not ready",
+    400: "Bad request",
+    401: "Token needed",
+    403: "Not allowed",
+    404: "Not found",
+    405: "Method not allowed",
+    408: "Idle",
+    409: "Conflict",
+    410: "Gone",
+    411: "Length needed",
+    413: "Too large",
+    415: "Unsupported media type",
+    422: "Unusable input",
+    426: "WebSocket needed",
+    429: "Too often",
+    500: "A defect of the program",
+    503: "Not ready",
     507: "Disk full",
-}  # fmt: skip
+}
 
 
 class Failure(HTTPException):
@@ -55,9 +68,14 @@ def missing(kind: str, name: str, known: Iterable[str] = ()) -> Failure:
 def problem(status: int, code: str, what: str, where: str = "", remedy: str = "", **headers: str) -> Response:
     """The response of a failure, in ASCII: what it cites of a request may be no text that can be encoded."""
     body = Problem(
-        type=f"urn:servoident:problem:{code}", title=_TITLES.get(status, "Error"), status=status, code=code,
-        detail=what, where=where, remedy=remedy,
-    )  # fmt: skip
+        type=f"urn:servoident:problem:{code}",
+        title=_TITLES.get(status, "Error"),
+        status=status,
+        code=code,
+        detail=what,
+        where=where,
+        remedy=remedy,
+    )
     return Response(json.dumps(body.model_dump()), status, media_type=MEDIA, headers=headers)
 
 

@@ -90,8 +90,9 @@ _TURN = 1e-3  # s after which a figure that is drawn lets an answer take its tur
 READERS = 2  # uploads that are read at once
 WORK = ("app.kinds", "ident.simulation.ready")  # what processes apart have imported when they begin
 _OF_EACH: dict[str, Any] = {
-    "generate_unique_id_function": openapi.named, "dependencies": [Depends(refuse_undeclared)],
-}  # fmt: skip
+    "generate_unique_id_function": openapi.named,
+    "dependencies": [Depends(refuse_undeclared)],
+}
 """Of each call."""
 _documents: LRU[dict[str, Any]] = LRU(1)  # all applications of a process have the same calls, and it takes 2 s to write
 
@@ -126,9 +127,13 @@ def _calls() -> tuple[BaseRoute, ...]:
 def routed() -> FastAPI:
     """The calls and the pages, of no service yet: enough for their document."""
     app = FastAPI(
-        title="servoident", version=version("servoident"), lifespan=_lifespan, openapi_url=None, webhooks=told,
+        title="servoident",
+        version=version("servoident"),
+        lifespan=_lifespan,
+        openapi_url=None,
+        webhooks=told,
         **_OF_EACH,
-    )  # fmt: skip
+    )
     app.openapi = partial(_documents.get, app.version, partial(openapi.write, app))  # type: ignore[method-assign]
     app.router.routes.extend(_calls())
     return app
@@ -209,8 +214,14 @@ def run(settings: Settings) -> None:
     app = create_app(settings, apart=True)
     gc.freeze()  # 300,000 objects that stay: every look through them held all answers up for 0.15 s
     uvicorn.run(
-        app, host=settings.host, port=settings.port, log_level="warning", timeout_graceful_shutdown=_PATIENCE,
+        app,
+        host=settings.host,
+        port=settings.port,
+        log_level="warning",
+        timeout_graceful_shutdown=_PATIENCE,
         timeout_keep_alive=_KEPT,
         log_config=None if settings.log == "json" else uvicorn.config.LOGGING_CONFIG,
-        ws_max_size=LARGEST_MESSAGE, ws_per_message_deflate=False, proxy_headers=False,
-    )  # fmt: skip
+        ws_max_size=LARGEST_MESSAGE,
+        ws_per_message_deflate=False,
+        proxy_headers=False,
+    )

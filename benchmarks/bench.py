@@ -31,8 +31,10 @@ def measure() -> Table:
         processor.append(time.process_time() - began[1])
     goal = GOAL * simulation.slowness()
     samples = sum(record.length for record in sets[0].records)
-    rows = [(f"{statistics.median(times):.2f} s", f"{min(times):.2f} s", what)
-            for what, times in (("by the clock", clock), ("of processor", processor))]  # fmt: skip
+    rows = [
+        (f"{statistics.median(times):.2f} s", f"{min(times):.2f} s", what)
+        for what, times in (("by the clock", clock), ("of processor", processor))
+    ]
     return Table(
         "Bench",
         f"{len(sets[0].records)} records of an actuator, {samples:,} samples at 1 kHz: static in three ranges, five "

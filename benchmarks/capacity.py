@@ -35,9 +35,11 @@ class Need:
     def bottleneck(self) -> str:
         """What is used most of its share: the one process of a service, a worker of one core, the database, a link."""
         shares = {
-            "service": self.service / BUSY, "worker": self.workers / BUSY, "database": self.database / BUSY,
+            "service": self.service / BUSY,
+            "worker": self.workers / BUSY,
+            "database": self.database / BUSY,
             "link": self.traffic / LINK / BUSY,
-        }  # fmt: skip
+        }
         return max(shares, key=lambda name: shares[name])
 
     @property
@@ -52,10 +54,15 @@ def need(actuators: int, seconds: int, known: Figures) -> Need:
     a_second = actuators / DAY
     raw = known[f"raw_{of}"]
     return Need(
-        actuators, seconds, a_second * known[f"fit_{of}"], a_second * known[f"upload_{of}"],
-        a_second * known[f"database_{of}"], actuators * raw, actuators * known["bytes_a_set_sqlite"],
+        actuators,
+        seconds,
+        a_second * known[f"fit_{of}"],
+        a_second * known[f"upload_{of}"],
+        a_second * known[f"database_{of}"],
+        actuators * raw,
+        actuators * known["bytes_a_set_sqlite"],
         a_second * raw * COPIES,
-    )  # fmt: skip
+    )
 
 
 REMEDIES = {
@@ -65,18 +72,21 @@ REMEDIES = {
         "measured: the processor time of an upload; that services add up is reckoned",
     ),
     "worker": (
-        "fits", "a worker of one core more for each core that they take",
+        "fits",
+        "a worker of one core more for each core that they take",
         "measured: the processor time of a fit; that workers add up: tests/faults/test_machines.py",
     ),
     "database": (
-        "statements to PostgreSQL", "a machine of its own for it, with its log on a disk that is quick to sync",
+        "statements to PostgreSQL",
+        "a machine of its own for it, with its log on a disk that is quick to sync",
         "measured: its processor time for an actuator",
     ),
     "link": (
-        "bytes on the network", "10 Gbit/s to S3; workers with a large cache; the raw format of the bench, compressed",
+        "bytes on the network",
+        "10 Gbit/s to S3; workers with a large cache; the raw format of the bench, compressed",
         "reckoned: bytes an actuator times three ways; no network of 1 Gbit/s was measured",
     ),
-}  # fmt: skip
+}
 """For each bottleneck: what it is, what is done about it, and how it is known."""
 
 
@@ -119,11 +129,18 @@ one link, that is needed.
 
 def _row(one: Need) -> str:
     cells = (
-        f"{one.actuators:,}", f"63 × {one.seconds} s", _whole(one.workers), _whole(one.service), _whole(one.database),
-        _bytes(one.raw), _bytes(one.raw * YEAR), _days(one), _bytes(one.records * YEAR),
+        f"{one.actuators:,}",
+        f"63 × {one.seconds} s",
+        _whole(one.workers),
+        _whole(one.service),
+        _whole(one.database),
+        _bytes(one.raw),
+        _bytes(one.raw * YEAR),
+        _days(one),
+        _bytes(one.records * YEAR),
         f"{_round(8e-6 * one.traffic)} Mbit/s",
         REMEDIES[one.bottleneck][0],
-    )  # fmt: skip
+    )
     return f"| {' | '.join(cells)} |"
 
 

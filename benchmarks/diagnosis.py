@@ -80,8 +80,9 @@ def _of(child: str, *arguments: str, cache: str | None = None) -> dict[str, Any]
     """What a process of its own measured, with the kernels of this machine or in another cache."""
     environment = os.environ | ({"XDG_CACHE_HOME": cache} if cache else {})
     command = [sys.executable, "-c", child, *arguments]
-    done = subprocess.run(command, check=True, capture_output=True, text=True, env=environment,
-                          cwd=Path(__file__).parents[1])  # fmt: skip
+    done = subprocess.run(
+        command, check=True, capture_output=True, text=True, env=environment, cwd=Path(__file__).parents[1]
+    )
     found: dict[str, Any] = json.loads(done.stdout)
     return found
 
@@ -98,12 +99,24 @@ def measure() -> Table:
         found["dead_zone, first use on a machine"] = first = diagnosed("dead_zone", cache)
     screening = _of(SCREENING)
     rows = [
-        (f"{name}, which no list holds" if name in UNLISTED else name, "yes" if one["named"] else "no",
-         f"{one['instant']:.2f} s", f"{one['whole']:.1f} s", f"{one['memory'] / 1e9:.2f} GB")
+        (
+            f"{name}, which no list holds" if name in UNLISTED else name,
+            "yes" if one["named"] else "no",
+            f"{one['instant']:.2f} s",
+            f"{one['whole']:.1f} s",
+            f"{one['memory'] / 1e9:.2f} GB",
+        )
         for name, one in found.items()
-    ]  # fmt: skip
-    rows.append((f"screening, {screening['effects']} effects, one core", "–",
-                 f"{1e9 * screening['lane']:.1f} ns a lane and step", "–", "–"))  # fmt: skip
+    ]
+    rows.append(
+        (
+            f"screening, {screening['effects']} effects, one core",
+            "–",
+            f"{1e9 * screening['lane']:.1f} ns a lane and step",
+            "–",
+            "–",
+        )
+    )
     warm = [found[name] for name in HIDDEN]
     instant, whole = (statistics.median(one[part] for one in warm) for part in ("instant", "whole"))
     proposed = statistics.median(found[name]["whole"] for name in UNLISTED)
@@ -119,6 +132,10 @@ def measure() -> Table:
         rows,
         f"at once in {INSTANT:g} s, the whole in {CONFIRMED:g} s, with proposals in {PROPOSED:g} s (medians), the "
         f"first time in {FIRST:g} s, in 1 GB, {1e9 * LANE:g} ns a lane and step",
-        instant <= INSTANT and whole <= CONFIRMED and proposed <= PROPOSED and first["whole"] <= FIRST
-        and screening["lane"] <= LANE and all(one["named"] and one["memory"] <= MEMORY for one in found.values()),
-    )  # fmt: skip
+        instant <= INSTANT
+        and whole <= CONFIRMED
+        and proposed <= PROPOSED
+        and first["whole"] <= FIRST
+        and screening["lane"] <= LANE
+        and all(one["named"] and one["memory"] <= MEMORY for one in found.values()),
+    )

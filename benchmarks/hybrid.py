@@ -135,9 +135,11 @@ def rig() -> Table:
     share_map(fit, case)
     mapped, slow = time.perf_counter() - begun, plain * RUN / FLAT
     rows = [
-        ("linear chain", bare, slow / bare), (f"all {len(on)} effects", full, slow / full),
-        ("the linear chain in plain NumPy, scaled up", slow, 1.0), (f"map of {SHARES} × {SHARES} shares", mapped, None),
-    ]  # fmt: skip
+        ("linear chain", bare, slow / bare),
+        (f"all {len(on)} effects", full, slow / full),
+        ("the linear chain in plain NumPy, scaled up", slow, 1.0),
+        (f"map of {SHARES} × {SHARES} shares", mapped, None),
+    ]
     return Table(
         "Hybrid: simulation",
         f"{RUN:g} s of Qian's case at 4096 Hz under noise; the map is of as many seconds, on every core.",

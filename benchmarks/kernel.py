@@ -63,8 +63,18 @@ def by_hand() -> Callable[[], np.ndarray] | None:
     advance = ctypes.CDLL(str(built)).advance
     u = run().command
     mass = PLANT.m0 + CELL.mass
-    values = (CELL.gain, 1 / PLANT.tau, PLANT.Z0 / PLANT.A, PLANT.Cl, PLANT.A, 1 / PLANT.Ka, PLANT.c0, CELL.stiffness,
-              1 / mass, *STRENGTHS.values())  # fmt: skip
+    values = (
+        CELL.gain,
+        1 / PLANT.tau,
+        PLANT.Z0 / PLANT.A,
+        PLANT.Cl,
+        PLANT.A,
+        1 / PLANT.Ka,
+        PLANT.c0,
+        CELL.stiffness,
+        1 / mass,
+        *STRENGTHS.values(),
+    )
     pointer = ctypes.POINTER(ctypes.c_double)
 
     def aligned(count: int) -> np.ndarray:
@@ -109,10 +119,16 @@ def gauss_newton() -> tuple[float, int]:
     hidden = nonlinear_reference.named({"dead_zone.h": 2e-4, "quadratic_damping.c2": 2e3})
     records = nonlinear_reference.measure_all(hidden, qian_reference.trials()[:63], seconds=2.0, noise=0.005, seed=1)
     runs = tuple(
-        Run(r.trial.id, "", qian_reference.SAMPLE_RATE, {"command": r.command, "displacement": r.displacement},
-            specimen=Specimen(r.trial.cell.mass, r.trial.cell.stiffness, r.trial.cell.damping), gain=r.trial.cell.gain)
+        Run(
+            r.trial.id,
+            "",
+            qian_reference.SAMPLE_RATE,
+            {"command": r.command, "displacement": r.displacement},
+            specimen=Specimen(r.trial.cell.mass, r.trial.cell.stiffness, r.trial.cell.damping),
+            gain=r.trial.cell.gain,
+        )
         for r in records
-    )  # fmt: skip
+    )
     matrix = Matrix(Actuator("", piston_area=PLANT.A), runs)
     model = preset("qian2014", ("dead_zone", "quadratic_damping"))
     space = search_space(model, matrix, Settings(effects=("dead_zone", "quadratic_damping")), 500.0)

@@ -18,9 +18,13 @@ from app.database import connect, migrate
 from app.tables import ActuatorRow, ApprovalRow, Base, FitRow, MatrixRow, SetRow, ValueRow
 
 PARAMETERS = {
-    "Z0": (2.6e-6, 5e-8, "m^4/s"), "tau": (2.6e-3, 1e-4, "s"), "Cl": (1.5e-11, 2e-12, "m^3/(s*Pa)"),
-    "c0": (580.0, 40.0, "N*s/m"), "m0": (4.25, 0.1, "kg"), "Ka": (1.2e-13, 1e-14, "m^3/Pa"),
-}  # fmt: skip
+    "Z0": (2.6e-6, 5e-8, "m^4/s"),
+    "tau": (2.6e-3, 1e-4, "s"),
+    "Cl": (1.5e-11, 2e-12, "m^3/(s*Pa)"),
+    "c0": (580.0, 40.0, "N*s/m"),
+    "m0": (4.25, 0.1, "kg"),
+    "Ka": (1.2e-13, 1e-14, "m^3/Pa"),
+}
 """Mean, standard deviation and unit of each."""
 RESULT = {"notes": ["x" * 1960]}
 _AT_A_TIME = 20_000
@@ -46,8 +50,11 @@ def fill(url: str, sets: int, batches: int = 1000, per_serial: float = 10 / 3, s
         batch = [f"B{number % batches:04}" for number in range(serials)]
         copy(raw, ActuatorRow, ((_serial(n), "", batch[n], None, moment(0)) for n in range(serials)))
         source = json.dumps({})
-        copy(raw, MatrixRow, ((f"m{n}", _serial(n), None, batch[n], None, moment(0), source, source, None)
-                              for n in range(serials)))  # fmt: skip
+        copy(
+            raw,
+            MatrixRow,
+            ((f"m{n}", _serial(n), None, batch[n], None, moment(0), source, source, None) for n in range(serials)),
+        )
         result = json.dumps(RESULT)
         copy(raw, FitRow, ((f"{n:032x}", f"m{n % serials}", _serial(n % serials), None, "qian2014", moment(n), result)
                            for n in range(1, sets + 1)))  # fmt: skip

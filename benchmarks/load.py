@@ -186,10 +186,19 @@ def measure() -> tuple[Table, Table]:
                 print(*seen.errors[:20], sep="\n")
                 median, late = np.percentile(seen.questions, [50, 99])
                 uploaded = float(np.median(seen.uploads))
-                crowd.append((
-                    database, work, str(len(seen.questions)), f"{median:.0f}", f"{late:.0f}", str(len(seen.uploads)),
-                    f"{uploaded:.0f}", str(len(seen.fits)), str(len(seen.errors)),
-                ))  # fmt: skip
+                crowd.append(
+                    (
+                        database,
+                        work,
+                        str(len(seen.questions)),
+                        f"{median:.0f}",
+                        f"{late:.0f}",
+                        str(len(seen.uploads)),
+                        f"{uploaded:.0f}",
+                        str(len(seen.fits)),
+                        str(len(seen.errors)),
+                    )
+                )
                 crowd_met &= late <= SLOWEST and not seen.errors
     return (
         Table(

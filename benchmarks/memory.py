@@ -38,9 +38,12 @@ def measure() -> Table:
         path = Path(folder) / "runs.npy"
         material.save(path, 30.0)
         done = subprocess.run(
-            [sys.executable, "-c", _CHILD, str(path)], check=True, capture_output=True, text=True,
+            [sys.executable, "-c", _CHILD, str(path)],
+            check=True,
+            capture_output=True,
+            text=True,
             cwd=Path(__file__).parents[1],
-        )  # fmt: skip
+        )
     arrays, peak = map(int, done.stdout.split())
     return Table(
         "Memory",

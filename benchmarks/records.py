@@ -99,11 +99,16 @@ def measured_here(folder: Path) -> Measured:
     found = diagnose(choice.matrix, fit, report=heard)
     whole, runs = _since(begun), choice.matrix.runs
     return Measured(
-        samples=sum(run.length for run in runs), verdict=verdict[0] if verdict else whole, whole=whole,
-        memory=1024.0 * resource.getrusage(resource.RUSAGE_SELF).ru_maxrss, lfilter=filtering(runs),
-        complete=found.complete, model=fit.model, named=tuple(found.verdict.effects),
+        samples=sum(run.length for run in runs),
+        verdict=verdict[0] if verdict else whole,
+        whole=whole,
+        memory=1024.0 * resource.getrusage(resource.RUSAGE_SELF).ru_maxrss,
+        lfilter=filtering(runs),
+        complete=found.complete,
+        model=fit.model,
+        named=tuple(found.verdict.effects),
         standing=str(found.verdict.standing).replace("_", "-"),
-    )  # fmt: skip
+    )
 
 
 def filtering(runs: Sequence[Run]) -> float:
@@ -187,7 +192,7 @@ def table(found: Mapping[str, Measured | str], page: str) -> Table:
         f"the verdict in {VERDICT:g} s of processor, proposals in {PROPOSED:g} s, a minute and two by the clock of two "
         f"cores; above {LONG:,} samples twice as long; {MEMORY / 1e9:g} GB; complete",
         bool(counted) and all(row[-1] == "met" for row in counted),
-    )  # fmt: skip
+    )
 
 
 if __name__ == "__main__":

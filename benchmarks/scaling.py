@@ -46,8 +46,14 @@ def work(runs: float, seconds: float, effects: float, cores: float) -> Callable[
         samples = round(seconds * reference.SAMPLE_RATE)
         u = reference.band_limited_noise(samples, trial.amplitude, np.random.default_rng(len(todo)))
         specimen = Specimen(trial.cell.mass, trial.cell.stiffness, trial.cell.damping)
-        run = Run(trial.id, "", reference.SAMPLE_RATE, {"command": u, "displacement": u}, specimen=specimen,
-                  gain=trial.cell.gain)  # fmt: skip
+        run = Run(
+            trial.id,
+            "",
+            reference.SAMPLE_RATE,
+            {"command": u, "displacement": u},
+            specimen=specimen,
+            gain=trial.cell.gain,
+        )
         of_run = {
             name: np.array([[value]]) for name, value in conditions(run, Actuator("", piston_area=497e-6)).items()
         }

@@ -29,9 +29,15 @@ from ident.run import Run
 SECONDS = 30.0
 LONG = 4_000_000  # samples of each channel of the long run
 NAMES = {
-    "command": "mm", "displacement": "mm", "velocity": "mm/s", "force": "kN",
-    "load_pressure": "bar", "pressure_a": "bar", "pressure_b": "bar", "supply_pressure": "bar",
-}  # fmt: skip
+    "command": "mm",
+    "displacement": "mm",
+    "velocity": "mm/s",
+    "force": "kN",
+    "load_pressure": "bar",
+    "pressure_a": "bar",
+    "pressure_b": "bar",
+    "supply_pressure": "bar",
+}
 SPIKED, SPIKE = "displacement", 1e5  # mm: of one sample, a third of the way along
 HUGE = 61_000_000  # samples of each channel of a run of 3.9 GB, which an upload may not have
 MEMORY = 300  # MB
@@ -151,8 +157,10 @@ def _lengthened(folder: Path, matrix: str) -> None:
         )
         source[KEY] = sha256
         summary["runs"][0] |= {"samples": HUGE, "duration": HUGE / RATE}
-        database.execute("UPDATE matrices SET source = ?, summary = ? WHERE id = ?",
-                         (json.dumps(source), json.dumps(summary), matrix))  # fmt: skip
+        database.execute(
+            "UPDATE matrices SET source = ?, summary = ? WHERE id = ?",
+            (json.dumps(source), json.dumps(summary), matrix),
+        )
 
 
 @dataclass(frozen=True)
@@ -262,4 +270,4 @@ def measure() -> Table:
         f"first plot in {FIRST:g} s with levels and {UNMADE:g} s without, {WEIGHT / 1000:g} kB a step, {MEMORY} MB, "
         f"95 % of frames within {FRAME:g} ms, sharp in {SHARP:g} ms, one sample seen in every step",
         soon and weight <= WEIGHT and held <= MEMORY and seen == len(steps) + len(huge),
-    )  # fmt: skip
+    )

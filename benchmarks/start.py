@@ -39,9 +39,13 @@ def started(cache: str) -> tuple[float, float]:
     """
     kept = {name: value for name, value in os.environ.items() if name != "PYTHONDONTWRITEBYTECODE"}
     done = subprocess.run(
-        [sys.executable, "-c", CHILD], check=True, capture_output=True, text=True, cwd=Path(__file__).parents[1],
+        [sys.executable, "-c", CHILD],
+        check=True,
+        capture_output=True,
+        text=True,
+        cwd=Path(__file__).parents[1],
         env=kept | {"XDG_CACHE_HOME": cache, "PYTHONPYCACHEPREFIX": cache},
-    )  # fmt: skip
+    )
     imports, first = map(float, done.stdout.split())
     return imports, first
 

@@ -35,8 +35,11 @@ def upload(seconds: float, kind: str, serial: str, batch: str = "B-1") -> bytes:
     described = HEAD % (serial, batch)
     for number in range(RUNS):
         described += RUN % {
-            "number": number, "kind": kind, "stiffness": 1e4 * (1 + number % 7), "gain": 2 + number // 7 * 0.5
-        }  # fmt: skip
+            "number": number,
+            "kind": kind,
+            "stiffness": 1e4 * (1 + number % 7),
+            "gain": 2 + number // 7 * 0.5,
+        }
     with zipfile.ZipFile(buffer, "a") as archive:
         archive.writestr("matrix.yaml", described)
     return buffer.getvalue()

@@ -37,13 +37,24 @@ if TYPE_CHECKING:
     )
 
 _ROOMS = {
-    "Matrix": "ident.matrix", "Settings": "ident.fit.settings", "Unusable": "ident.errors",
-    "check": "ident.checks.check", "compare": "ident.workflows", "diagnose": "ident.workflows",
-    "figure": "ident.workflows", "from_arrays": "ident.readers", "from_table": "ident.readers",
-    "identify": "ident.workflows", "load": "ident.workflows", "next_run": "ident.workflows",
-    "plan": "ident.workflows", "propose": "ident.workflows", "read_matrix": "ident.readers", "save": "ident.workflows",
+    "Matrix": "ident.matrix",
+    "Settings": "ident.fit.settings",
+    "Unusable": "ident.errors",
+    "check": "ident.checks.check",
+    "compare": "ident.workflows",
+    "diagnose": "ident.workflows",
+    "figure": "ident.workflows",
+    "from_arrays": "ident.readers",
+    "from_table": "ident.readers",
+    "identify": "ident.workflows",
+    "load": "ident.workflows",
+    "next_run": "ident.workflows",
+    "plan": "ident.workflows",
+    "propose": "ident.workflows",
+    "read_matrix": "ident.readers",
+    "save": "ident.workflows",
     "simulate": "ident.workflows",
-}  # fmt: skip
+}
 
 _TABLES.update(
     {

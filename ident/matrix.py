@@ -90,8 +90,12 @@ class Matrix(Shown):
         """The runs of both. Raises Unusable where they are of two actuators, or a run's id is in both."""
         if self.actuator != other.actuator:
             serials = f"{self.actuator.serial} and {other.actuator.serial}"
-            raise Unusable("two-actuators", f"what is stated of the actuators {serials} differs", "matrix + matrix",
-                           "state the same of both: a matrix is of one actuator")  # fmt: skip
+            raise Unusable(
+                "two-actuators",
+                f"what is stated of the actuators {serials} differs",
+                "matrix + matrix",
+                "state the same of both: a matrix is of one actuator",
+            )
         if twice := {run.id for run in self.runs} & {run.id for run in other.runs}:
             what = f"two runs are called {min(twice)!r}"
             raise Unusable("duplicate-id", what, "matrix + matrix", 'give each its own, as id="kp7"')
@@ -103,11 +107,16 @@ class Matrix(Shown):
         """What it holds, as a notebook shows it."""
         header = ("run", "use", "kind", "length", "Kp", "channels")
         rows = [
-            (run.id, run.use, run.kind, f"{run.duration:.4g} {run.time_unit}",
-             "–" if run.gain is None else f"{run.gain:g}",
-             ", ".join(f"{name} ({run.units.get(name, '?')})" for name in run.channels))
+            (
+                run.id,
+                run.use,
+                run.kind,
+                f"{run.duration:.4g} {run.time_unit}",
+                "–" if run.gain is None else f"{run.gain:g}",
+                ", ".join(f"{name} ({run.units.get(name, '?')})" for name in run.channels),
+            )
             for run in self.runs
-        ]  # fmt: skip
+        ]
         title = " ".join(("Actuator", self.actuator.serial, self.actuator.name)).rstrip()
         return [Listing(title, header, rows, ("length", "Kp")), *self.notices]
 
@@ -115,13 +124,20 @@ class Matrix(Shown):
         """A record a run, SI, for a data frame."""
         return [
             {
-                "run": run.id, "use": run.use, "kind": run.kind, "gain": run.gain, "amplitude": run.amplitude,
-                "mass": run.specimen and run.specimen.mass, "stiffness": run.specimen and run.specimen.stiffness,
-                "damping": run.specimen and run.specimen.damping, "samples": run.length,
-                "sample_rate": run.sample_rate, "duration": run.duration,
+                "run": run.id,
+                "use": run.use,
+                "kind": run.kind,
+                "gain": run.gain,
+                "amplitude": run.amplitude,
+                "mass": run.specimen and run.specimen.mass,
+                "stiffness": run.specimen and run.specimen.stiffness,
+                "damping": run.specimen and run.specimen.damping,
+                "samples": run.length,
+                "sample_rate": run.sample_rate,
+                "duration": run.duration,
             }
             for run in self.runs
-        ]  # fmt: skip
+        ]
 
     @property
     def conditions(self) -> dict[str, float]:

@@ -47,7 +47,7 @@ def silent(progress: Progress) -> None:
 
 def counted(
     function: Callable[Given, Outcome], stage: str, total: Callable[[], int], report: Report
-) -> Callable[Given, Outcome]:  # fmt: skip
+) -> Callable[Given, Outcome]:
     """The function, which reports after each call how many calls of the `total` by then are done."""
     done = 0
 

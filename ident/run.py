@@ -21,8 +21,16 @@ from ident.words.shown import Listing, Shown
 Samples = NDArray[np.float64]
 
 KINDS = (
-    "blwn", "sweep", "sine", "multisine", "static", "frequency", "speed-levels", "speed-continuous", "other",
-)  # fmt: skip
+    "blwn",
+    "sweep",
+    "sine",
+    "multisine",
+    "static",
+    "frequency",
+    "speed-levels",
+    "speed-continuous",
+    "other",
+)
 BENCH = ("static", "frequency", "speed-levels", "speed-continuous")
 """Kinds of records of a bench, whose input is a current."""
 HOLDS = ("linear", "zoh", "band-limited")

@@ -117,9 +117,12 @@ def identification(matrix: Matrix, settings: Settings, report: Report = silent) 
 @one_thread()
 @stated_kinds
 def identify(
-    matrix: Matrix, settings: Settings | None = None, report: Report = silent,
-    start: FitResult | Diagnosis | None = None, **choices: Unpack[Choices],
-) -> FitResult:  # fmt: skip
+    matrix: Matrix,
+    settings: Settings | None = None,
+    report: Report = silent,
+    start: FitResult | Diagnosis | None = None,
+    **choices: Unpack[Choices],
+) -> FitResult:
     """The whole fit in one call; `choices` stand over the settings, as effects=["dead_zone"], fixed={"tau": "1 ms"}.
 
     Where nothing is chosen it is the fit of the model that the channels allow and the data prefer.
@@ -130,8 +133,12 @@ def identify(
     """
     if start is not None:
         if settings is not None or choices:
-            raise Unusable("bad-option", "settings cannot be given with a start", "start",
-                           "give one of the two: model, effects and bounds are those of the start")  # fmt: skip
+            raise Unusable(
+                "bad-option",
+                "settings cannot be given with a start",
+                "start",
+                "give one of the two: model, effects and bounds are those of the start",
+            )
         return replace(completed(identification(matrix, settings_after(start), report)), matrix=matrix)
     chosen = settings_of(choices, settings) if choices else settings or Settings(model="")
     return replace(completed(identification(matrix, chosen, report)), matrix=matrix)
@@ -158,9 +165,13 @@ def study(matrix: Matrix, fit: FitResult) -> Study:
 
 @stated_kinds
 def figure(
-    result: FitResult | Comparison | Diagnosis | Matrix, name: str, matrix: Matrix | None = None, theme: str = "light",
-    share: float = 1.0, **options: Any,
-) -> AltairChart:  # fmt: skip
+    result: FitResult | Comparison | Diagnosis | Matrix,
+    name: str,
+    matrix: Matrix | None = None,
+    theme: str = "light",
+    share: float = 1.0,
+    **options: Any,
+) -> AltairChart:
     """The Altair chart of that name: see :func:`ident.figures.figure` for its options, and :func:`study` for several.
 
     A result that was made here knows its data; beside one that was read from a file the `matrix` is given. Of a
@@ -174,8 +185,12 @@ def figure(
         return figures.shown(figures.figure(name, recorded, theme, share, **options))
     matrix = matrix or result.matrix
     if matrix is None:
-        raise Unusable("no-data", "the result does not hold the data that it was made of", f"figure {name}",
-                       "give matrix=read_matrix(…)")  # fmt: skip
+        raise Unusable(
+            "no-data",
+            "the result does not hold the data that it was made of",
+            f"figure {name}",
+            "give matrix=read_matrix(…)",
+        )
     if isinstance(result, Diagnosis):
         return figures.shown(figures.of_diagnosis(result, name, matrix.actuator, theme, share, **options))
     fit = result.fit if isinstance(result, Comparison) else result
@@ -185,11 +200,18 @@ def figure(
 @one_thread()
 @stated_kinds
 def diagnose(
-    matrix: Matrix, fit: FitResult | None = None, settings: Settings | None = None,
-    most: int = CRITERIA.selection.usual, custom: Sequence[Effect | Mapping[str, Any] | str] = (),
-    report: Report = silent, seconds: float | None = None, found: Callable[[Diagnosis], None] | None = None,
-    propose: bool | None = None, budget: TimeBudget | None = None, bounds: Bounds | None = None,
-) -> Diagnosis:  # fmt: skip
+    matrix: Matrix,
+    fit: FitResult | None = None,
+    settings: Settings | None = None,
+    most: int = CRITERIA.selection.usual,
+    custom: Sequence[Effect | Mapping[str, Any] | str] = (),
+    report: Report = silent,
+    seconds: float | None = None,
+    found: Callable[[Diagnosis], None] | None = None,
+    propose: bool | None = None,
+    budget: TimeBudget | None = None,
+    bounds: Bounds | None = None,
+) -> Diagnosis:
     """Rank what the fitted model lacks, add what helps beyond chance, and say whether the residual is explained.
 
     Without a `fit` the model of `settings` is fitted first. `most` is the largest number of effects to add, `custom`
@@ -214,8 +236,12 @@ def diagnose(
         return replace(unfitted(matrix, settings or Settings(), budget.taken), matrix=matrix)
     served = _served(fit.model)
     if propose and not served.proposes:
-        raise Unusable("bad-option", f"the model {fit.model} has no signals inside that a term could be of", "propose",
-                       "leave it out")  # fmt: skip
+        raise Unusable(
+            "bad-option",
+            f"the model {fit.model} has no signals inside that a term could be of",
+            "propose",
+            "leave it out",
+        )
     own = tuple(one if isinstance(one, Effect) else read_effect(one, model=fit.model) for one in custom)
     fit = with_candidates_given(fit, bounds or {}, own=own)
     return replace(served.diagnoser(_screened(matrix, fit), fit, own, course), matrix=matrix)
@@ -223,9 +249,12 @@ def diagnose(
 
 @stated_kinds
 def propose(
-    matrix: Matrix, fit: FitResult | None = None, settings: Settings | None = None, report: Report = silent,
+    matrix: Matrix,
+    fit: FitResult | None = None,
+    settings: Settings | None = None,
+    report: Report = silent,
     seconds: float | None = None,
-) -> Diagnosis:  # fmt: skip
+) -> Diagnosis:
     """The terms that no list holds, found beside the fitted model as it is, in `proposals` of what is returned.
 
     The effect that each of them is, `proposals[0].effect`, goes into ``identify(matrix, custom=[…])``. Raises Unusable
@@ -243,18 +272,28 @@ def next_run(found: Diagnosis, matrix: Matrix | None = None, seed: int = 0) -> E
     """
     matrix = matrix or found.matrix
     if matrix is None:
-        raise Unusable("no-data", "the diagnosis does not hold the data that it was made of", "next run",
-                       "give matrix=read_matrix(…)")  # fmt: skip
+        raise Unusable(
+            "no-data",
+            "the diagnosis does not hold the data that it was made of",
+            "next run",
+            "give matrix=read_matrix(…)",
+        )
     return design.propose(competing_models(found), matrix, seed)
 
 
 @stated_kinds
 def plan(
-    program: str | Path | Mapping[str, Any], fit: FitResult | None = None,
-    rig: RigLimits | Mapping[str, Any] | Path | str | None = None, seconds: float | None = None,
-    ramp: float | None = None, seed: int = 0, spread: float = USUAL, spreads: Mapping[str, float] | None = None,
-    least: float = LEAST, report: Report = silent,
-) -> Plan:  # fmt: skip
+    program: str | Path | Mapping[str, Any],
+    fit: FitResult | None = None,
+    rig: RigLimits | Mapping[str, Any] | Path | str | None = None,
+    seconds: float | None = None,
+    ramp: float | None = None,
+    seed: int = 0,
+    spread: float = USUAL,
+    spreads: Mapping[str, float] | None = None,
+    least: float = LEAST,
+    report: Report = silent,
+) -> Plan:
     """Command files for a rig, kept inside its limits; ``.write(folder)`` writes them with a matrix.yaml.
 
     `program` is ``"qian"``, ``"kononykhin"``, the path of a YAML file or its content. `rig` are the limits, as
@@ -268,9 +307,14 @@ def plan(
 
 @stated_kinds
 def simulate(
-    preset: str = "qian2014", seconds: float = 30.0, seed: int = 0, noise: float = 0.005,
-    effects: Mapping[str, float] | None = None, small: bool = False, report: Report = silent,
-) -> Matrix:  # fmt: skip
+    preset: str = "qian2014",
+    seconds: float = 30.0,
+    seed: int = 0,
+    noise: float = 0.005,
+    effects: Mapping[str, float] | None = None,
+    small: bool = False,
+    report: Report = silent,
+) -> Matrix:
     """A simulated test matrix: a paper's model with `effects`, SI, as {"dead_zone": 4e-4}, hidden in it.
 
     It holds 63 runs to fit and 21 to verify, each of `seconds`; a `small` one 18 and 9. `noise` is white, its standard

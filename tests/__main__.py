@@ -11,8 +11,9 @@ from pathlib import Path
 from app.environment import enter, say
 
 SYSTEM_PACKAGES = {
-    "chromium-headless-shell": "usr/bin/chromium-headless-shell", "postgresql": "usr/lib/postgresql/*/bin/pg_ctl",
-}  # fmt: skip
+    "chromium-headless-shell": "usr/bin/chromium-headless-shell",
+    "postgresql": "usr/lib/postgresql/*/bin/pg_ctl",
+}
 """Debian packages that some tests need, and the program by which each is known; chromium will do, but takes longer."""
 APT = ["apt-get", "-o", "Acquire::Retries=0", "-o", "Acquire::http::Timeout=20"]  # s: without a network it soon ends
 

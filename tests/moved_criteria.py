@@ -24,9 +24,7 @@ import pytest
 
 from tests.criteria_source import ROOMS, ROOT, Number, documented
 
-MODULES = {
-    ".".join(file.relative_to(ROOT).with_suffix("").parts): file for room in ROOMS for file in room.files
-}  # fmt: skip
+MODULES = {".".join(file.relative_to(ROOT).with_suffix("").parts): file for room in ROOMS for file in room.files}
 UP, DOWN = 1.3, 0.7
 CAUGHT, PASSED, FAULT = 1, 0, 99  # what a process ends with
 

@@ -46,9 +46,14 @@ class Nursery:
         self._own = 0.0
 
     def start(
-        self, log: Path, *arguments: str, code: str = COMMAND, first: str = "", stderr: Path | None = None,
+        self,
+        log: Path,
+        *arguments: str,
+        code: str = COMMAND,
+        first: str = "",
+        stderr: Path | None = None,
         environment: Mapping[str, str] | None = None,
-    ) -> int:  # fmt: skip
+    ) -> int:
         """A new process, as ``python -c CODE ARGUMENTS``: by default a command; its number.
 
         What it says goes to `log`, and its errors to `stderr` where they are to be apart; what is done `first` holds
@@ -136,9 +141,14 @@ def _ended(number: int) -> tuple[int, float] | None:
 
 
 def _become(
-    code: str, first: str, arguments: Sequence[str], folder: str, out: str, err: str,
+    code: str,
+    first: str,
+    arguments: Sequence[str],
+    folder: str,
+    out: str,
+    err: str,
     environment: Mapping[str, str] | None = None,
-) -> None:  # fmt: skip
+) -> None:
     """This fork, as the process would be that was started by itself."""
     os.setsid()
     os.chdir(folder)

@@ -22,7 +22,9 @@ ROOT = Path(__file__).resolve().parents[1]
 
 ADDITIONS = (
     Change(
-        "ident/stages/lagging_spool.py", "a new file", "",
+        "ident/stages/lagging_spool.py",
+        "a new file",
+        "",
         '''"""Spool: behind the valve's output by a lag of its own."""
 
 from ident.parameter import Parameter
@@ -39,7 +41,9 @@ LAGGING_SPOOL = stage(
 ''',
     ),
     Change(
-        "ident/presets/lagging.py", "a new file", "",
+        "ident/presets/lagging.py",
+        "a new file",
+        "",
         '''"""The actuator of Qian et al. (2014) with a lag of the main stage."""
 
 from dataclasses import replace
@@ -56,7 +60,9 @@ LAGGING = replace(
     ),
     Change("ident/presets/__init__.py", "behind", '    "qian2014",', '    "lagging",\n'),
     Change(
-        "ident/readers/columns.py", "a new file", "",
+        "ident/readers/columns.py",
+        "a new file",
+        "",
         '''"""Columns by name in JSON."""
 
 import json
@@ -76,7 +82,9 @@ def read_columns(data: bytes, where: str, limits: Limits) -> Table:
     ),
     Change("ident/readers/__init__.py", "behind", '    ".tdms": "tdms",', '    ".columns": "columns",\n'),
     Change(
-        "app/greeting/endpoints.py", "a new file", "",
+        "app/greeting/endpoints.py",
+        "a new file",
+        "",
         '''"""/greeting: who is there."""
 
 from fastapi import APIRouter
@@ -94,7 +102,7 @@ def greeting() -> dict[str, str]:
 ''',
     ),
     Change("app/main.py", "behind", '    "operation",', '    "greeting",\n'),
-)  # fmt: skip
+)
 """New files, and the line behind another one in the table of what there is; a stage needs none."""
 
 USED = """
@@ -206,8 +214,12 @@ def found(copy: Path, tmp_path_factory: pytest.TempPathFactory) -> dict:
     used.write_text(USED, encoding="utf-8")
     done = subprocess.run(
         [sys.executable, str(used), str(tmp_path_factory.mktemp("used"))],
-        cwd=copy, env=os.environ | {"PYTHONPATH": str(copy)}, capture_output=True, text=True, check=False,
-    )  # fmt: skip
+        cwd=copy,
+        env=os.environ | {"PYTHONPATH": str(copy)},
+        capture_output=True,
+        text=True,
+        check=False,
+    )
     assert done.returncode == 0, done.stderr
     return json.loads(done.stdout.splitlines()[-1])
 

@@ -70,9 +70,7 @@ def unstable_on(matrix: Matrix, fit: FitResult, name: str) -> FitResult:
         for run in matrix.runs
     )
     shares = {use: [run.share for run in matrix.of_use(use)] for use in USES}
-    mean = {
-        use: float(over_runs([one.error for one in errors if one.use == use], matrix.of_use(use))) for use in USES
-    }  # fmt: skip
+    mean = {use: float(over_runs([one.error for one in errors if one.use == use], matrix.of_use(use))) for use in USES}
     return replace(fit, runs=errors, error={**fit.error, **mean}, error_with_mean=mean, **rmse_of(errors, shares))
 
 
@@ -99,8 +97,11 @@ def test_offset_stands_in_the_first_line_in_tables_json_page_figures_and_report(
         assert re.search(r"0\.\d+ % \(after an offset of 830\.0 m\)", text)
     errors = next(i for i, line in enumerate(rest) if line.startswith("error "))
     assert [line.split("  ")[0] for line in rest[errors + 1 : errors + 5]] == [
-        "RMSE", "with the mean", "NRMSE fit", "eq. (17)",
-    ]  # fmt: skip
+        "RMSE",
+        "with the mean",
+        "NRMSE fit",
+        "eq. (17)",
+    ]
     assert any("reads 830.0 m above the model" in line for line in rest)
     (table,) = [one for one in ident.compare(shifted, off).listings() if not isinstance(one, str)]
     assert table.header[2:6] == ("RMSE", "with the mean", "NRMSE fit", "eq. (17)")
@@ -144,9 +145,14 @@ def test_a_model_that_overflows_is_compared_drawn_and_written_without_a_number_t
     assert all(one.unstable for one in compared.runs)
     found = survey(compared)
     view = ComparisonView(
-        fit="f", error=compared.error, offset=compared.offset, error_with_mean=compared.error_with_mean,
-        rmse=compared.rmse, runs=compared.records(), **found.to_json(),
-    )  # fmt: skip
+        fit="f",
+        error=compared.error,
+        offset=compared.offset,
+        error_with_mean=compared.error_with_mean,
+        rmse=compared.rmse,
+        runs=compared.records(),
+        **found.to_json(),
+    )
     json.dumps(view.model_dump(), allow_nan=False)
     assert compared.rmse == {"fit": None, "verify": None}
     assert {one.rmse for one in view.runs} == {None}
@@ -176,7 +182,7 @@ def test_a_diagnosis_names_the_verify_run_that_an_effect_makes_unstable():
         candidates=(Ranked(effect="lead", error=errors, unstable=gone, parameters={"lead.T": None}),),  # type: ignore[dict-item]
         ladder=(Rung(error=dict.fromkeys(errors, 0.1)), Rung(added="lead", error=errors, unstable=gone)),
         verdict=Verdict(effects=("lead",)),
-    )  # fmt: skip
+    )
     assert found.candidates[0].error_of("verify").said() == "unstable on run k24"
     assert str(found).count("unstable on run k24") == 2
     data = found.to_json()

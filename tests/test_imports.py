@@ -113,15 +113,54 @@ def test_what_a_benchmark_or_a_picture_imports_is_there(file):
 
 
 ROOMS = (
-    "errors", "plain", "cached", "progress", "time_budget", "parallel", "unstable", "rounding", "words", "resolution",
-    "beginning", "linear_filter", "slopes",
-    "run", "rig", "matrix", "parameter", "linear", "statistics", "equations", "units", "stages", "effects", "chain",
+    "errors",
+    "plain",
+    "cached",
+    "progress",
+    "time_budget",
+    "parallel",
+    "unstable",
+    "rounding",
+    "words",
+    "resolution",
+    "beginning",
+    "linear_filter",
+    "slopes",
+    "run",
+    "rig",
+    "matrix",
+    "parameter",
+    "linear",
+    "statistics",
+    "equations",
+    "units",
+    "stages",
+    "effects",
+    "chain",
     "presets",
-    "foreign", "readers", "custom", "preprocessing", "noise", "stability", "checks", "drafts", "simulation", "fit",
-    "comparison", "residuals", "design", "diagnosis", "bench", "hybrid", "export", "decimation",
+    "foreign",
+    "readers",
+    "custom",
+    "preprocessing",
+    "noise",
+    "stability",
+    "checks",
+    "drafts",
+    "simulation",
+    "fit",
+    "comparison",
+    "residuals",
+    "design",
+    "diagnosis",
+    "bench",
+    "hybrid",
+    "export",
+    "decimation",
     "figures",
-    "synthesis", "planning", "workflows",
-)  # fmt: skip
+    "synthesis",
+    "planning",
+    "workflows",
+)
 """The files and folders of `ident`; each may use those before it."""
 
 
@@ -218,11 +257,17 @@ def test_nothing_outside_the_presets_knows_a_model_by_its_name():
 @pytest.mark.parametrize(
     "code",
     [
-        'if model == "drive": pass', 'if "drive" != model: pass', 'if model in ("x", "drive"): pass',
-        'NAME = "drive"\nif model == NAME: pass', 'NAMES = ("drive",)\nif model in NAMES: pass',
-        'TABLE = {"drive": 1}', 'x = table["drive"]', 'x = table.get("drive")', 'match model:\n  case "drive": pass',
+        'if model == "drive": pass',
+        'if "drive" != model: pass',
+        'if model in ("x", "drive"): pass',
+        'NAME = "drive"\nif model == NAME: pass',
+        'NAMES = ("drive",)\nif model in NAMES: pass',
+        'TABLE = {"drive": 1}',
+        'x = table["drive"]',
+        'x = table.get("drive")',
+        'match model:\n  case "drive": pass',
     ],
-)  # fmt: skip
+)
 def test_a_choice_by_the_name_of_a_model_is_seen(code):
     assert list(chosen_by_name(ast.parse(code), {"drive"}))
     assert not list(chosen_by_name(ast.parse('def fit(model: str = "drive"): pass'), {"drive"}))
@@ -308,9 +353,14 @@ def test_the_client_needs_httpx_and_pydantic_only():
 
 
 FRAME = {
-    "app.access.roles", "app.access.who", "app.context", "app.errors", "app.form", "app.idempotency",
+    "app.access.roles",
+    "app.access.who",
+    "app.context",
+    "app.errors",
+    "app.form",
+    "app.idempotency",
     "app.jobs.queueing",
-}  # fmt: skip
+}
 """What every endpoint may use beside its service: who may and who asks, the running service, its refusals, answers
 given once, a job queued once."""
 

@@ -19,8 +19,11 @@ FUNCTION = re.compile(r"((?:^@.*\n)*)^def (test_\w+)\(", re.M)
 def marked() -> dict[str, Path]:
     """Each file that has tests or cases of the long form alone, by its name in the table."""
     files = {path.relative_to(TESTS).with_suffix("").as_posix(): path for path in TESTS.rglob("test_*.py")}
-    return {name: path for name, path in files.items() if path != Path(__file__).resolve()
-            and MARKED.search(path.read_text(encoding="utf-8"))}  # fmt: skip
+    return {
+        name: path
+        for name, path in files.items()
+        if path != Path(__file__).resolve() and MARKED.search(path.read_text(encoding="utf-8"))
+    }
 
 
 def test_each_file_with_long_forms_has_a_row():

@@ -112,16 +112,26 @@ def of_diagnosis() -> Iterator[Tie]:
     )
     of = CRITERIA.evidence
     yield D, "Of {} runs or more whole runs take turns", (word(CRITERIA.evidence.whole_runs),)
-    yield D, "in {} folds. Of a single run {} stretches do", (
-        word(CRITERIA.cross_validation.folds), word(CRITERIA.cross_validation.stretches),
-    )  # fmt: skip
+    yield (
+        D,
+        "in {} folds. Of a single run {} stretches do",
+        (
+            word(CRITERIA.cross_validation.folds),
+            word(CRITERIA.cross_validation.stretches),
+        ),
+    )
     yield D, "at most {} for a band, at most {} in all", (plain(of.degrees_of_a_band), plain(of.degrees_in_all))
     yield D, "largest gain of all effects on {} residuals", (of.surrogates,)
     yield D, "Half of the largest possible gain", ({0.5: "half"}[of.reaches],)
     yield D, "explains more than a {} of the power above the noise", ({0.01: "hundredth"}[of.share],)
-    yield D, "blocks of {} correlation times; those of a short record are shorter, but never below {}", (
-        word(of.correlation_times), word(of.least_correlation_times),
-    )  # fmt: skip
+    yield (
+        D,
+        "blocks of {} correlation times; those of a short record are shorter, but never below {}",
+        (
+            word(of.correlation_times),
+            word(of.least_correlation_times),
+        ),
+    )
     yield D, "it is also a {} of the unexplained power", ({0.05: "twentieth"}[of.separation],)
 
 
@@ -132,23 +142,38 @@ def of_others() -> Iterator[Tie]:
     yield "lab.md", "within {} of it there is nothing left to find", (plain(next_view.NEAR),)
 
     P = "physics.md"
-    yield P, "it keeps the best {} % of each generation, which gives {} generations", (
-        per_cent(genetic.PAPER["keep"]), _paper_generations(),
-    )  # fmt: skip
+    yield (
+        P,
+        "it keeps the best {} % of each generation, which gives {} generations",
+        (
+            per_cent(genetic.PAPER["keep"]),
+            _paper_generations(),
+        ),
+    )
     yield P, "draws the mutated {} of each column", ({0.2: "fifth"}[genetic.PAPER["mutation"]],)
     yield P, "so is the mean of the last {} vectors", (word(genetic.PAPER["survivors"]),)
     yield P, "**{}e-6 m⁴/s**", (f"{1.48e1 * PRINTED_Z0_FACTOR:.4g}",)
 
     B = "bench.md"
-    yield B, "a delay beyond {} of its standard deviations and {} % of T", (
-        word(BENCH_CRITERIA.time_constants.delay_deviations), per_cent(BENCH_CRITERIA.time_constants.delay_of_lag),
-    )  # fmt: skip
+    yield (
+        B,
+        "a delay beyond {} of its standard deviations and {} % of T",
+        (
+            word(BENCH_CRITERIA.time_constants.delay_deviations),
+            per_cent(BENCH_CRITERIA.time_constants.delay_of_lag),
+        ),
+    )
     yield B, "Quantities: `{}`", (" ".join(acceptance.QUANTITIES),)
 
     M = "matrix-format.md"
-    yield M, "({} % of the deviation that the output has in the others, under more than {} of their command", (
-        per_cent(run_exclusion.STANDS.value), PARTS[run_exclusion.DRIVEN.value],
-    )  # fmt: skip
+    yield (
+        M,
+        "({} % of the deviation that the output has in the others, under more than {} of their command",
+        (
+            per_cent(run_exclusion.STANDS.value),
+            PARTS[run_exclusion.DRIVEN.value],
+        ),
+    )
     yield M, "of at least {} samples; command and output vary", (run.SHORTEST,)
     yield M, "so one of it is 0.0254 m × 6.894757 kPa = {:.6f} m⁴/s", (PRINTED_Z0_FACTOR,)
 
@@ -161,9 +186,14 @@ def of_hybrid() -> Iterator[Tie]:
     """What decides in tracking, controllers, hybrid simulation and what-if."""
     H = "hybrid.md"
     yield H, "(at most {} rows", (tracked_run.ROWS,)
-    yield H, "the mean over {} samples is off by {} the parameters have changed", (
-        plain(kalman.MEMORY), plain(kalman.CHANGE),
-    )  # fmt: skip
+    yield (
+        H,
+        "the mean over {} samples is off by {} the parameters have changed",
+        (
+            plain(kalman.MEMORY),
+            plain(kalman.CHANGE),
+        ),
+    )
     yield H, "at most once in {} samples", (plain(kalman.RESTED),)
     yield H, "is within {} of the sensor's noise there is no motion", (PARTS[kalman.MOTION],)
     yield H, "nor does it from a standard deviation of {} % on", (per_cent(kalman.CAP),)
@@ -173,9 +203,14 @@ def of_hybrid() -> Iterator[Tie]:
         (plain(1e4 * tracking.SENSOR),),
     )
     yield H, "Windows of {} samples are judged", (kalman.WINDOW,)
-    yield H, "where the mean is above {}, or where neighbours are correlated by more than {}", (
-        plain(kalman.MOST_NIS), plain(kalman.MOST_COLOUR),
-    )  # fmt: skip
+    yield (
+        H,
+        "where the mean is above {}, or where neighbours are correlated by more than {}",
+        (
+            plain(kalman.MOST_NIS),
+            plain(kalman.MOST_COLOUR),
+        ),
+    )
     yield H, "where more than {} of the windows fail", (PARTS[verdict._FEW_WINDOWS],)
     yield H, "where more than {} % of the samples were outliers", (per_cent(verdict._FEW_SAMPLES),)
     yield H, "smoothed over {} s; until then", (plain(compensation.SMOOTHED_OVER),)
@@ -184,9 +219,14 @@ def of_hybrid() -> Iterator[Tie]:
     yield H, "that needs more than {} % of the supply pressure is refused", (per_cent(inverse._HIGHEST),)
     yield H, "K∞ with γ = {} γmin", (plain(loop_shaping.FACTOR),)
     yield H, "differ by at most {} dB and {}° to {} Hz", (*map(plain, reduction.CLOSE), plain(reduction.BAND))
-    yield H, "of at most {} rad/s, with which no frequency is amplified by more than {} dB", (
-        plain(prefilter.FASTEST), plain(prefilter.PEAK),
-    )  # fmt: skip
+    yield (
+        H,
+        "of at most {} rad/s, with which no frequency is amplified by more than {} dB",
+        (
+            plain(prefilter.FASTEST),
+            plain(prefilter.PEAK),
+        ),
+    )
     yield H, "{} actuators are drawn from the covariance of the fit", (draws.DRAWS,)
     yield H, "`within` ± {} dB and ± {}° to {} Hz", (*map(plain, robustness.WITHIN), plain(robustness.HIGHEST))
     yield H, "{shares} × {shares} of them", (share_map.SHARES,)
@@ -195,18 +235,29 @@ def of_hybrid() -> Iterator[Tie]:
     yield H, "there is no peak below {} Hz", (plain(what_if.HIGHEST),)
     yield H, "from which the curve falls by {} % on either side", (beyond(peaks.PROMINENCE),)
     yield H, "over all changes up to {} times as large", (plain(oil_column.AS_GOOD),)
-    yield H, "`{{kind: blwn, band: {} Hz, amplitude: {} g, duration: 30 s, seed: {}}}` (the default)", (
-        plain(ground.Ground().band[1]), plain(ground.Ground().amplitude / ground.GRAVITY), ground.Ground().seed,
-    )  # fmt: skip
+    yield (
+        H,
+        "`{{kind: blwn, band: {} Hz, amplitude: {} g, duration: 30 s, seed: {}}}` (the default)",
+        (
+            plain(ground.Ground().band[1]),
+            plain(ground.Ground().amplitude / ground.GRAVITY),
+            ground.Ground().seed,
+        ),
+    )
     yield H, "else g and {} s), a YAML file", (plain(ground.Ground().step),)
 
 
 def of_figures() -> Iterator[Tie]:
     """What a figure shows where nothing else is asked for."""
     F = "figures.md"
-    yield F, "with its {} % band: the {} curves that explain most", (
-        per_cent(within(curves._BAND)), word(residual_curve.SHOWN),
-    )  # fmt: skip
+    yield (
+        F,
+        "with its {} % band: the {} curves that explain most",
+        (
+            per_cent(within(curves._BAND)),
+            word(residual_curve.SHOWN),
+        ),
+    )
     yield F, "each with its {} % band (`resid`", (per_cent(correlation.SURE),)
     yield F, "its {} % interval as a band", (per_cent(within(math.sqrt(profile.BOUND))),)
     yield F, "go from {:g} to {:g} times the run's own value", (sensitivity.MULTIPLES[0], sensitivity.MULTIPLES[-1])

@@ -25,9 +25,17 @@ BANNED = {
     "beside the command": "in addition to the command", "beside the catalogue": "in addition to the library",
 }  # fmt: skip
 """Words of the old texts, each with the word that replaces it."""
-LONGEST = {"README.md": 18.0, "docs/index.md": 20.0, "docs/which-machine.md": 20.0, "docs/accuracy.md": 20.0,
-           "docs/glossary.md": 20.0, "docs/diagnosis.md": 20.0,
-           "docs/lab.md": 20.0, "docs/cli.md": 20.0, "CONTRIBUTING.md": 20.0}  # fmt: skip
+LONGEST = {
+    "README.md": 18.0,
+    "docs/index.md": 20.0,
+    "docs/which-machine.md": 20.0,
+    "docs/accuracy.md": 20.0,
+    "docs/glossary.md": 20.0,
+    "docs/diagnosis.md": 20.0,
+    "docs/lab.md": 20.0,
+    "docs/cli.md": 20.0,
+    "CONTRIBUTING.md": 20.0,
+}
 """Words of a sentence in the mean of a page, at most; other pages join as they are rewritten."""
 RECORDS = {
     "measured.md",
@@ -199,6 +207,6 @@ def test_a_term_on_a_page_is_in_the_glossary():
 @pytest.mark.parametrize(
     ("text", "words"),
     [("One two three four. Five six seven eight nine.", 4.5), ("# A heading of many words\n\nOne `x y` three four", 4)],
-)  # fmt: skip
+)
 def test_a_sentence_is_counted_as_a_reader_would(text, words):
     assert mean(text) == words

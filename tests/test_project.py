@@ -151,10 +151,16 @@ def test_the_walks_name_files_that_exist():
     assert not [name for name in named if not (ROOT / name).is_file()]
 
 
-@pytest.mark.parametrize(("change", "most"), [
-    ("add an effect", 5), ("change the rule by which an effect is added", 4), ("add a figure with an option", 5),
-    ("change a field that an endpoint answers", 4), ("understand a verdict", 8),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    ("change", "most"),
+    [
+        ("add an effect", 5),
+        ("change the rule by which an effect is added", 4),
+        ("add a figure with an option", 5),
+        ("change a field that an endpoint answers", 4),
+        ("understand a verdict", 8),
+    ],
+)
 def test_a_common_change_takes_few_files_to_read_and_they_exist(change, most):
     text = (ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8")
     read, touch = re.search(rf"^\| {change} \| (.+) \| (.*)\|$", text, re.M).groups()

@@ -92,9 +92,13 @@ def test_the_lines_run_as_they_stand_in_one_terminal(
     run = [line for line in given if full or line.split()[1] not in SLOW]
     with standing_in(tmp_path / "pipes", environment) as shell:
         done = subprocess.run(
-            ["bash", "-e"], input="\n".join([*([] if full else [STAND_IN]), *run]), env=shell, capture_output=True,
-            text=True, check=False,
-        )  # fmt: skip
+            ["bash", "-e"],
+            input="\n".join([*([] if full else [STAND_IN]), *run]),
+            env=shell,
+            capture_output=True,
+            text=True,
+            check=False,
+        )
     assert done.returncode == 0, done.stderr
     uploaded, _, listed = done.stdout.partition(": 27 runs, new")
     assert re.search(r"matrix \w+ of SIM-0003$", uploaded)

@@ -120,8 +120,11 @@ def test_a_type_checker_knows_the_face(tmp_path, full):
     options = ["--config-file=", "--follow-imports=silent", "--ignore-missing-imports"]
     said = subprocess.run(
         [sys.executable, "-m", "mypy", *options, tmp_path / "uses.py"],
-        capture_output=True, text=True, cwd=ROOT, check=False,
-    ).stdout  # fmt: skip
+        capture_output=True,
+        text=True,
+        cwd=ROOT,
+        check=False,
+    ).stdout
     assert "ident.fit.result.FitResult" in said
     assert "altair.vegalite" in said
     assert 'Unexpected keyword argument "unit"' in said

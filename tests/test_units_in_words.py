@@ -69,9 +69,13 @@ def recorded(name: str) -> Matrix:
     output = lfilter([1 / 20], [1, -19 / 20], command)
     output += 0.01 * np.std(output) * random.standard_normal(len(output))
     return from_arrays(
-        {"command": command, kind.output: output}, units={"command": kind.command, kind.output: kind.unit},
-        sample_rate=kind.rate, output=kind.output, amplitude=f"2 {kind.command}", kind="blwn",
-    )  # fmt: skip
+        {"command": command, kind.output: output},
+        units={"command": kind.command, kind.output: kind.unit},
+        sample_rate=kind.rate,
+        output=kind.output,
+        amplitude=f"2 {kind.command}",
+        kind="blwn",
+    )
 
 
 @cache

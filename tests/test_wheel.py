@@ -20,10 +20,16 @@ from tests.test_imports import ROOT
 
 WINDOWS = os.name == "nt"
 NEEDED = (
-    "ident/py.typed", "app/py.typed", "schemas/py.typed", "migrations/env.py", "migrations/script.py.mako",
-    "migrations/versions/0001_first.py", "app/pages/templates/base.html", "app/pages/static/style.css",
+    "ident/py.typed",
+    "app/py.typed",
+    "schemas/py.typed",
+    "migrations/env.py",
+    "migrations/script.py.mako",
+    "migrations/versions/0001_first.py",
+    "app/pages/templates/base.html",
+    "app/pages/static/style.css",
     "app/report/templates/report.typ",
-)  # fmt: skip
+)
 
 
 @pytest.fixture(scope="module")
@@ -74,8 +80,12 @@ def test_the_wheel_has_these_packages_and_what_they_read(built):
     tops = {name.split("/")[0] for name in names}
     assert {top for top in tops if not top.endswith(".dist-info")} == {"ident", "app", "schemas", "migrations"}
     assert not [name for name in NEEDED if name not in names]
-    source = {path.relative_to(ROOT).as_posix() for top in ("ident", "app", "schemas", "migrations")
-              for path in (ROOT / top).rglob("*") if path.is_file() and "__pycache__" not in path.parts}  # fmt: skip
+    source = {
+        path.relative_to(ROOT).as_posix()
+        for top in ("ident", "app", "schemas", "migrations")
+        for path in (ROOT / top).rglob("*")
+        if path.is_file() and "__pycache__" not in path.parts
+    }
     assert not source - set(names)
 
 
@@ -120,8 +130,13 @@ def test_it_serves_with_its_own_migrations_pages_and_style(installed, tmp_path):
     with socket.create_server(("127.0.0.1", 0)) as free:
         port = free.getsockname()[1]
     token = {"SERVOIDENT_TOKEN": "wheel"}
-    server = subprocess.Popen([installed / "servoident", "serve", "--port", str(port), "--data", tmp_path / "data"],
-                              cwd=tmp_path, env={**alone(), **token}, stdout=subprocess.PIPE, text=True)  # fmt: skip
+    server = subprocess.Popen(
+        [installed / "servoident", "serve", "--port", str(port), "--data", tmp_path / "data"],
+        cwd=tmp_path,
+        env={**alone(), **token},
+        stdout=subprocess.PIPE,
+        text=True,
+    )
     try:
         assert str(port) in server.stdout.readline()
         address = f"http://127.0.0.1:{port}"

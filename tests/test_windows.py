@@ -17,9 +17,12 @@ from tests.conftest import ROOT
 def test_simulate_fit_diagnose_and_serve_without_what_windows_lacks(tmp_path: Path, full: bool) -> None:
     """In a process of its own, printing to a pipe in the code page of western Europe."""
     own = {
-        **os.environ, "LOCALAPPDATA": str(cache_folder().parents[1]), "PYTHONIOENCODING": "cp1252", "PYTHONUTF8": "0",
+        **os.environ,
+        "LOCALAPPDATA": str(cache_folder().parents[1]),
+        "PYTHONIOENCODING": "cp1252",
+        "PYTHONUTF8": "0",
         "SERVOIDENT_DATA": "",
-    }  # fmt: skip
+    }
     form = ["--full"] if full else []
     called = [sys.executable, "-X", "warn_default_encoding", "-m", "tests.without_posix", str(tmp_path), *form]
     done = subprocess.run(called, cwd=ROOT, env=own, capture_output=True, check=False)

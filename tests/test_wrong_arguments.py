@@ -21,12 +21,18 @@ FUNCTIONS = [name for name in ident.__all__ if inspect.isfunction(getattr(ident,
 SAMPLES: dict[str, Any] = {"str": "some text", "float": 5, "Mapping": {"some": 1}, "Sequence": ["some"], "bool": True}
 """A value of each kind, by the word that an annotation has where it is a right one."""
 WITHIN = {
-    "effects": [[5], 5, "dead_zone"], "custom": [[5], "some"], "bounds": [{"tau": 5}, {"tau": ("1 ms", object())}],
-    "fixed": [{"tau": object()}, {5: 1.0}], "options": [{"population": "many"}, ["population"]],
-    "seed": [1.5, "1", True], "budget": ["10 s"],
+    "effects": [[5], 5, "dead_zone"],
+    "custom": [[5], "some"],
+    "bounds": [{"tau": 5}, {"tau": ("1 ms", object())}],
+    "fixed": [{"tau": object()}, {5: 1.0}],
+    "options": [{"population": "many"}, ["population"]],
+    "seed": [1.5, "1", True],
+    "budget": ["10 s"],
     "preprocessing": [{"force_sign": "no"}, ["force_sign"], {5: False}],
-    "model": [5, ["qian2014"]], "method": [5], "load": [None],
-}  # fmt: skip
+    "model": [5, ["qian2014"]],
+    "method": [5],
+    "load": [None],
+}
 """Of the choices of a fit, some that are wrong inside."""
 STATED = {
     "units": [5, "mm", ["mm"], {"command": 5}], "columns": [5, "x", {"command": []}], "sample_rate": [4096, []],
@@ -80,9 +86,17 @@ def test_a_value_of_a_wrong_kind_is_refused_in_one_line(
 ) -> None:
     """Each function × each parameter × values that are no such thing; all else that is given is right."""
     diagnosis = ident.load(ROOT / "tests" / "stored" / "diagnosis.json")
-    right = {"matrix": matrix, "fit": fit, "result": fit, "found": diagnosis, "name": "time", "path": "matrix",
-             "arrays": {"command": np.zeros(8), "displacement": np.zeros(8)}, "table": {},
-             "program": "qian"}  # fmt: skip
+    right = {
+        "matrix": matrix,
+        "fit": fit,
+        "result": fit,
+        "found": diagnosis,
+        "name": "time",
+        "path": "matrix",
+        "arrays": {"command": np.zeros(8), "displacement": np.zeros(8)},
+        "table": {},
+        "program": "qian",
+    }
     called = getattr(ident, function)
     needed = {
         key: right[key]
@@ -96,9 +110,18 @@ def test_a_value_of_a_wrong_kind_is_refused_in_one_line(
 def test_every_function_and_every_choice_is_tried() -> None:
     """So many functions and pairs of parameter and value; the choices of a fit and what is stated of a record too."""
     assert set(FUNCTIONS) >= {
-        "read_matrix", "check", "identify", "compare", "diagnose", "propose", "simulate", "figure", "save", "load",
+        "read_matrix",
+        "check",
+        "identify",
+        "compare",
+        "diagnose",
+        "propose",
+        "simulate",
+        "figure",
+        "save",
+        "load",
         "next_run",
-    }  # fmt: skip
+    }
     assert len(CASES) > 150
     assert WITHIN.keys() == Choices.__annotations__.keys()
     assert STATED.keys() == Stated.__annotations__.keys()

@@ -74,8 +74,11 @@ def set_display_units(here: Here, me: Me, request: DisplayUnits) -> DisplayUnits
 
 @router.get("/audit", dependencies=[ADMIN])
 def list_changes(
-    here: Here, by: str | None = None, object: str | None = None,  # noqa: A002  the audit's name for it
-    cursor: str | None = None, limit: Limit = 100,
-) -> AuditPage:  # fmt: skip
+    here: Here,
+    by: str | None = None,
+    object: str | None = None,  # noqa: A002  the audit's name for it
+    cursor: str | None = None,
+    limit: Limit = 100,
+) -> AuditPage:
     """Every change, newest first: all, those `by` a token's id, those of an object, such as `fits/ID`."""
     return service.audit(here.sessions, cursor, limit, by=by, on=object)

@@ -36,8 +36,13 @@ class May:
             raise unknown()
         if not who.has(*self.roles):
             allowed = " or ".join(sorted(self.roles)) or Role.ADMIN
-            raise Failure(403, "wrong-role", f"a token for {who.role} may not do this", "Authorization",
-                          f"use a token for {allowed}")  # fmt: skip
+            raise Failure(
+                403,
+                "wrong-role",
+                f"a token for {who.role} may not do this",
+                "Authorization",
+                f"use a token for {allowed}",
+            )
 
 
 def may(*roles: Role, stores: bool = True) -> Any:
@@ -62,11 +67,21 @@ def declared(route: Any) -> May | None:
 async def refuse_undeclared(connection: HTTPConnection) -> None:
     """Of every route: one that declares no role is refused to all. Raises Failure 403."""
     if declared(connection.scope.get("route")) is None:
-        raise Failure(403, "no-role", "no role is declared for this address", connection.url.path,
-                      "a defect of the program: report it")  # fmt: skip
+        raise Failure(
+            403,
+            "no-role",
+            "no role is declared for this address",
+            connection.url.path,
+            "a defect of the program: report it",
+        )
 
 
 def unknown() -> Failure:
     """Of a request that carries no token that is valid."""
-    return Failure(401, "token-needed", "this request carries no valid token", "Authorization",
-                   "sign in at the address that the service printed, or send Authorization: Bearer TOKEN")  # fmt: skip
+    return Failure(
+        401,
+        "token-needed",
+        "this request carries no valid token",
+        "Authorization",
+        "sign in at the address that the service printed, or send Authorization: Bearer TOKEN",
+    )

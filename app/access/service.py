@@ -20,9 +20,19 @@ from ident.words import display
 from schemas.access import AuditPage, AuditView, DisplayUnits, NewToken, TokenPage, TokenRequest, TokenView
 
 __all__ = [
-    "COMMAND", "audit", "choose_units", "display_units", "drop", "end", "keep", "listed", "made_as", "new", "revoke",
+    "COMMAND",
+    "audit",
+    "choose_units",
+    "display_units",
+    "drop",
+    "end",
+    "keep",
+    "listed",
+    "made_as",
+    "new",
+    "revoke",
     "sign_in",
-]  # fmt: skip
+]
 
 Records = sessionmaker[Session]
 COMMAND = Who("command line", Role.ADMIN, "command")
@@ -74,11 +84,16 @@ def view(row: TokenRow) -> TokenView:
     expired = row.expires_at is not None and row.expires_at < now()
     return TokenView.model_validate(
         {
-            "id": row.id, "name": row.name, "role": row.role, "created_at": row.created_at,
+            "id": row.id,
+            "name": row.name,
+            "role": row.role,
+            "created_at": row.created_at,
             "state": "revoked" if row.revoked_at else "expired" if expired else "valid",
-            "expires_at": row.expires_at, "revoked_at": row.revoked_at, "last_used_at": row.last_used_at,
+            "expires_at": row.expires_at,
+            "revoked_at": row.revoked_at,
+            "last_used_at": row.last_used_at,
         }
-    )  # fmt: skip
+    )
 
 
 def sign_in(context: Context, tries: Tries, token: str, address: str) -> Secret:

@@ -37,5 +37,11 @@ class Tries:
 
 def too_often(what: str, wait: float) -> Failure:
     """Of what was asked more often than is allowed; `wait` (s) says when it may be asked again."""
-    return Failure(429, "too-often", f"too many {what}", "Authorization", f"try again in {ceil(wait)} s",
-                   **{"Retry-After": str(ceil(wait))})  # fmt: skip
+    return Failure(
+        429,
+        "too-often",
+        f"too many {what}",
+        "Authorization",
+        f"try again in {ceil(wait)} s",
+        **{"Retry-After": str(ceil(wait))},
+    )

@@ -17,9 +17,12 @@ router = APIRouter(prefix="/actuators", tags=["actuators"], responses=COMMON)
 
 @router.get("", dependencies=[READERS])
 def list_actuators(
-    here: Here, q: str | None = None, batch: str | None = None, cursor: str | None = None,
+    here: Here,
+    q: str | None = None,
+    batch: str | None = None,
+    cursor: str | None = None,
     limit: Annotated[int, Query(ge=1, le=200)] = 50,
-) -> ActuatorPage:  # fmt: skip
+) -> ActuatorPage:
     """Actuators by serial number; `q` is part of serial, name or batch."""
     return service.listed(here, q, batch, cursor, limit)
 

@@ -55,9 +55,14 @@ def _views(session: Session, rows: Sequence[ActuatorRow]) -> list[ActuatorView]:
     matrices, fits = repository.counts(session, serials)
     return [
         ActuatorView(
-            serial=row.serial, name=row.name, batch=row.batch, piston_area=row.piston_area, created_at=row.created_at,
-            matrices=matrices.get(row.serial, 0), fits=fits.get(row.serial, 0),
+            serial=row.serial,
+            name=row.name,
+            batch=row.batch,
+            piston_area=row.piston_area,
+            created_at=row.created_at,
+            matrices=matrices.get(row.serial, 0),
+            fits=fits.get(row.serial, 0),
             current=set_view(current[row.serial]) if row.serial in current else None,
         )
         for row in rows
-    ]  # fmt: skip
+    ]

@@ -25,13 +25,23 @@ def approve(context: Context, fit: str, who: str, why: str) -> FitView:
     with context.sessions.begin() as session:
         row = fits.recorded(session, fit)
         if row.result.get("ended_early"):
-            raise Failure(409, "ended-early", "the search of this fit ran out of its time", f"fit {fit}",
-                          "fit again without a budget")  # fmt: skip
+            raise Failure(
+                409,
+                "ended-early",
+                "the search of this fit ran out of its time",
+                f"fit {fit}",
+                "fit again without a budget",
+            )
         if not row.set.current:
             against = of_fit(session, row)
             if against and not why.strip():
-                raise Failure(422, "reason-needed", "; ".join(against), f"fit {fit}",
-                              "find what the model lacks first, or give a reason (--why, why over HTTP)")  # fmt: skip
+                raise Failure(
+                    422,
+                    "reason-needed",
+                    "; ".join(against),
+                    f"fit {fit}",
+                    "find what the model lacks first, or give a reason (--why, why over HTTP)",
+                )
             repository.put_in_force(session, row.serial, row.set.number, who, why)
             announce(session, SetApproved, serial=row.serial, fit=fit, who=who, why=why)
             tell_broken(session, row.set)
@@ -43,8 +53,13 @@ def withdraw(context: Context, fit: str, who: str, why: str) -> FitView:
     with context.sessions.begin() as session:
         row = fits.recorded(session, fit)
         if not row.set.current:
-            raise Failure(409, "not-in-force", "this fit is not the approved set, and cannot be withdrawn", "fit",
-                          "withdraw the approved set: the actuator lists it")  # fmt: skip
+            raise Failure(
+                409,
+                "not-in-force",
+                "this fit is not the approved set, and cannot be withdrawn",
+                "fit",
+                "withdraw the approved set: the actuator lists it",
+            )
         repository.put_in_force(session, row.serial, None, who, why)
         announce(session, SetWithdrawn, serial=row.serial, fit=fit, who=who, why=why)
     return fits.get(context, fit)

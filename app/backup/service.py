@@ -34,8 +34,12 @@ def backup(settings: Settings, file: Path) -> Held:
     """Write all records and the blobs that they name, as they are at one moment; the service may run meanwhile."""
     engine, storage = connect(settings.database), open_storage(settings)
     if not reachable(engine):
-        raise Unusable("no-database", "it does not answer, or holds nothing yet", shown(settings.database),
-                       "give the --data or the --database of the service")  # fmt: skip
+        raise Unusable(
+            "no-database",
+            "it does not answer, or holds nothing yet",
+            shown(settings.database),
+            "give the --data or the --database of the service",
+        )
     stored, named = {blob.sha256 for blob in storage.blobs()}, set[str]()
     with tempfile.TemporaryDirectory(dir=file.parent, prefix=f".{file.name}-") as folder:
         writer = Writer(Path(folder) / "backup")

@@ -31,5 +31,9 @@ def list_effects() -> list[EffectView]:
 @router.post("/custom-effects", dependencies=[READERS], response_model=EffectView)
 def check_custom_effect(here: Here, definition: dict[str, Any] | str, key: Key = None) -> Response:
     """Check an effect of one's own, as JSON or as the text of its file; nothing is stored."""
-    return once(here.sessions, key, fingerprint("custom-effect", definition),
-                lambda _: (200, service.custom_effect(definition).model_dump(), ""))  # fmt: skip
+    return once(
+        here.sessions,
+        key,
+        fingerprint("custom-effect", definition),
+        lambda _: (200, service.custom_effect(definition).model_dump(), ""),
+    )

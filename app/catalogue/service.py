@@ -23,11 +23,16 @@ def models() -> list[ModelView]:
     """Every model that can be fitted."""
     return [
         ModelView(
-            name=preset.name, title=preset.title, citation=preset.citation, notes=list(preset.notes),
-            parameters=_parameters(preset.parameters), equations=_equations(preset.equations), signals=signals(preset),
+            name=preset.name,
+            title=preset.title,
+            citation=preset.citation,
+            notes=list(preset.notes),
+            parameters=_parameters(preset.parameters),
+            equations=_equations(preset.equations),
+            signals=signals(preset),
         )
         for preset in PRESETS.values()
-    ]  # fmt: skip
+    ]
 
 
 def signals(model: Model) -> list[ChainSignalView]:
@@ -48,9 +53,14 @@ def custom_effect(definition: Mapping[str, Any] | str) -> EffectView:
 def view(effect: Effect) -> EffectView:
     """An effect as it is sent."""
     return EffectView(
-        name=effect.name, place=effect.place, meaning=effect.meaning, looks=effect.looks, source=effect.source,
-        parameters=_parameters(effect.parameters), equations=_equations(effect.equations),
-    )  # fmt: skip
+        name=effect.name,
+        place=effect.place,
+        meaning=effect.meaning,
+        looks=effect.looks,
+        source=effect.source,
+        parameters=_parameters(effect.parameters),
+        equations=_equations(effect.equations),
+    )
 
 
 def _parameters(parameters: Iterable[Parameter]) -> list[ParameterView]:

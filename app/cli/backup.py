@@ -37,8 +37,12 @@ def backup(
     check_target(file)
     if server:
         if data or database or blobs:
-            raise Unusable("bad-option", "a running service uses its own data folder", "--server",
-                           "leave --data, --database and --blobs out")  # fmt: skip
+            raise Unusable(
+                "bad-option",
+                "a running service uses its own data folder",
+                "--server",
+                "leave --data, --database and --blobs out",
+            )
         print(f"{file}: {receive(server, token, '/backups', file) / 1e6:.3f} MB")
         return
     print(f"{file}: {said(service.backup(settings(data, database, blobs=blobs), file))}")

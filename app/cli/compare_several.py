@@ -18,9 +18,13 @@ NAME = "side-by-side"
 
 
 def compare_several(
-    matrix: Matrix, fits: Sequence[FitResult], json: Path | None, out: Path | None, figures: Sequence[str] = (),
+    matrix: Matrix,
+    fits: Sequence[FitResult],
+    json: Path | None,
+    out: Path | None,
+    figures: Sequence[str] = (),
     options: Mapping[str, Any] = MappingProxyType({}),
-) -> None:  # fmt: skip
+) -> None:
     """Each fit against every run of the matrix, whatever it was fitted to; all of them in the `figures` asked for."""
     from app.cli.tables import show
     from ident.comparison.side_by_side import of_comparisons
@@ -30,11 +34,18 @@ def compare_several(
     found = of_comparisons([compare(matrix, fit) for fit in fits])
     if json is not None:
         columns = [
-            {"name": one.name, "serial": one.serial, "model": one.fit.model, "effects": list(one.fit.effects),
-             "error": dict(one.error), "error_with_mean": {use: of.with_mean for use, of in one.words.items()},
-             "aic": one.fit.aic, "parameters": one.fit.records()}
+            {
+                "name": one.name,
+                "serial": one.serial,
+                "model": one.fit.model,
+                "effects": list(one.fit.effects),
+                "error": dict(one.error),
+                "error_with_mean": {use: of.with_mean for use, of in one.words.items()},
+                "aic": one.fit.aic,
+                "parameters": one.fit.records(),
+            }
             for one in found.columns
-        ]  # fmt: skip
+        ]
         write_json({"fits": columns, "runs": found.records()}, json)
     if json != STANDARD_OUTPUT:
         show(found.listings())

@@ -63,10 +63,18 @@ def control(
     earlier = earlier_case(result, given, before, before_gain, before_case)
     wanted = QIAN2014_TARGET if target is None else _target(target)
     made = design_controller(
-        result, given.physical, sample_rate=given.sample_rate, gain=given.gain, piston_area=given.piston_area,
-        delay=given.delay, target=wanted, structure=structure, seed=seed, before=earlier,
+        result,
+        given.physical,
+        sample_rate=given.sample_rate,
+        gain=given.gain,
+        piston_area=given.piston_area,
+        delay=given.delay,
+        target=wanted,
+        structure=structure,
+        seed=seed,
+        before=earlier,
         spread=spread_in(spread, result.model),
-    )  # fmt: skip
+    )
     made = on_case(made, result, given if rig is None else replace(given, rig=rig_in(rig)), earlier)
     made = replace(made, notes=(*moved.text, *made.notes))
     _write(made, out, given.name)

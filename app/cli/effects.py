@@ -38,8 +38,12 @@ def effects(
     """
     if context.invoked_subcommand is not None:
         if server or signals or json is not None:
-            raise Unusable("bad-option", f"an option is before the command {context.invoked_subcommand}", "effects",
-                           "write options after it")  # fmt: skip
+            raise Unusable(
+                "bad-option",
+                f"an option is before the command {context.invoked_subcommand}",
+                "effects",
+                "write options after it",
+            )
         return
     check_target(json)
     if signals:
@@ -164,8 +168,12 @@ def body(source: str, name: str, proposal: int) -> dict[str, Any]:
     if kept is not None:
         return {"name": name or kept.name, "definition": dict(kept.definition), "model": kept.model}
     if not name:
-        raise Unusable("no-name", "neither a file nor a saved effect; a term of a diagnosis has no name yet", source,
-                       "give a file, or the id of a diagnosis and --name")  # fmt: skip
+        raise Unusable(
+            "no-name",
+            "neither a file nor a saved effect; a term of a diagnosis has no name yet",
+            source,
+            "give a file, or the id of a diagnosis and --name",
+        )
     return {"name": name, "diagnosis": source, "proposal": proposal}
 
 

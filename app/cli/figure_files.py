@@ -81,9 +81,12 @@ def write_figures(subject: object, out: Path) -> None:
 
 
 def study_figures(
-    matrix: Matrix, fit: FitResult, names: Sequence[str] = (), options: Mapping[str, Any] = MappingProxyType({}),
+    matrix: Matrix,
+    fit: FitResult,
+    names: Sequence[str] = (),
+    options: Mapping[str, Any] = MappingProxyType({}),
     others: Sequence[FitResult] = (),
-) -> tuple[Study, dict[str, dict[str, Any]]]:  # fmt: skip
+) -> tuple[Study, dict[str, dict[str, Any]]]:
     """A fit beside its data, and its figures, all or those of these names, each with the options that it takes.
 
     With `others` they are those in which several fits are drawn. Nothing is worked out yet. Raises Unusable for a

@@ -126,10 +126,20 @@ def _named(model: str) -> str:
 
 
 def settings(
-    model: str, effect: list[str] | None, method: str, bounds: list[str] | None, set_: list[str] | None, load: str,
-    seed: int, option: list[str] | None, custom: list[Path] | None = None, budget: float | None = None,
-    terms: int | None = None, preprocessing: Mapping[str, bool] | None = None, candidates: bool = False,
-) -> Settings:  # fmt: skip
+    model: str,
+    effect: list[str] | None,
+    method: str,
+    bounds: list[str] | None,
+    set_: list[str] | None,
+    load: str,
+    seed: int,
+    option: list[str] | None,
+    custom: list[Path] | None = None,
+    budget: float | None = None,
+    terms: int | None = None,
+    preprocessing: Mapping[str, bool] | None = None,
+    candidates: bool = False,
+) -> Settings:
     """The library's settings from what the command line gives. Raises Unusable.
 
     With `candidates` bounds and values may be of effects, too, that a diagnosis may add to the model.
@@ -141,8 +151,15 @@ def settings(
     from ident.fit.settings import Settings
 
     own, found = additions(custom or [], terms)
-    base = Settings(model=model, method=method, load=load, seed=seed, options=method_options(option or []),
-                    budget=budget, preprocessing=preprocessing or {})  # fmt: skip
+    base = Settings(
+        model=model,
+        method=method,
+        load=load,
+        seed=seed,
+        options=method_options(option or []),
+        budget=budget,
+        preprocessing=preprocessing or {},
+    )
     named = dict.fromkeys((*(effect or []), *own.effects))
     chosen = with_named(base, tuple(named), own.custom, found, defined_here)
     preset = preset_with(model, chosen.effects, chosen.custom)

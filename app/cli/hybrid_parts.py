@@ -51,8 +51,10 @@ def show_parts(
     from ident.hybrid.coupled_rig import simulate_compared
     from ident.hybrid.drawn_simulations import drawn_coupled
 
-    moved = [moved_to(read_fit(folder / part.fit) if part.fit else fit, asked.at, asked.over, asked.sets)
-             for part in of.parts]  # fmt: skip
+    moved = [
+        moved_to(read_fit(folder / part.fit) if part.fit else fit, asked.at, asked.over, asked.sets)
+        for part in of.parts
+    ]
     fits = [one.fit for one in moved]
     earlier, known = earlier_parts(fits, of, asked.before), of
     of = of if asked.isolator is None else of.with_isolator(*isolator_of(asked.isolator))
@@ -61,9 +63,15 @@ def show_parts(
     sampled = [linear(one, "spread") for one in acting] if spreads else []
     with shown() as report:
         found, alone = simulate_compared(
-            fits, of, acting, asked.effects, without=without and out is not None, mapped=asked.mapped, report=report,
+            fits,
+            of,
+            acting,
+            asked.effects,
+            without=without and out is not None,
+            mapped=asked.mapped,
+            report=report,
             before=earlier,
-        )  # fmt: skip
+        )
         drawn = drawn_coupled(fits, of, sampled, asked.effects, spreads, report=report) if spreads else None
     found = found.with_notes([one.text for one in moved])
     if json is not None:
@@ -86,8 +94,10 @@ def _controllers(
     from ident.hybrid.substructure import reference
 
     names = [_inside(part.controller, folder, NAMED) or controller for part in of.parts]
-    wanted = [reference(case, case.ground.samples(case.sample_rate)) if name == FEEDFORWARD else None
-              for name, case in zip(names, of.cases, strict=True)]  # fmt: skip
+    wanted = [
+        reference(case, case.ground.samples(case.sample_rate)) if name == FEEDFORWARD else None
+        for name, case in zip(names, of.cases, strict=True)
+    ]
     given = zip(names, fits, known.cases, wanted, strict=True)
     return [controller_called(*one) for one in given], set(names) != {"none"}
 

@@ -37,8 +37,12 @@ _Texts = list[str] | None
 
 
 def init(
-    files: Annotated[list[Path], typer.Argument(metavar="FILES…", help="Raw files of one actuator, or their folder: "
-                                                           "one run or one signal per file.")],
+    files: Annotated[
+        list[Path],
+        typer.Argument(
+            metavar="FILES…", help="Raw files of one actuator, or their folder: one run or one signal per file."
+        ),
+    ],
     out: Annotated[
         Path | None,
         typer.Option(metavar="MATRIX", help="Folder to write, with matrix.yaml and runs/. Default: the serial number."),
@@ -46,37 +50,56 @@ def init(
     serial: Annotated[str, typer.Option(metavar="SERIAL", help="Serial number of the actuator.")] = "",
     channel: Annotated[
         _Texts,
-        typer.Option(metavar=_FORM, help="Column of a channel, by name or number from 0, and its unit. NAME=:UNIT: the "
-                     "unit alone. NAME=-: not recorded. NAME@FILE=COLUMN:UNIT: in some files only (b.csv, b*). "
-                     "May be repeated."),
+        typer.Option(
+            metavar=_FORM,
+            help="Column of a channel, by name or number from 0, and its unit. NAME=:UNIT: the "
+            "unit alone. NAME=-: not recorded. NAME@FILE=COLUMN:UNIT: in some files only (b.csv, b*). "
+            "May be repeated.",
+        ),
     ] = None,
     time: Annotated[
         _Texts,
-        typer.Option(metavar="COLUMN:UNIT", help="Time column and its unit; @FILE=COLUMN:UNIT: in some files only. May "
-                     "be repeated."),
+        typer.Option(
+            metavar="COLUMN:UNIT",
+            help="Time column and its unit; @FILE=COLUMN:UNIT: in some files only. May be repeated.",
+        ),
     ] = None,
     rate: Annotated[
         _Texts,
-        typer.Option(metavar="HZ", help="Sample rate, such as '4096 Hz', if there is no time column; @FILE=HZ: in some "
-                     "files only. May be repeated."),
+        typer.Option(
+            metavar="HZ",
+            help="Sample rate, such as '4096 Hz', if there is no time column; @FILE=HZ: in some "
+            "files only. May be repeated.",
+        ),
     ] = None,
     dialect: Annotated[
         _Texts,
-        typer.Option(metavar="KEY=VALUE", help="Layout of a text file: delimiter, decimal, header_rows, skip_rows or "
-                     "encoding, if it is not detected. @FILE=KEY=VALUE: in some files only. May be repeated."),
+        typer.Option(
+            metavar="KEY=VALUE",
+            help="Layout of a text file: delimiter, decimal, header_rows, skip_rows or "
+            "encoding, if it is not detected. @FILE=KEY=VALUE: in some files only. May be repeated.",
+        ),
     ] = None,
     output: Annotated[str, typer.Option(metavar="NAME", help="Output channel of the model.")] = "",
-    verify: Annotated[_Texts, typer.Option(metavar="FILE", help="A validation run: one of FILES, with or without its "
-                                                      "suffix, or another file; may be repeated.")] = None,
+    verify: Annotated[
+        _Texts,
+        typer.Option(
+            metavar="FILE",
+            help="A validation run: one of FILES, with or without its suffix, or another file; may be repeated.",
+        ),
+    ] = None,
     validation: Annotated[
         float,
-        typer.Option(metavar="SHARE", help="Share of each run, at its end, for validation, such as 0.3; a gap as long "
-                     "as the response stays before it."),
+        typer.Option(
+            metavar="SHARE",
+            help="Share of each run, at its end, for validation, such as 0.3; a gap as long "
+            "as the response stays before it.",
+        ),
     ] = 0.0,
     area: Annotated[str, typer.Option(metavar="AREA", help="Piston area, such as '497 mm^2'.")] = "",
     gain: Annotated[str, typer.Option(metavar="KP", help="Loop gain of all runs.")] = "",
     hold: Annotated[str, typer.Option(metavar="NAME", help="Command between samples: linear, zoh, band-limited.")] = "",
-) -> None:  # fmt: skip
+) -> None:
     """Describe raw files and write matrix.yaml.
 
     It detects columns, units, time and sample rate. Files of one signal each are joined to runs by their names, such as
@@ -101,12 +124,18 @@ def init(
     of_files = [(one, data) for name, data in whole for one in _parts(data, name, files, dialects[name])]
     found, contents = [one for one, _ in of_files], [data for _, data in of_files]
     answers = Answers(
-        serial=serial, channels=of_all.channels, time=of_all.time, rate=of_all.rate, dialect=of_all.dialect,
+        serial=serial,
+        channels=of_all.channels,
+        time=of_all.time,
+        rate=of_all.rate,
+        dialect=of_all.dialect,
         files=of_some,
-        output=output, verify=tuple(_among(names, name, "--verify") for name in verify or []),
+        output=output,
+        verify=tuple(_among(names, name, "--verify") for name in verify or []),
         validation=validation,
-        actuator={"piston_area": area} if area else {}, common={name: text for name, text in given.items() if text},
-    )  # fmt: skip
+        actuator={"piston_area": area} if area else {},
+        common={name: text for name, text in given.items() if text},
+    )
     draft = Draft(found, answers)
     while draft.missing and sys.stdin.isatty():
         draft = _asked(draft, NONE)

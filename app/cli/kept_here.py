@@ -66,8 +66,12 @@ def keep(kept: Kept) -> bool:
     file = _file(kept.name)
     if file.is_file():
         if _read(file).definition != kept.definition:
-            raise Unusable("name-in-use", f"another effect is saved as {kept.name}", str(file),
-                           f"give it another --name, or `servoident effects drop {kept.name}` first")  # fmt: skip
+            raise Unusable(
+                "name-in-use",
+                f"another effect is saved as {kept.name}",
+                str(file),
+                f"give it another --name, or `servoident effects drop {kept.name}` first",
+            )
         return False
     file.parent.mkdir(mode=0o700, parents=True, exist_ok=True)
     moment = datetime.now(UTC).isoformat(timespec="seconds")

@@ -41,8 +41,12 @@ def found_file(given: Path, matrix: Matrix) -> Path:
     if str(given) != LAST or given.exists():
         return given
     if not (file := _file(matrix.data_hash)).is_file():
-        raise Unusable("no-last-diagnosis", "no diagnosis of these data is kept", LAST,
-                       "run `servoident diagnose` on them first, or name the file of a diagnosis")  # fmt: skip
+        raise Unusable(
+            "no-last-diagnosis",
+            "no diagnosis of these data is kept",
+            LAST,
+            "run `servoident diagnose` on them first, or name the file of a diagnosis",
+        )
     return file
 
 

@@ -58,7 +58,7 @@ def regulator_of(text: str) -> Regulator:
 
 def show_margins(
     fit: FitResult, regulator: str | None, amplitudes: list[str], json: Path | None, out: Path | None
-) -> None:  # fmt: skip
+) -> None:
     """Work out, show and write the margins; exit status 1 where the loop is unstable at an amplitude."""
     from app.cli.tables import show
     from ident.bench.position_loop import position_loop

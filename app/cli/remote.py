@@ -22,17 +22,21 @@ if TYPE_CHECKING:
 Server = Annotated[
     str,
     typer.Option(
-        metavar="URL", envvar="SERVOIDENT_SERVER", show_default=False,
+        metavar="URL",
+        envvar="SERVOIDENT_SERVER",
+        show_default=False,
         help="Address of the service (SERVOIDENT_SERVER); default: your service on this machine.",
     ),
-]  # fmt: skip
+]
 Token = Annotated[
     str,
     typer.Option(
-        metavar="TOKEN", envvar="SERVOIDENT_TOKEN", show_envvar=False,
+        metavar="TOKEN",
+        envvar="SERVOIDENT_TOKEN",
+        show_envvar=False,
         help="Token of the service (SERVOIDENT_TOKEN); not needed for your service on this machine.",
     ),
-]  # fmt: skip
+]
 DEFAULT = ""
 """No address is given: the service that runs on this machine is meant."""
 USUAL = "http://127.0.0.1:8000"

@@ -60,8 +60,14 @@ def report(
     from ident.readers import read_matrix
     from ident.workflows import identify
 
-    stated = {"laboratory": laboratory, "customer": customer, "order": order, "operator": operator, "date": date,
-              "oil_temperature": oil_temperature}  # fmt: skip
+    stated = {
+        "laboratory": laboratory,
+        "customer": customer,
+        "order": order,
+        "operator": operator,
+        "date": date,
+        "oil_temperature": oil_temperature,
+    }
     sheet = Sheet(logo=picture(logo) if logo else None).of(stated)
     read = read_matrix(matrix)
     found = None if diagnosis is None else read_diagnosis(found_file(diagnosis, read))

@@ -10,7 +10,7 @@ import typer
 _PANEL = "Data sheet"
 Laboratory = Annotated[
     str, typer.Option(metavar="NAME", help="Name of the laboratory on reports.", rich_help_panel=_PANEL)
-]  # fmt: skip
+]
 Logo = Annotated[
     Path | None, typer.Option(metavar="FILE", help="PNG or JPEG at the head of reports.", rich_help_panel=_PANEL)
 ]

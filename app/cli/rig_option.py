@@ -14,9 +14,11 @@ if TYPE_CHECKING:
 RigFile = Annotated[
     Path | None,
     typer.Option(
-        "--rig", metavar="FILE", help="YAML file with the limits of the rig, by themselves or under rig:.",
+        "--rig",
+        metavar="FILE",
+        help="YAML file with the limits of the rig, by themselves or under rig:.",
     ),
-]  # fmt: skip
+]
 
 
 def rig_in(file: Path | None) -> RigLimits | None:

@@ -32,10 +32,18 @@ def sheet(
         write_json(found, json)
     if json != STANDARD_OUTPUT:
         lines = [
-            Line(one["name"], one["meaning"], one["value"], one["std_error"], one["unit"], one["lower"], one["upper"],
-                 one["outcome"])
+            Line(
+                one["name"],
+                one["meaning"],
+                one["value"],
+                one["std_error"],
+                one["unit"],
+                one["lower"],
+                one["upper"],
+                one["outcome"],
+            )
             for one in found["lines"]
-        ]  # fmt: skip
+        ]
         numbers = ("value", "std error", "min", "max")
         output().print(table(("quantity", "value", "std error", "unit", "min", "max", ""), sheet_rows(lines), numbers))
         print(f"{found['serial']}: {found['verdict'] or 'no limits'}")

@@ -66,9 +66,16 @@ def simulate(
 
 
 def _of_rig(
-    out: Path, given: str, seconds: float, seed: int, noise: float, effect: list[str], serial: str, set_: list[str],
+    out: Path,
+    given: str,
+    seconds: float,
+    seed: int,
+    noise: float,
+    effect: list[str],
+    serial: str,
+    set_: list[str],
     test: list[str],
-) -> None:  # fmt: skip
+) -> None:
     from ident.presets import preset as preset_called
     from ident.presets.description import described
     from ident.presets.rig_test import TESTS
@@ -141,7 +148,17 @@ def _test_of(given: str, model: Preset, texts: list[str]) -> RigTest:
         amplitudes.append(size)
     gains = [loop_gain(Fields({"gain": value}, "--test", ("gain",))) for value in found.get("gain", ())]
     single = {key: quantity(values[-1], _STATED[key], f"--test {key}") for key, values in found.items() if _STATED[key]}
-    actuator = replace(base.actuator, piston_area=single.get("area", base.actuator.piston_area),
-                       supply_pressure=single.get("supply", base.actuator.supply_pressure))  # fmt: skip
-    return with_stated(base, amplitudes=tuple(amplitudes), unit=unit, gains=tuple(gains), band=single.get("band"),
-                       sample_rate=single.get("rate"), actuator=actuator)  # fmt: skip
+    actuator = replace(
+        base.actuator,
+        piston_area=single.get("area", base.actuator.piston_area),
+        supply_pressure=single.get("supply", base.actuator.supply_pressure),
+    )
+    return with_stated(
+        base,
+        amplitudes=tuple(amplitudes),
+        unit=unit,
+        gains=tuple(gains),
+        band=single.get("band"),
+        sample_rate=single.get("rate"),
+        actuator=actuator,
+    )

@@ -46,11 +46,19 @@ class StartOptions:
         """Raise Unusable where options are given that do not go together."""
         given = [name for name, value in self.others.items() if value]
         if given:
-            raise Unusable("bad-option", f"{' and '.join(given)} cannot be given with a start", "--start",
-                           "leave out what the file decides: model, effects, bounds and values")  # fmt: skip
+            raise Unusable(
+                "bad-option",
+                f"{' and '.join(given)} cannot be given with a start",
+                "--start",
+                "leave out what the file decides: model, effects, bounds and values",
+            )
         if not self.search and self.searched != Searched():
-            raise Unusable("bad-option", "options of a search are given, and no search is made", "--start",
-                           "add --search, or leave out --method, --seed, --option and --budget")  # fmt: skip
+            raise Unusable(
+                "bad-option",
+                "options of a search are given, and no search is made",
+                "--start",
+                "add --search, or leave out --method, --seed, --option and --budget",
+            )
 
     def settings(self, matrix: Matrix) -> Settings:
         """The settings of the fit of a matrix that the file leads to. Raises Unusable."""

@@ -91,10 +91,17 @@ def list_(
         return
     header = ("id", "name", "role", "state", "made", "expires", "last used")
     rows = [
-        (one.id, one.name, one.role, one.state, one.created_at[:16], (one.expires_at or "never")[:16],
-         (one.last_used_at or "never")[:16])
+        (
+            one.id,
+            one.name,
+            one.role,
+            one.state,
+            one.created_at[:16],
+            (one.expires_at or "never")[:16],
+            (one.last_used_at or "never")[:16],
+        )
         for one in tokens
-    ]  # fmt: skip
+    ]
     output().print(table(header, rows, numbers=()))
 
 

@@ -42,8 +42,10 @@ def new(
     """Create a webhook and print once the secret of its signatures."""
     body = {"url": url} | ({"events": event} if event else {})
     made = request(server, token, "POST", "/webhooks", json=body).json()
-    print(f"webhook {made['id']} to {made['url']}: {', '.join(made['events'])}; its secret is not shown again:",
-          file=sys.stderr)  # fmt: skip
+    print(
+        f"webhook {made['id']} to {made['url']}: {', '.join(made['events'])}; its secret is not shown again:",
+        file=sys.stderr,
+    )
     print(made["secret"])
 
 
@@ -66,10 +68,16 @@ def list_(
         print("there are no webhooks: servoident webhook new URL")
         return
     rows = [
-        (one["id"], one["url"], " ".join(one["events"]), "revoked" if one["revoked_at"] else "in use",
-         str(one["waiting"]), one["problem"])
+        (
+            one["id"],
+            one["url"],
+            " ".join(one["events"]),
+            "revoked" if one["revoked_at"] else "in use",
+            str(one["waiting"]),
+            one["problem"],
+        )
         for one in found
-    ]  # fmt: skip
+    ]
     output().print(table(("id", "address", "events", "state", "waiting", "problem"), rows, numbers=("waiting",)))
 
 
@@ -107,8 +115,14 @@ def deliveries(
         print("it was sent nothing yet")
         return
     rows = [
-        (one["created_at"][:19], one["event"], one["state"], str(one["tries"]), (one["next_at"] or "")[:19],
-         one["problem"])
+        (
+            one["created_at"][:19],
+            one["event"],
+            one["state"],
+            str(one["tries"]),
+            (one["next_at"] or "")[:19],
+            one["problem"],
+        )
         for one in found
-    ]  # fmt: skip
+    ]
     output().print(table(("time (UTC)", "event", "state", "tries", "next", "problem"), rows, numbers=("tries",)))

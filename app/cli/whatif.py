@@ -83,13 +83,29 @@ Out = Annotated[Path | None, typer.Option(metavar="DIR", help="Write the figures
 
 
 def whatif(
-    fit: FitPath, set_: Changed = None, fitted: Fitted = None, specimen: OfSpecimen = None, gain: Gains = None,
-    choose: Choose = None, at: At = None, over: Over = "temperature", sets: Sets = None,
-    spread: SpreadGiven = None, before: EarlierFit = None, before_gain: EarlierGain = None,
-    peak: AtPeak = None, tolerance: Near = None, axes: InAxes = None, up_to: UpTo = None, seed: Seed = 0,
-    rig: RigFile = None, regulator: OfRegulator = None, amplitude: Amplitudes = None, json: Json = None,
+    fit: FitPath,
+    set_: Changed = None,
+    fitted: Fitted = None,
+    specimen: OfSpecimen = None,
+    gain: Gains = None,
+    choose: Choose = None,
+    at: At = None,
+    over: Over = "temperature",
+    sets: Sets = None,
+    spread: SpreadGiven = None,
+    before: EarlierFit = None,
+    before_gain: EarlierGain = None,
+    peak: AtPeak = None,
+    tolerance: Near = None,
+    axes: InAxes = None,
+    up_to: UpTo = None,
+    seed: Seed = 0,
+    rig: RigFile = None,
+    regulator: OfRegulator = None,
+    amplitude: Amplitudes = None,
+    json: Json = None,
     out: Out = None,
-) -> None:  # fmt: skip
+) -> None:
     """Predict the response after a change of the machine.
 
     Area, stroke, volume, specimen or parameters can change. It gives response, peaks, root locus and stability. Exit
@@ -113,8 +129,18 @@ def whatif(
     gains = None if gain is None else _range(gain, "--gain", "LO:HI")
     target = _target(peak, tolerance, axes or [], up_to)
     with shown() as report:
-        found = what_if(result, change, gains, target, seed, report, rig_in(rig), _before(before, before_gain),
-                        _wanted(choose), spread_in(spread, result.model))  # fmt: skip
+        found = what_if(
+            result,
+            change,
+            gains,
+            target,
+            seed,
+            report,
+            rig_in(rig),
+            _before(before, before_gain),
+            _wanted(choose),
+            spread_in(spread, result.model),
+        )
     found = replace(found, notes=(*moved.text, *found.notes))
     if json is not None:
         write_json(found.to_json(), json)

@@ -26,9 +26,12 @@ from app.tables import (
 )
 
 MADE: dict[str, Any] = {
-    "diagnoses": DiagnosisRow, "hybrid simulations": HybridRow, "controllers": ControllerRow,
-    "profile likelihoods": ProfileRow, "test plans": PlanRow,
-}  # fmt: skip
+    "diagnoses": DiagnosisRow,
+    "hybrid simulations": HybridRow,
+    "controllers": ControllerRow,
+    "profile likelihoods": ProfileRow,
+    "test plans": PlanRow,
+}
 """What is made of a fit and goes with it; simulations go before the controllers that they name."""
 
 

@@ -48,8 +48,12 @@ def get_proposal(here: Here, diagnosis: str, seed: Seed = 0) -> ProposalView:
     return proposal.proposal(here, diagnosis, seed)
 
 
-@router.get("/{diagnosis}/next-experiment", dependencies=[READERS], response_class=Response,
-            responses={200: {"content": {"application/zip": {}}}})  # fmt: skip
+@router.get(
+    "/{diagnosis}/next-experiment",
+    dependencies=[READERS],
+    response_class=Response,
+    responses={200: {"content": {"application/zip": {}}}},
+)
 def get_next_experiment(here: Here, diagnosis: str, seed: Seed = 0) -> Response:
     """The same run as a .zip: its command as CSV and MAT, and experiment.json."""
     name = f'attachment; filename="next-experiment-{diagnosis[:12]}.zip"'

@@ -70,8 +70,13 @@ def _wanted(context: Context, request: DiagnosisRequest) -> tuple[str, dict[str,
     request = with_kept(context, request)
     if request.fit is not None:
         if request.matrix is not None or given - _BESIDE_A_FIT:
-            raise Failure(422, "bad-request", "a fit is given together with a matrix or settings", "fit",
-                          "give a fit, or a matrix and settings")  # fmt: skip
+            raise Failure(
+                422,
+                "bad-request",
+                "a fit is given together with a matrix or settings",
+                "fit",
+                "give a fit, or a matrix and settings",
+            )
         row = fits.find(context, request.fit)
         return row.matrix, _with_own(FitResult.from_json(row.result), request)
     if request.matrix is None:
@@ -155,6 +160,10 @@ def _stored(row: DiagnosisRow) -> Stored:
 
 def _view(stored: Stored) -> DiagnosisView:
     return DiagnosisView(
-        **stored.found.to_json(), id=stored.id, matrix=stored.matrix, serial=stored.serial, fit=stored.fit,
+        **stored.found.to_json(),
+        id=stored.id,
+        matrix=stored.matrix,
+        serial=stored.serial,
+        fit=stored.fit,
         created_at=stored.created_at,
-    )  # fmt: skip
+    )

@@ -56,9 +56,15 @@ class DiagnosisWork(InOnePiece):
                 report(MadeSoFar("kept", 1, 1, made={"diagnosis": so_far.to_json(), "fit": with_fit}))
 
         found = diagnose(
-            matrix, fit, most=chosen["max_effects"], custom=own, report=report, budget=budget, found=kept,
+            matrix,
+            fit,
+            most=chosen["max_effects"],
+            custom=own,
+            report=report,
+            budget=budget,
+            found=kept,
             propose=chosen.get("propose", False),
-        )  # fmt: skip
+        )
         return {"diagnosis": found.to_json(), "fit": with_fit}
 
 

@@ -111,10 +111,14 @@ def look(context: Context, draft: str, asked: AnswersRequest) -> DraftView:
     return DraftView(
         id=draft,
         files=files,
-        channels=files[0].channels, time=files[0].time, rate=files[0].rate,
-        missing=[MissingView(**asdict(one)) for one in lacks], doubts=list(of.doubts),
-        findings=findings, description=text,
-    )  # fmt: skip
+        channels=files[0].channels,
+        time=files[0].time,
+        rate=files[0].rate,
+        missing=[MissingView(**asdict(one)) for one in lacks],
+        doubts=list(of.doubts),
+        findings=findings,
+        description=text,
+    )
 
 
 def _findings(store: Storage, files: dict[str, str], text: str) -> list[FindingView]:
@@ -142,11 +146,16 @@ def _file(draft: Draft, file: RawFile) -> RawFileView:
         for c in file.columns
     ]
     return RawFileView(
-        name=file.name, samples=max(map(len, samples.values()), default=0), columns=columns,
-        dialect=DialectView(**asdict(file.head.dialect)), lines=list(file.head.lines), problem=file.problem,
+        name=file.name,
+        samples=max(map(len, samples.values()), default=0),
+        columns=columns,
+        dialect=DialectView(**asdict(file.head.dialect)),
+        lines=list(file.head.lines),
+        problem=file.problem,
         channels={name: AnswerView(**asdict(answer)) for name, answer in known.channels.items()},
-        time=AnswerView(**asdict(known.time)), rate=known.rate,
-    )  # fmt: skip
+        time=AnswerView(**asdict(known.time)),
+        rate=known.rate,
+    )
 
 
 def make(context: Context, draft: str, asked: AnswersRequest) -> tuple[MatrixView, bool]:
@@ -168,13 +177,18 @@ def answers(asked: AnswersRequest) -> Answers:
     common = {"gain": asked.gain, "hold": asked.hold}
     of_all = _of_file(asked)
     return Answers(
-        serial=asked.serial.strip(), channels=of_all.channels, time=of_all.time, rate=of_all.rate,
-        dialect=of_all.dialect, output=asked.output,
-        verify=tuple(asked.verify), validation=asked.validation,
+        serial=asked.serial.strip(),
+        channels=of_all.channels,
+        time=of_all.time,
+        rate=of_all.rate,
+        dialect=of_all.dialect,
+        output=asked.output,
+        verify=tuple(asked.verify),
+        validation=asked.validation,
         actuator={"piston_area": asked.area} if asked.area else {},
         common={name: text for name, text in common.items() if text},
         files={name: _of_file(of_one) for name, of_one in asked.files.items()},
-    )  # fmt: skip
+    )
 
 
 def _of_file(asked: AnswersRequest | FileAnswersRequest) -> FileAnswers:

@@ -20,9 +20,13 @@ _figures: LRU[bytes] = LRU(_MOST)
 
 
 def drawn(
-    context: Context, of: str, name: str, kind: str, options: dict[str, Any],
+    context: Context,
+    of: str,
+    name: str,
+    kind: str,
+    options: dict[str, Any],
     subject: Callable[[dict[str, Any]], object],
-) -> tuple[bytes, str]:  # fmt: skip
+) -> tuple[bytes, str]:
     """The figure `name` of a `subject` and its media type; the subject takes the options that choose it.
 
     `of` names the subject in the memory of the process. Raises Unusable, and Failure 404.

@@ -15,8 +15,10 @@ router = APIRouter(responses=COMMON)
 _MEDIA = ("application/json", "image/svg+xml", "image/png", "application/pdf")
 _IMAGES: dict[str, dict[str, str]] = {kind: {} for kind in _MEDIA}
 _DRAWN: dict[str, Any] = {
-    "dependencies": [READERS], "response_class": Response, "responses": {200: {"content": _IMAGES}},
-}  # fmt: skip
+    "dependencies": [READERS],
+    "response_class": Response,
+    "responses": {200: {"content": _IMAGES}},
+}
 """What every call that draws a figure declares."""
 
 

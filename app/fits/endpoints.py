@@ -57,8 +57,12 @@ def get_error_budget(here: Here, fit: str) -> Budget:
     return service.budget_of(here, fit)
 
 
-@router.get("/{fit}/identification.h", dependencies=[READERS], response_class=Response,
-            responses={200: {"content": {"text/x-c": {}}}})  # fmt: skip
+@router.get(
+    "/{fit}/identification.h",
+    dependencies=[READERS],
+    response_class=Response,
+    responses={200: {"content": {"text/x-c": {}}}},
+)
 def export_identification(here: Here, fit: str) -> Response:
     """The identification of a bench's set as C header: a control unit finds the sheet from its own records."""
     name = 'attachment; filename="identification.h"'
@@ -69,9 +73,15 @@ def export_identification(here: Here, fit: str) -> Response:
     "/{fit}/export.{kind}", dependencies=[READERS], response_class=Response, responses={200: {"content": _EXPORTS}}
 )
 def export_fit(
-    here: Here, fit: str, kind: str, mass: Mass = "", stiffness: Stiffness = "", damping: Damping = "",
-    gain: Gain = "", sample_rate: Rate = "",
-) -> Response:  # fmt: skip
+    here: Here,
+    fit: str,
+    kind: str,
+    mass: Mass = "",
+    stiffness: Stiffness = "",
+    damping: Damping = "",
+    gain: Gain = "",
+    sample_rate: Rate = "",
+) -> Response:
     """The machine of a fit as h (C header), mat (state space of its linear part) or fmu (FMI 2, co-simulation)."""
     specimen = {"mass": mass, "stiffness": stiffness, "damping": damping}
     content, media, name = export.file(here, fit, kind, specimen, gain, sample_rate)

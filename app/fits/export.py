@@ -29,8 +29,12 @@ def identification(context: Context, fit_id: str) -> bytes:
     model = preset_with(found.model, found.effects, found.settings.get("custom", ()))
     if model.kind != "bench" or found.effects:
         named = with_effects(found.model, found.effects)
-        raise Unusable("no-export", f"a control unit does not identify the model {named}", "fit",
-                       "give the fit of a bench's records, without effects")  # fmt: skip
+        raise Unusable(
+            "no-export",
+            f"a control unit does not identify the model {named}",
+            "fit",
+            "give the fit of a bench's records, without effects",
+        )
     _bench, analysis = study(context, fit_id).procedures
     return as_identification(analysis).encode()
 

@@ -70,10 +70,14 @@ def _set(matrix: MatrixRow, result: dict[str, Any], who: str) -> SetRow:
     """What a result says of its actuator, and where it comes from."""
     fit = FitResult.from_json(result)
     row = SetRow(
-        serial=matrix.serial, batch=matrix.batch, model=result["model"], **_errors(fit),
+        serial=matrix.serial,
+        batch=matrix.batch,
+        model=result["model"],
+        **_errors(fit),
         **{name: result[name] for name in ("effects", "data_hash", "seed", "version")},
-        equations=equations_of(result), who=who,
-    )  # fmt: skip
+        equations=equations_of(result),
+        who=who,
+    )
     row.values = [
         ValueRow(name=name, place=place, value=entry["value"], unit=entry["unit"], std_error=entry["std_error"])
         for place, (name, entry) in enumerate(_entries(result))

@@ -90,13 +90,31 @@ def settings_of(request: Chosen, matrix: MatrixView | None, candidates: bool = F
     """
     named = request.model or _model(request, matrix)
     if not named:
-        return Settings(model="", method=request.method, seed=request.seed, load=request.load, options=request.options,
-                        budget=request.budget, preprocessing=off_steps(request.preprocessing))  # fmt: skip
-    return chosen_settings(Choices(
-        model=named, effects=request.effects, custom=request.custom, method=request.method, seed=request.seed,
-        bounds=request.bounds, fixed=request.set, load=request.load, options=request.options, budget=request.budget,
-        preprocessing=request.preprocessing,
-    ), candidates=candidates)  # fmt: skip
+        return Settings(
+            model="",
+            method=request.method,
+            seed=request.seed,
+            load=request.load,
+            options=request.options,
+            budget=request.budget,
+            preprocessing=off_steps(request.preprocessing),
+        )
+    return chosen_settings(
+        Choices(
+            model=named,
+            effects=request.effects,
+            custom=request.custom,
+            method=request.method,
+            seed=request.seed,
+            bounds=request.bounds,
+            fixed=request.set,
+            load=request.load,
+            options=request.options,
+            budget=request.budget,
+            preprocessing=request.preprocessing,
+        ),
+        candidates=candidates,
+    )
 
 
 def _model(request: Chosen, matrix: MatrixView | None) -> str:
@@ -145,19 +163,31 @@ def get(context: Context, fit_id: str) -> FitView:
     """A fit by id as it is sent, with the history of its search; raises Failure 404."""
     row, result = _whole(context, fit_id)
     return FitView(
-        id=row.id, matrix=row.matrix, serial=row.serial, parent=row.parent, created_at=row.created_at,
-        approved_at=row.set.approved_at, current=row.set.current, result=FitResultView(**result),
+        id=row.id,
+        matrix=row.matrix,
+        serial=row.serial,
+        parent=row.parent,
+        created_at=row.created_at,
+        approved_at=row.set.approved_at,
+        current=row.set.current,
+        result=FitResultView(**result),
         objections=list(against(context, fit_id)),
-    )  # fmt: skip
+    )
 
 
 def stored(context: Context, fit_id: str) -> Stored:
     """A fit by id, with the history of its search; raises Failure 404."""
     row, result = _whole(context, fit_id)
     return Stored(
-        id=row.id, matrix=row.matrix, serial=row.serial, parent=row.parent, created_at=row.created_at,
-        approved_at=row.set.approved_at, current=row.set.current, found=FitResult.from_json(result),
-    )  # fmt: skip
+        id=row.id,
+        matrix=row.matrix,
+        serial=row.serial,
+        parent=row.parent,
+        created_at=row.created_at,
+        approved_at=row.set.approved_at,
+        current=row.set.current,
+        found=FitResult.from_json(result),
+    )
 
 
 def _whole(context: Context, fit_id: str) -> tuple[FitRow, dict[str, Any]]:
@@ -173,9 +203,15 @@ def comparison(context: Context, fit_id: str) -> ComparisonView:
     found = compare(matrices.load(context, row.matrix), FitResult.from_json(row.result))
     runs = [ComparedRun(**record) for record in found.records()]
     return ComparisonView(
-        fit=fit_id, error=found.error, offset=found.offset, error_with_mean=found.error_with_mean, rmse=found.rmse,
-        fit_percent=found.fit_percent, runs=runs, **survey(found).to_json(),
-    )  # fmt: skip
+        fit=fit_id,
+        error=found.error,
+        offset=found.offset,
+        error_with_mean=found.error_with_mean,
+        rmse=found.rmse,
+        fit_percent=found.fit_percent,
+        runs=runs,
+        **survey(found).to_json(),
+    )
 
 
 def beside(context: Context, fit_id: str, others: Sequence[str]) -> SideBySide:
@@ -189,19 +225,29 @@ def side_by_side(context: Context, fit_id: str, others: Sequence[str]) -> SideBy
     found = beside(context, fit_id, others)
     first = found.columns[0]
     fits = [
-        FitColumn(fit=name, name=one.name, serial=one.serial, model=one.fit.model, effects=list(one.fit.effects),
-                  error=dict(one.error),
-                  ratio={use: Change(first.error.get(use), error).ratio for use, error in one.error.items()},
-                  points={use: Change(first.error.get(use), error).points for use, error in one.error.items()},
-                  parameters={key: EstimateView(**entry) for key, entry in written(one.fit.parameters).items()})
+        FitColumn(
+            fit=name,
+            name=one.name,
+            serial=one.serial,
+            model=one.fit.model,
+            effects=list(one.fit.effects),
+            error=dict(one.error),
+            ratio={use: Change(first.error.get(use), error).ratio for use, error in one.error.items()},
+            points={use: Change(first.error.get(use), error).points for use, error in one.error.items()},
+            parameters={key: EstimateView(**entry) for key, entry in written(one.fit.parameters).items()},
+        )
         for name, one in zip((fit_id, *others), found.columns, strict=True)
-    ]  # fmt: skip
+    ]
     runs = [
-        RunBeside(id=run, use=use, error={one.name: one.runs.get(run) for one in found.columns},
-                  ratio={one.name: Change(first.runs.get(run), one.runs.get(run)).ratio for one in found.columns},
-                  points={one.name: Change(first.runs.get(run), one.runs.get(run)).points for one in found.columns})
+        RunBeside(
+            id=run,
+            use=use,
+            error={one.name: one.runs.get(run) for one in found.columns},
+            ratio={one.name: Change(first.runs.get(run), one.runs.get(run)).ratio for one in found.columns},
+            points={one.name: Change(first.runs.get(run), one.runs.get(run)).points for one in found.columns},
+        )
         for run, use in found.uses.items()
-    ]  # fmt: skip
+    ]
     return SideBySideView(fits=fits, runs=runs)
 
 

@@ -24,8 +24,12 @@ def acting(given: str | dict[str, Any], fit: FitResult, case: Case, wanted: Any 
     """As :func:`ident.hybrid.acting.controller_called`: the controller of that name, or of that JSON."""
     if isinstance(given, str):
         if given not in NAMED:
-            raise Unusable("unknown-controller", f"{shown(given)!r} is not a controller", "controller",
-                           did_you_mean(given, NAMED, f"give {', '.join(NAMED)}, or the id of one"))  # fmt: skip
+            raise Unusable(
+                "unknown-controller",
+                f"{shown(given)!r} is not a controller",
+                "controller",
+                did_you_mean(given, NAMED, f"give {', '.join(NAMED)}, or the id of one"),
+            )
         return NAMED[given](fit, case, wanted)
     rows = given.get("A")
     if isinstance(rows, list) and len(rows) > MOST_STATES:

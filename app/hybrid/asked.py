@@ -67,8 +67,12 @@ class AskedCase:
         """The case with its own motion."""
         if isinstance(self.case, str):
             if self.case not in BUILT_IN:
-                raise Unusable("no-such-case", f"no case {shown(self.case)!r}", "case",
-                               did_you_mean(self.case, BUILT_IN, f"give {NAMES}, or an object"))  # fmt: skip
+                raise Unusable(
+                    "no-such-case",
+                    f"no case {shown(self.case)!r}",
+                    "case",
+                    did_you_mean(self.case, BUILT_IN, f"give {NAMES}, or an object"),
+                )
             return BUILT_IN[self.case]()
         data, ground = self.case, self.case.get("ground")
         if isinstance(ground, dict):
@@ -101,8 +105,12 @@ def _text(ground: object) -> str | None:
     """The record in a motion; None where it has none. Raises Unusable."""
     text = ground.get("text") if isinstance(ground, dict) else None
     if text is not None and not (isinstance(text, str) and 0 < len(text) <= LONGEST):
-        raise Unusable("bad-ground", "not the text of a record", "ground text",
-                       f"give rows of numbers, at most {LONGEST} characters")  # fmt: skip
+        raise Unusable(
+            "bad-ground",
+            "not the text of a record",
+            "ground text",
+            f"give rows of numbers, at most {LONGEST} characters",
+        )
     return text
 
 

@@ -60,10 +60,18 @@ def _designed(context: Context, asked: dict[str, Any]) -> ControllerDesign:
     before = earlier_case(asked.get("before"), fit, case, lambda one: _fit(context, one))
     target = target_of(asked["target"]) if "target" in asked else QIAN2014_TARGET
     made = design_controller(
-        fit, case.physical, sample_rate=case.sample_rate, gain=case.gain, piston_area=case.piston_area,
-        delay=case.delay, target=target, structure=asked["structure"], seed=asked["seed"],
-        before=before, spread=spread_of(context, asked_spread, fit.model),
-    )  # fmt: skip
+        fit,
+        case.physical,
+        sample_rate=case.sample_rate,
+        gain=case.gain,
+        piston_area=case.piston_area,
+        delay=case.delay,
+        target=target,
+        structure=asked["structure"],
+        seed=asked["seed"],
+        before=before,
+        spread=spread_of(context, asked_spread, fit.model),
+    )
     made = on_case(made, fit, case, before)
     return replace(made, notes=(*moved.text, *made.notes))
 
@@ -123,6 +131,11 @@ def view(row: ControllerRow) -> ControllerView:
     """A controller as it is sent."""
     held = row.result
     return ControllerView(
-        id=row.id, fit=row.fit, case=row.asked["case_name"], created_at=row.created_at, name=held["name"],
-        sample_rate=held["sample_rate"], design=DesignView(**held["design"]),
-    )  # fmt: skip
+        id=row.id,
+        fit=row.fit,
+        case=row.asked["case_name"],
+        created_at=row.created_at,
+        name=held["name"],
+        sample_rate=held["sample_rate"],
+        design=DesignView(**held["design"]),
+    )

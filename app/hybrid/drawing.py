@@ -51,9 +51,11 @@ def of_simulation(
         main, without, worth = held["result"], held["without"], held.get("feedforward")
         results = {main["controller"]: main} | ({WITHOUT: without} if without else {})
         return Simulated(
-            unpacked(row.records, case, results), case, _map(held["map"]) if held["map"] else None,
+            unpacked(row.records, case, results),
+            case,
+            _map(held["map"]) if held["map"] else None,
             Followed.from_json(worth) if worth else None,
-        )  # fmt: skip
+        )
 
     return _drawn(context, ("hybrid", simulation, part or ""), subject, name, kind, style)
 
@@ -64,8 +66,9 @@ def command_of_table(context: Context, simulation: str) -> str:
     case = service.system_of_row(row)
     command = None if isinstance(case, CoupledCase) else command_of(row.records)
     if command is None:
-        raise Failure(404, "no-command", "the simulation is of no shaking table", "simulation",
-                      "simulate a case with a payload")  # fmt: skip
+        raise Failure(
+            404, "no-command", "the simulation is of no shaking table", "simulation", "simulate a case with a payload"
+        )
     return command_text(command, case.sample_rate)
 
 

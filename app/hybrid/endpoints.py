@@ -186,9 +186,15 @@ def track_run(here: Here, matrix: str, run: Run = None, noise: Noise = None) -> 
     "/matrices/{matrix}/track/figures/{name}.{kind}", dependencies=[READERS], response_class=Response, responses=_IMAGES
 )
 def draw_track(
-    here: Here, matrix: str, name: str, kind: str, run: Run = None, noise: Noise = None, theme: Theme = "light",
+    here: Here,
+    matrix: str,
+    name: str,
+    kind: str,
+    run: Run = None,
+    noise: Noise = None,
+    theme: Theme = "light",
     share: Share = 1.0,
-) -> Response:  # fmt: skip
+) -> Response:
     """The figure `tracking` of a run as json (Vega-Lite), svg, png or pdf."""
     content, media = drawing.of_track(here, matrix, run, noise, name, kind, (theme, share))
     return Response(content, media_type=media)

@@ -36,17 +36,26 @@ Given = str | dict[str, Any]
 
 
 def settings(
-    context: Context, request: HybridRequest, fit: FitResult, case: CoupledCase, asked: AskedCase,
+    context: Context,
+    request: HybridRequest,
+    fit: FitResult,
+    case: CoupledCase,
+    asked: AskedCase,
     effects: dict[str, float],
-) -> dict[str, Any]:  # fmt: skip
+) -> dict[str, Any]:
     """What the job of a request keeps. Raises Unusable where it cannot be run, and Failure 404."""
 
     def find(name: str) -> FitResult:
         return FitResult.from_json(fits.find(context, name).result)
 
     moved = [moved_to(context, find(part.fit) if part.fit else fit, request.at) for part in case.parts]
-    given = [kept_controller(context, dict(part.controller) if isinstance(part.controller, Mapping) else
-                             part.controller or request.controller)[0] for part in case.parts]  # fmt: skip
+    given = [
+        kept_controller(
+            context,
+            dict(part.controller) if isinstance(part.controller, Mapping) else part.controller or request.controller,
+        )[0]
+        for part in case.parts
+    ]
     own, isolator = [one.fit for one in moved], None
     if request.isolator is not None:
         isolator = {"of": written(specimen_of(request.isolator, "isolator")), "part": request.isolator_part}
@@ -55,18 +64,32 @@ def settings(
     spreads = [wide for one in own if (wide := spread_of(context, request.spread, one.model)) is not None]
     simulation.check(effects, mapped=request.map, spread=bool(spreads))
     parts = [
-        {"fit": kept_text(context, json.dumps(one.fit.to_json())), "notes": one.text,
-         "controller": name if isinstance(name, str) else kept_text(context, json.dumps(name)),
-         "inline": not isinstance(name, str)}
+        {
+            "fit": kept_text(context, json.dumps(one.fit.to_json())),
+            "notes": one.text,
+            "controller": name if isinstance(name, str) else kept_text(context, json.dumps(name)),
+            "inline": not isinstance(name, str),
+        }
         for one, name in zip(moved, given, strict=True)
-    ]  # fmt: skip
+    ]
     return {
-        "model": fit.model, "effects": list(effects), "case": case.name, "ground": case.ground.name,
+        "model": fit.model,
+        "effects": list(effects),
+        "case": case.name,
+        "ground": case.ground.name,
         "controller": ", ".join(dict.fromkeys(map(name_of, simulation.controllers))),
-        "asked": {**asdict(asked), "text": kept_text(context, asked.text), "effects": effects, "map": request.map,
-                  "controller_id": None, "parts": parts, "isolator": isolator, "spread": [written(s) for s in spreads],
-                  "before": _kept_before(context, request, before)},
-    }  # fmt: skip
+        "asked": {
+            **asdict(asked),
+            "text": kept_text(context, asked.text),
+            "effects": effects,
+            "map": request.map,
+            "controller_id": None,
+            "parts": parts,
+            "isolator": isolator,
+            "spread": [written(s) for s in spreads],
+            "before": _kept_before(context, request, before),
+        },
+    }
 
 
 def _kept_before(context: Context, request: HybridRequest, before: EarlierParts | None) -> dict[str, Any] | None:
@@ -96,8 +119,10 @@ class Simulation:
     def controllers(self) -> list[Controller]:
         """A controller for each part; a feedforward follows the reference of the case as it is. Raises Unusable."""
         ground = self.case.ground.samples(self.case.sample_rate)
-        wanted = [reference(of, ground) if name == FEEDFORWARD else None
-                  for name, of in zip(self.given, self.case.cases, strict=True)]  # fmt: skip
+        wanted = [
+            reference(of, ground) if name == FEEDFORWARD else None
+            for name, of in zip(self.given, self.case.cases, strict=True)
+        ]
         return [acting(*one) for one in zip(self.given, self.fits, self.known.cases, wanted, strict=True)]
 
     def check(self, effects: Mapping[str, float], *, mapped: bool, spread: bool) -> None:
@@ -109,15 +134,25 @@ class Simulation:
             linear(one, "spread")
 
     def run(
-        self, effects: Mapping[str, float], before: EarlierParts | None, spreads: Sequence[Spread], mapped: bool,
+        self,
+        effects: Mapping[str, float],
+        before: EarlierParts | None,
+        spreads: Sequence[Spread],
+        mapped: bool,
         report: Report,
-    ) -> tuple[CoupledResult, CoupledResult | None, DrawnSimulations | None]:  # fmt: skip
+    ) -> tuple[CoupledResult, CoupledResult | None, DrawnSimulations | None]:
         """What came of it, of the same without controllers, and over machines drawn from spreads."""
         without = any(one != "none" for one in self.given)
         main, alone = simulate_compared(
-            self.fits, self.case, self.controllers, effects, without=without, mapped=mapped, report=report,
+            self.fits,
+            self.case,
+            self.controllers,
+            effects,
+            without=without,
+            mapped=mapped,
+            report=report,
             before=before,
-        )  # fmt: skip
+        )
         if not spreads:
             return main, alone, None
         sampled = [linear(one, "spread") for one in self.controllers]

@@ -49,9 +49,15 @@ def add_simulation(session: Session, job: JobRow, serial: str, result: dict[str,
     """The hybrid simulation that a job made."""
     asked = job.settings["asked"]
     row = HybridRow(
-        id=job.id, fit=job.parent, matrix=job.matrix, serial=serial, controller=asked.get("controller_id"),
-        asked=asked, result=result, records=records,
-    )  # fmt: skip
+        id=job.id,
+        fit=job.parent,
+        matrix=job.matrix,
+        serial=serial,
+        controller=asked.get("controller_id"),
+        asked=asked,
+        result=result,
+        records=records,
+    )
     session.add(row)
     return row
 

@@ -58,18 +58,25 @@ def submit(context: Context, request: HybridRequest, job: str) -> JobView:
     if spread is not None and given != FEEDFORWARD:
         linear(chosen, "spread")
     settings = {
-        "model": fit.model, "effects": list(effects), "case": case.name, "controller": name_of(chosen),
+        "model": fit.model,
+        "effects": list(effects),
+        "case": case.name,
+        "controller": name_of(chosen),
         "ground": case.ground.name,
         "asked": {
-            **asdict(asked), "text": kept_text(context, asked.text), "effects": effects, "map": request.map,
+            **asdict(asked),
+            "text": kept_text(context, asked.text),
+            "effects": effects,
+            "map": request.map,
             "controller": given if isinstance(given, str) else kept_text(context, json.dumps(given)),
-            "inline": not isinstance(given, str), "controller_id": stored,
+            "inline": not isinstance(given, str),
+            "controller_id": stored,
             "spread": None if spread is None else written(spread),
             "moved": _moved(context, moved),
             "isolator": None if isolator is None else written(isolator),
             "before": _before(context, stated(request.before), fit, case),
         },
-    }  # fmt: skip
+    }
     return jobs.record(context, job, row.matrix, settings, request.fit, KIND)
 
 
@@ -98,8 +105,12 @@ def _check(fit: FitResult, case: Case, effects: dict[str, float], chosen: Contro
     if mapped:
         case.not_a_table("map")
     if mapped and samples > MOST_MAPPED:
-        raise Unusable("too-long", f"{samples} samples are too many for a map", "ground duration",
-                       f"give a motion of at most {MOST_MAPPED} samples")  # fmt: skip
+        raise Unusable(
+            "too-long",
+            f"{samples} samples are too many for a map",
+            "ground duration",
+            f"give a motion of at most {MOST_MAPPED} samples",
+        )
     if mapped and not isinstance(chosen, SampledController):
         raise Unusable("bad-option", "a map needs a linear controller", "map", "leave the map out, or give another")
 
@@ -132,10 +143,19 @@ def view(row: HybridRow) -> HybridView:
     names += ["acceleration"] if held["result"].get("acceleration") else []
     names += ["delay-map"] if held["result"].get("delay_map") else []
     return HybridView(
-        **held["result"], id=row.id, fit=row.fit, matrix=row.matrix, serial=row.serial, created_at=row.created_at,
-        controller_id=row.controller, without=held["without"], map=held["map"],
-        feedforward=held.get("feedforward"), spread=held.get("spread"), figures=names,
-    )  # fmt: skip
+        **held["result"],
+        id=row.id,
+        fit=row.fit,
+        matrix=row.matrix,
+        serial=row.serial,
+        created_at=row.created_at,
+        controller_id=row.controller,
+        without=held["without"],
+        map=held["map"],
+        feedforward=held.get("feedforward"),
+        spread=held.get("spread"),
+        figures=names,
+    )
 
 
 def system_of_row(row: HybridRow) -> System:

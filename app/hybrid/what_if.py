@@ -28,8 +28,16 @@ def what_if(context: Context, fit: str, request: WhatIfRequest) -> WhatIf:
         found = moved.fit
         change, target, before = change_of(found, request), peak_of(request), _before(context, request.before)
         spread = spread_of(context, request.spread, found.model)
-        told = library.what_if(found, change, gains_of(request), target, request.seed, before=before,
-                               choose=_wanted(request.choose), spread=spread)  # fmt: skip
+        told = library.what_if(
+            found,
+            change,
+            gains_of(request),
+            target,
+            request.seed,
+            before=before,
+            choose=_wanted(request.choose),
+            spread=spread,
+        )
         return replace(told, notes=(*moved.text, *told.notes))
 
     return _answers.get((str(context.storage.folder), fit, request.model_dump_json()), made)

@@ -80,10 +80,12 @@ class HybridWork(InOnePiece):
         """The same of several actuators."""
         main, alone, drawn = simulated(asked, fit, case, self._blob, self.task.report)
         return {
-            "result": main.to_json(), "without": alone.to_json() if alone else None, "map": None,
+            "result": main.to_json(),
+            "without": alone.to_json() if alone else None,
+            "map": None,
             "spread": drawn.to_json() if drawn else None,
             "records": base64.b85encode(packed_parts(main.parts, alone.parts if alone else None)).decode(),
-        }  # fmt: skip
+        }
 
     def _fit(self, name: str) -> FitResult:
         return FitResult.from_json(json.loads(self._blob(name)))

@@ -73,8 +73,13 @@ def _claimed(sessions: sessionmaker[Session], key: str, asked: str) -> tuple[Ans
             else:
                 return row, True
         if row.fingerprint != asked:
-            raise Failure(409, "key-in-use", "this Idempotency-Key belongs to another request", "Idempotency-Key",
-                          "draw a new key for a new request")  # fmt: skip
+            raise Failure(
+                409,
+                "key-in-use",
+                "this Idempotency-Key belongs to another request",
+                "Idempotency-Key",
+                "draw a new key for a new request",
+            )
         mine = row.status is None and _is_dead(row) and repository.take_over(session, row)
         session.commit()
         return repository.known(session, key) or row, mine

@@ -48,8 +48,12 @@ def conclude_job(here: Here, job: str) -> JobView:
     return service.conclude(here, job)
 
 
-@router.get("/{job}/events", dependencies=[READERS], response_class=StreamingResponse,
-            responses={200: {"content": {"text/event-stream": {}}}})  # fmt: skip
+@router.get(
+    "/{job}/events",
+    dependencies=[READERS],
+    response_class=StreamingResponse,
+    responses={200: {"content": {"text/event-stream": {}}}},
+)
 async def follow_job(
     here: Here, job: str, last: Annotated[str | None, Header(alias="Last-Event-ID")] = None
 ) -> StreamingResponse:

@@ -19,9 +19,14 @@ JobOf = tuple[JobRow, str]
 
 
 def add(
-    session: Session, job: str, matrix: str | None, settings: dict[str, Any], parent: str | None, kind: str = "fit",
+    session: Session,
+    job: str,
+    matrix: str | None,
+    settings: dict[str, Any],
+    parent: str | None,
+    kind: str = "fit",
     who: str = "",
-) -> JobRow:  # fmt: skip
+) -> JobRow:
     """A queued job."""
     row = JobRow(id=job, kind=kind, matrix=matrix, settings=settings, parent=parent, progress={}, who=who)
     session.add(row)
@@ -61,9 +66,15 @@ def with_serial(session: Session, job_id: str) -> JobOf | None:
 
 
 def page(
-    session: Session, after: tuple[str, ...] | None, limit: int, *,
-    state: str | None = None, serial: str | None = None, matrix: str | None = None, of_fits: bool = False,
-) -> Sequence[JobOf]:  # fmt: skip
+    session: Session,
+    after: tuple[str, ...] | None,
+    limit: int,
+    *,
+    state: str | None = None,
+    serial: str | None = None,
+    matrix: str | None = None,
+    of_fits: bool = False,
+) -> Sequence[JobOf]:
     """Jobs, newest first: all, or those in a state, of an actuator, of a matrix, and only those that make a fit."""
     query = of_actuators().order_by(JobRow.created_at.desc(), JobRow.id.desc()).limit(limit)
     for column, wanted in ((JobRow.state, state), (MatrixRow.serial, serial), (JobRow.matrix, matrix)):

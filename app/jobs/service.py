@@ -27,9 +27,14 @@ _log = logging.getLogger("servoident.jobs")
 
 
 def record(
-    context: Context, job: str, matrix: str | None, settings: dict[str, Any], parent: str | None, kind: str,
+    context: Context,
+    job: str,
+    matrix: str | None,
+    settings: dict[str, Any],
+    parent: str | None,
+    kind: str,
     who: str = "",
-) -> JobView:  # fmt: skip
+) -> JobView:
     """Record and queue a job; one that is recorded under this id already is taken for it. Some need no matrix.
 
     Raises Removed where the raw runs that it is to work on are gone.
@@ -88,9 +93,15 @@ def state(context: Context, job_id: str) -> tuple[str, int]:
 
 
 def listed(
-    context: Context, after: str | None, limit: int, *,
-    state: str | None = None, serial: str | None = None, matrix: str | None = None, of_fits: bool = False,
-) -> JobPage:  # fmt: skip
+    context: Context,
+    after: str | None,
+    limit: int,
+    *,
+    state: str | None = None,
+    serial: str | None = None,
+    matrix: str | None = None,
+    of_fits: bool = False,
+) -> JobPage:
     """A page of jobs: all, or those in a state, of an actuator, of a matrix, and only those that make a fit."""
     wanted = {"state": state, "serial": serial, "matrix": matrix}
     with context.sessions() as session:
@@ -125,9 +136,14 @@ def end(session: Session, row: JobRow, state: str, problem: dict[str, Any] | Non
     if not repository.end(session, row, state, problem):
         return
     job = EndedJob(
-        id=row.id, kind=row.kind, state=state, serial=repository.serial_of(session, row.id), matrix=row.matrix or "",
-        parent=row.parent, problem=None if problem is None else JobProblem(**problem),
-    )  # fmt: skip
+        id=row.id,
+        kind=row.kind,
+        state=state,
+        serial=repository.serial_of(session, row.id),
+        matrix=row.matrix or "",
+        parent=row.parent,
+        problem=None if problem is None else JobProblem(**problem),
+    )
     announce(session, JobEnded, job=job)
 
 
@@ -135,8 +151,13 @@ def conclude(context: Context, job_id: str) -> JobView:
     """Ask a diagnosis to end with what it has found: at its next report. An ended job stays as it is."""
     job = get(context, job_id)
     if job.kind != "diagnosis":
-        raise Failure(409, "not-a-diagnosis", f"a {job.kind} that is stopped has found nothing yet", "job",
-                      "let it end, or cancel it")  # fmt: skip
+        raise Failure(
+            409,
+            "not-a-diagnosis",
+            f"a {job.kind} that is stopped has found nothing yet",
+            "job",
+            "let it end, or cancel it",
+        )
     with context.sessions.begin() as session:
         repository.change(session, job_id, conclude=True)
     return get(context, job_id)
@@ -149,14 +170,22 @@ def view(row: JobRow, serial: str, time_left: TimeLeft | None = None) -> JobView
     made = row.state == "succeeded" or (diagnosis and bool(row.progress.get("verdict")))
     makes_fit = row.kind == "fit" or (diagnosis and row.parent is None)
     return JobView(
-        id=row.id, kind=row.kind, state=row.state, matrix=row.matrix or "", serial=serial,
+        id=row.id,
+        kind=row.kind,
+        state=row.state,
+        matrix=row.matrix or "",
+        serial=serial,
         settings=JobSettings(**row.settings),
-        progress=ProgressView(**row.progress), parent=row.parent,
+        progress=ProgressView(**row.progress),
+        parent=row.parent,
         fit=row.id if made and makes_fit else None,
         diagnosis=row.id if made and diagnosis else None,
         hybrid_simulation=row.id if made and row.kind == "hybrid simulation" else None,
         plan=row.id if made and row.kind == "plan" else None,
         problem=None if row.problem is None else JobProblem(**row.problem),
-        created_at=row.created_at, began_at=row.began_at, ended_at=row.ended_at, elapsed=elapsed(row),
+        created_at=row.created_at,
+        began_at=row.began_at,
+        ended_at=row.ended_at,
+        elapsed=elapsed(row),
         time_left=None if time_left is None else TimeLeftView(**asdict(time_left)),
-    )  # fmt: skip
+    )

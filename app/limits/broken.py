@@ -45,6 +45,12 @@ def _broken(row: SetRow, limits: Mapping[str, LimitRow]) -> list[Judged]:
 def _tell(session: Session, row: SetRow, broken: list[Judged]) -> None:
     if broken:
         announce(
-            session, LimitBroken, serial=row.serial, fit=row.fit, model=row.model, batch=row.batch,
-            broken=[one.name for one in broken], reasons=[one.reason for one in broken],
-        )  # fmt: skip
+            session,
+            LimitBroken,
+            serial=row.serial,
+            fit=row.fit,
+            model=row.model,
+            batch=row.batch,
+            broken=[one.name for one in broken],
+            reasons=[one.reason for one in broken],
+        )

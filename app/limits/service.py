@@ -90,6 +90,12 @@ def _view(row: LimitRow) -> LimitView:
         for value in (row.lower, row.upper)
     )
     return LimitView(
-        lower=lower, upper=upper, unit=row.unit, si_lower=row.lower, si_upper=row.upper, si_unit=unit, who=row.who,
+        lower=lower,
+        upper=upper,
+        unit=row.unit,
+        si_lower=row.lower,
+        si_upper=row.upper,
+        si_unit=unit,
+        who=row.who,
         changed_at=row.changed_at,
-    )  # fmt: skip
+    )

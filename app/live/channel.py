@@ -142,6 +142,14 @@ def _bin(part: Array, t: float) -> Bin:
     low, high = (float(seen.min()), float(seen.max())) if len(seen) else (math.nan, math.nan)
     last = rows[-1]
     return Bin(
-        t, float(r.min()), float(r.max()), low, high, float(last[_TAU]), math.sqrt(max(last[_VAR_TAU], 0.0)),
-        float(last[_GAIN]), math.sqrt(max(last[_VAR_GAIN], 0.0)), float(told.mean()) if len(told) else math.nan,
-    )  # fmt: skip
+        t,
+        float(r.min()),
+        float(r.max()),
+        low,
+        high,
+        float(last[_TAU]),
+        math.sqrt(max(last[_VAR_TAU], 0.0)),
+        float(last[_GAIN]),
+        math.sqrt(max(last[_VAR_GAIN], 0.0)),
+        float(told.mean()) if len(told) else math.nan,
+    )

@@ -35,8 +35,12 @@ def get_stream(name: str) -> LiveView:
     return service.get(name)
 
 
-@router.get("/{name}/events", dependencies=[READERS], response_class=StreamingResponse,
-            responses={200: {"content": {"text/event-stream": {}}, "model": LiveEvent}})  # fmt: skip
+@router.get(
+    "/{name}/events",
+    dependencies=[READERS],
+    response_class=StreamingResponse,
+    responses={200: {"content": {"text/event-stream": {}}, "model": LiveEvent}},
+)
 async def watch_stream(
     name: str, last: Annotated[str | None, Header(alias="Last-Event-ID")] = None
 ) -> StreamingResponse:
@@ -62,8 +66,13 @@ def record_stream(name: str, request: RecordingRequest) -> LiveView:
     return service.record(name, request.on)
 
 
-@router.post("/{name}/recording", dependencies=[LAB], status_code=201, response_model=MatrixView,
-             responses={200: {"model": MatrixView, "description": "This recording is known already"}})  # fmt: skip
+@router.post(
+    "/{name}/recording",
+    dependencies=[LAB],
+    status_code=201,
+    response_model=MatrixView,
+    responses={200: {"model": MatrixView, "description": "This recording is known already"}},
+)
 def keep_recording(here: Here, name: str, request: RunRequest, key: Key = None) -> Response:
     """Keep what was recorded as a run of a new data set, bit for bit."""
 

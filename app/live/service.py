@@ -78,11 +78,18 @@ def keep(context: Context, name: str, asked: RunRequest) -> tuple[MatrixView, bo
     channel = find(name)
     recording = channel.recording
     if recording is None or not recording.samples:
-        raise Failure(409, "no-recording", f"nothing of the stream {name!r} was recorded", "recording",
-                      "begin a recording while the stream is under way")  # fmt: skip
+        raise Failure(
+            409,
+            "no-recording",
+            f"nothing of the stream {name!r} was recorded",
+            "recording",
+            "begin a recording while the stream is under way",
+        )
     matrices.check_room(context)
-    files = {"matrix.yaml": io.BytesIO(_description(channel, recording, asked).encode()),
-             f"runs/{asked.run}.npz": io.BytesIO(_samples(recording))}  # fmt: skip
+    files = {
+        "matrix.yaml": io.BytesIO(_description(channel, recording, asked).encode()),
+        f"runs/{asked.run}.npz": io.BytesIO(_samples(recording)),
+    }
     return matrices.upload(context, files)
 
 
@@ -97,13 +104,18 @@ def view(channel: Channel) -> LiveView:
     """A stream as it is sent."""
     kept, (alarms, on, marks) = channel.recording, channel.said()
     return LiveView(
-        name=channel.name, sample_rate=channel.sample_rate, hold=channel.hold, seconds=channel.seconds,
-        ended=channel.ended, on=on, alarms=[StreamAlarm(**written(one)) for one in alarms],
+        name=channel.name,
+        sample_rate=channel.sample_rate,
+        hold=channel.hold,
+        seconds=channel.seconds,
+        ended=channel.ended,
+        on=on,
+        alarms=[StreamAlarm(**written(one)) for one in alarms],
         marks=[RemarkView(at=one.at, text=one.text) for one in marks],
-        recording=None if kept is None else RecordingView(
-            on=kept.on and not channel.ended, begins=kept.begins, samples=kept.samples, full=kept.full
-        ),
-    )  # fmt: skip
+        recording=None
+        if kept is None
+        else RecordingView(on=kept.on and not channel.ended, begins=kept.begins, samples=kept.samples, full=kept.full),
+    )
 
 
 def _known(value: float) -> float | None:
@@ -123,10 +135,13 @@ def _description(channel: Channel, recording: Recording, asked: RunRequest) -> s
     within = [one for one in marks if recording.begins <= one.at <= end]
     notes = "; ".join(f"{one.at - recording.begins:.3f} s {one.text}" for one in within)[:_NOTES]
     run = {
-        "id": asked.run, "file": f"runs/{asked.run}.npz", "sample_rate": f"{channel.sample_rate!r} Hz",
-        "hold": channel.hold, "kind": "other",
+        "id": asked.run,
+        "file": f"runs/{asked.run}.npz",
+        "sample_rate": f"{channel.sample_rate!r} Hz",
+        "hold": channel.hold,
+        "kind": "other",
         "channels": {name: {"column": name, "unit": "m"} for name in ("command", "displacement")},
-    }  # fmt: skip
+    }
     stated = {"serial": asked.serial, "batch": asked.batch, "notes": notes}
     actuator = {name: text for name, text in stated.items() if text}
     plain: str = yaml.safe_dump({"actuator": actuator, "runs": [run]}, allow_unicode=True)

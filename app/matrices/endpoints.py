@@ -18,8 +18,14 @@ from schemas.matrix import MatrixPage, MatrixView, Revision
 router = APIRouter(prefix="/matrices", tags=["matrices"], responses=COMMON)
 
 
-@router.post("", dependencies=[LAB], status_code=201, response_model=MatrixView, openapi_extra=FORM,
-             responses={200: {"model": MatrixView, "description": "These bytes are known already"}})  # fmt: skip
+@router.post(
+    "",
+    dependencies=[LAB],
+    status_code=201,
+    response_model=MatrixView,
+    openapi_extra=FORM,
+    responses={200: {"model": MatrixView, "description": "These bytes are known already"}},
+)
 async def upload_matrix(request: Request, here: Here, key: Key = None) -> Response:
     """Upload one .zip, or matrix.yaml and its files. The same bytes again: 200 and the same id."""
     service.check_room(here)
@@ -38,9 +44,11 @@ async def upload_matrix(request: Request, here: Here, key: Key = None) -> Respon
 
 @router.get("", dependencies=[READERS])
 def list_matrices(
-    here: Here, serial: str | None = None, cursor: str | None = None,
+    here: Here,
+    serial: str | None = None,
+    cursor: str | None = None,
     limit: Annotated[int, Query(ge=1, le=200)] = 50,
-) -> MatrixPage:  # fmt: skip
+) -> MatrixPage:
     """Matrices, newest first."""
     return service.listed(here, serial, cursor, limit)
 
@@ -57,8 +65,13 @@ def get_description(here: Here, matrix: str) -> dict[str, Any]:
     return service.description(here, matrix)
 
 
-@router.post("/{matrix}/revisions", dependencies=[LAB], status_code=201, response_model=MatrixView,
-             responses={200: {"model": MatrixView, "description": "This revision is known already"}})  # fmt: skip
+@router.post(
+    "/{matrix}/revisions",
+    dependencies=[LAB],
+    status_code=201,
+    response_model=MatrixView,
+    responses={200: {"model": MatrixView, "description": "This revision is known already"}},
+)
 def revise_matrix(here: Here, matrix: str, revision: Revision, key: Key = None) -> Response:
     """Correct labels, units or signs: a new data set with the same raw files."""
 

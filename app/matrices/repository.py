@@ -49,9 +49,14 @@ def add(
     session.add(row)
     session.flush()
     added = MatrixRow(
-        id=matrix, serial=actuator.serial, parent=parent, source=source, summary=summary, batch=actuator.batch,
+        id=matrix,
+        serial=actuator.serial,
+        parent=parent,
+        source=source,
+        summary=summary,
+        batch=actuator.batch,
         piston_area=actuator.piston_area,
-    )  # fmt: skip
+    )
     session.add(added)
     session.flush()
     return added

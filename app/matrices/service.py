@@ -222,22 +222,40 @@ def summary(matrix: Matrix) -> dict[str, Any]:
 def _run(run: Run) -> dict[str, Any]:
     specimen = run.specimen
     return {
-        "id": run.id, "use": run.use, "kind": run.kind, "hold": run.hold, "output": run.output,
-        "samples": run.length, "sample_rate": run.sample_rate, "duration": run.duration, "gain": run.gain,
-        "amplitude": run.amplitude, "mass": specimen.mass if specimen else None,
-        "stiffness": specimen.stiffness if specimen else None, "damping": specimen.damping if specimen else None,
+        "id": run.id,
+        "use": run.use,
+        "kind": run.kind,
+        "hold": run.hold,
+        "output": run.output,
+        "samples": run.length,
+        "sample_rate": run.sample_rate,
+        "duration": run.duration,
+        "gain": run.gain,
+        "amplitude": run.amplitude,
+        "mass": specimen.mass if specimen else None,
+        "stiffness": specimen.stiffness if specimen else None,
+        "damping": specimen.damping if specimen else None,
         "channels": list(run.channels),
-        "units": dict(run.units), "time_unit": run.time_unit,
-    }  # fmt: skip
+        "units": dict(run.units),
+        "time_unit": run.time_unit,
+    }
 
 
 def view(row: MatrixRow) -> MatrixView:
     """A matrix as it is sent."""
     shown = row.summary
     return MatrixView(
-        id=row.id, serial=row.serial, parent=row.parent, created_at=row.created_at, data_hash=shown["data_hash"],
-        batch=row.batch, piston_area=row.piston_area,
-        runs=[RunView(**run) for run in shown["runs"]], findings=[FindingView(**f) for f in shown["findings"]],
-        notices=shown["notices"], machine=shown.get("machine", ""), removed_at=row.removed_at,
+        id=row.id,
+        serial=row.serial,
+        parent=row.parent,
+        created_at=row.created_at,
+        data_hash=shown["data_hash"],
+        batch=row.batch,
+        piston_area=row.piston_area,
+        runs=[RunView(**run) for run in shown["runs"]],
+        findings=[FindingView(**f) for f in shown["findings"]],
+        notices=shown["notices"],
+        machine=shown.get("machine", ""),
+        removed_at=row.removed_at,
         states_oil=shown.get("states_oil", row.piston_area is not None),
-    )  # fmt: skip
+    )

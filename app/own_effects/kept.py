@@ -93,10 +93,18 @@ def proposed(found: Diagnosis, rank: int, name: str, meaning: str = "", diagnosi
     said = meaning or meaning_of(term.meaning, term.place)
     made = written_down({**term.effect, "source": SEARCHED}, name, said, found.model)
     return Kept(
-        name=name, definition=made.definition, model=found.model, meaning=made.meaning, origin=SEARCHED,
-        diagnosis=diagnosis, data_hash=found.data_hash, nats=term.nats, bar=term.bar, alike=term.alike,
+        name=name,
+        definition=made.definition,
+        model=found.model,
+        meaning=made.meaning,
+        origin=SEARCHED,
+        diagnosis=diagnosis,
+        data_hash=found.data_hash,
+        nats=term.nats,
+        bar=term.bar,
+        alike=term.alike,
         version=found.version,
-    )  # fmt: skip
+    )
 
 
 def meaning_of(said: str, places: Iterable[str]) -> str:
@@ -138,6 +146,11 @@ def view(kept: Kept) -> OwnEffectView:
 
 def _unread(kept: Kept) -> EffectView:
     return EffectView(
-        name=kept.name, place=str(kept.definition.get("place", "")), meaning=kept.meaning, looks="", source=kept.origin,
-        parameters=[], equations=[],
-    )  # fmt: skip
+        name=kept.name,
+        place=str(kept.definition.get("place", "")),
+        meaning=kept.meaning,
+        looks="",
+        source=kept.origin,
+        parameters=[],
+        equations=[],
+    )

@@ -54,8 +54,13 @@ def keep(context: Context, request: OwnEffectRequest, effect_id: str) -> tuple[O
         pass
     there = _find(context, wanted.name)
     if there.definition != wanted.definition:
-        raise Failure(409, "name-in-use", f"another effect is saved as {wanted.name}", "name",
-                      "give it another name, or DELETE the one there first")  # fmt: skip
+        raise Failure(
+            409,
+            "name-in-use",
+            f"another effect is saved as {wanted.name}",
+            "name",
+            "give it another name, or DELETE the one there first",
+        )
     with context.sessions() as session:
         return view(there), repository.known(session, effect_id) is not None
 
@@ -63,8 +68,13 @@ def keep(context: Context, request: OwnEffectRequest, effect_id: str) -> tuple[O
 def _wanted(context: Context, request: OwnEffectRequest) -> Kept:
     """What is to be kept: a definition, or a term of a diagnosis."""
     if (request.definition is None) == (request.diagnosis is None):
-        raise Failure(422, "bad-request", "neither a definition nor a diagnosis is given, or both", "definition",
-                      "give one of them")  # fmt: skip
+        raise Failure(
+            422,
+            "bad-request",
+            "neither a definition nor a diagnosis is given, or both",
+            "definition",
+            "give one of them",
+        )
     if request.definition is not None:
         return written_down(request.definition, request.name, request.meaning, request.model or "")
     assert request.diagnosis is not None

@@ -26,9 +26,11 @@ def signing_in(request: Request) -> Response:
 
 @pages.post("/sign-in", dependencies=[ANYONE])
 def signed_in(
-    request: Request, here: Here, token: Annotated[str, Form(max_length=500)],
+    request: Request,
+    here: Here,
+    token: Annotated[str, Form(max_length=500)],
     after: Annotated[str, Form(max_length=2000)] = "/",
-) -> Response:  # fmt: skip
+) -> Response:
     """Begin a session, and go on to the page that was asked for."""
     secure, address = request.url.scheme == "https", request.client.host if request.client else ""
     try:
@@ -66,9 +68,12 @@ def tokens(request: Request, here: Here, cursor: str | None = None) -> Response:
 
 @pages.get("/audit", dependencies=[ADMIN])
 def audit(
-    request: Request, here: Here, by: str | None = None, object: str | None = None,  # noqa: A002
+    request: Request,
+    here: Here,
+    by: str | None = None,
+    object: str | None = None,  # noqa: A002
     cursor: str | None = None,
-) -> Response:  # fmt: skip
+) -> Response:
     """Every change, newest first."""
     found = service.audit(here.sessions, cursor, 100, by=by or None, on=object or None)
     return page(request, "audit.html", found=found, by=by or "", on=object or "")

@@ -59,9 +59,12 @@ class FitRow:
 
 
 def actuator_row(
-    actuator: ActuatorView, newest: ParameterSetView | None, job: JobView | None,
-    approved: Sequence[ParameterSetView] = (), drifting: str = ERROR,
-) -> ActuatorRow:  # fmt: skip
+    actuator: ActuatorView,
+    newest: ParameterSetView | None,
+    job: JobView | None,
+    approved: Sequence[ParameterSetView] = (),
+    drifting: str = ERROR,
+) -> ActuatorRow:
     """The row of an actuator; `job` is one that waits or runs for it, `drifting` what is followed over `approved`."""
     shown = actuator.current or newest
     state, text = _state(actuator, newest, job)

@@ -86,11 +86,15 @@ def drawing(fit: FitResult) -> Drawing:
     on, off = tuple(_on(fit, own)), tuple(_off(fit))
     places = tuple(
         Place(
-            name=name, x=10 + _STEP * number, signal=signals[number], core=_core(model.core.equations, name),
-            on=tuple(one for one in on if one.place == name), off=tuple(one for one in off if one.place == name),
+            name=name,
+            x=10 + _STEP * number,
+            signal=signals[number],
+            core=_core(model.core.equations, name),
+            on=tuple(one for one in on if one.place == name),
+            off=tuple(one for one in off if one.place == name),
         )
         for number, name in enumerate(names)
-    )  # fmt: skip
+    )
     box = 30 + _LINE * max(2, *(len(place.lines) for place in places))
     back = tuple(_back(places, model.chain.equations, _TOP + box))
     return Drawing(places, back, box, _STEP * len(places) + 10, _TOP + box + 22 * len(back) + 18)

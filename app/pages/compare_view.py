@@ -102,9 +102,13 @@ def compare_view(first: Stored, second: Stored, matrix: MatrixView) -> CompareVi
     a, b = first.found, second.found
     figures = overlaid(matrix.runs, (a, b)) if first.serial == second.serial else ()
     return CompareView(
-        first=_side(first, a), second=_side(second, b), errors=tuple(_errors(a, b)),
-        parameters=tuple(_parameters(a, b)), runs=tuple(_runs(a, b)), figures=figures,
-    )  # fmt: skip
+        first=_side(first, a),
+        second=_side(second, b),
+        errors=tuple(_errors(a, b)),
+        parameters=tuple(_parameters(a, b)),
+        runs=tuple(_runs(a, b)),
+        figures=figures,
+    )
 
 
 def _side(stored: Stored, fit: FitResult) -> Side:
@@ -149,9 +153,13 @@ def _parameters(a: FitResult, b: FitResult) -> Iterator[Compared]:
             continue
         absent = "off" if "." in name else "–"
         yield Compared(
-            symbol(name, known.symbol), of_parameter(name, known.meaning), _value(one, absent),
-            _value(other, absent), _change(one.value, other.value) if one and other else "–", _sure(one, other),
-        )  # fmt: skip
+            symbol(name, known.symbol),
+            of_parameter(name, known.meaning),
+            _value(one, absent),
+            _value(other, absent),
+            _change(one.value, other.value) if one and other else "–",
+            _sure(one, other),
+        )
 
 
 def _value(entry: Estimate | None, without: str) -> str:
@@ -175,6 +183,12 @@ def _runs(a: FitResult, b: FitResult) -> Iterator[ComparedRun]:
         known = one is not None and other is not None and not one.unstable and not other.unstable
         difference = after - before if known and before is not None and after is not None else None
         yield ComparedRun(
-            name, use, before, after, difference, one.words if one else None, other.words if other else None,
+            name,
+            use,
+            before,
+            after,
+            difference,
+            one.words if one else None,
+            other.words if other else None,
             error_change(before, after) if known else "–",
-        )  # fmt: skip
+        )

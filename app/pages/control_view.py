@@ -82,9 +82,17 @@ def _designed(one: ControllerView) -> Designed:
     figure = f"/api/v1/controllers/{one.id}/figures/closed-loop"
     rows = tuple(_rows(one.design.model_dump()))
     return Designed(
-        one.id, case_called(one.case), one.design.structure, one.design.target.name, one.created_at, rows,
-        tuple(one.design.notes), figure, one.design.state == UNSTABLE, said_of(one.design.stability),
-    )  # fmt: skip
+        one.id,
+        case_called(one.case),
+        one.design.structure,
+        one.design.target.name,
+        one.created_at,
+        rows,
+        tuple(one.design.notes),
+        figure,
+        one.design.state == UNSTABLE,
+        said_of(one.design.stability),
+    )
 
 
 def said_of(judgement: Judgement | None) -> tuple[str, ...]:

@@ -21,13 +21,18 @@ from schemas.draft import AnswersRequest, DialectRequest, DialectView, DraftView
 PICTURED = 4
 """Files of a layout whose columns are drawn."""
 UNITS = (
-    ("length", ("mm", "cm", "m", "um", "in", "mil")), ("force", ("N", "kN", "kgf", "tf", "lbf", "kip")),
+    ("length", ("mm", "cm", "m", "um", "in", "mil")),
+    ("force", ("N", "kN", "kgf", "tf", "lbf", "kip")),
     ("pressure", ("bar", "MPa", "kPa", "Pa", "psi")),
     ("velocity", ("mm/s", "cm/s", "m/s", "in/s", "rpm", "rad/s", "deg/s")),
     ("acceleration", ("m/s^2", "g", "mm/s^2")),
-    ("angle", ("deg", "rad", "rev")), ("torque", ("N*m", "kN*m")), ("electrical", ("V", "mV", "A", "mA")),
-    ("time", ("s", "ms", "us", "min")), ("temperature", ("degC", "K", "degF")), ("other", ("%", "counts", "1")),
-)  # fmt: skip
+    ("angle", ("deg", "rad", "rev")),
+    ("torque", ("N*m", "kN*m")),
+    ("electrical", ("V", "mV", "A", "mA")),
+    ("time", ("s", "ms", "us", "min")),
+    ("temperature", ("degC", "K", "degF")),
+    ("other", ("%", "counts", "1")),
+)
 """Units of the menu, by what they measure."""
 _DIALECTS = TypeAdapter(dict[str, DialectRequest])
 
@@ -82,15 +87,23 @@ def draft_page(context: Context, draft: str, apart: bool = False, dialects: str 
     found = service.look(context, draft, _asked(stated))
     layouts = tuple(_layouts(found, apart, stated))
     return {
-        "draft": found, "layouts": layouts, "pictured": PICTURED, "units": UNITS, "apart": apart, "dialects": dialects,
+        "draft": found,
+        "layouts": layouts,
+        "pictured": PICTURED,
+        "units": UNITS,
+        "apart": apart,
+        "dialects": dialects,
         "shared": len(layouts) < len(found.files),
         "known_units": {name for _, names in UNITS for name in names},
         "roles": (("time", "time"), *((name, name.replace("_", " ")) for name in CHANNELS)),
         "outputs": tuple((name, name.replace("_", " ")) for name in OUTPUTS),
-        "menus": (("delimiter", "Delimiter", tuple(DELIMITERS)), ("decimal", "Decimal sign", tuple(DECIMALS)),
-                  ("encoding", "Encoding", tuple(ENCODINGS))),
+        "menus": (
+            ("delimiter", "Delimiter", tuple(DELIMITERS)),
+            ("decimal", "Decimal sign", tuple(DECIMALS)),
+            ("encoding", "Encoding", tuple(ENCODINGS)),
+        ),
         "lines_above": (("header_rows", "Lines above the samples"), ("skip_rows", "Lines above the column names")),
-    }  # fmt: skip
+    }
 
 
 def _stated(dialects: str) -> dict[str, DialectRequest]:
@@ -117,10 +130,13 @@ def _layouts(draft: DraftView, apart: bool, stated: dict[str, DialectRequest]) -
         files = [draft.files[place] for place in places]
         more = f" and {len(files) - 1} more" if len(files) > 1 else ""
         yield Layout(
-            tuple(file.name for file in files), f"{files[0].name}{more}" if len(found) > 1 else "", files[0].rate,
-            tuple(_columns(files[0])), tuple((place, draft.files[place]) for place in places[:PICTURED]),
+            tuple(file.name for file in files),
+            f"{files[0].name}{more}" if len(found) > 1 else "",
+            files[0].rate,
+            tuple(_columns(files[0])),
+            tuple((place, draft.files[place]) for place in places[:PICTURED]),
             stated.get(files[0].name, DialectRequest()),
-        )  # fmt: skip
+        )
 
 
 def _said_of(dialect: DialectView) -> tuple[object, ...]:

@@ -47,11 +47,14 @@ def forms(runs: Sequence[RunView], fit: FitResult) -> tuple[FigureForm, ...]:
     drawings = [FIGURES[name] for name in figures_of(fit) if name != "evolution" or fit.evolution]
     return tuple(
         FigureForm(
-            drawing.name, drawing.title, tuple(_fields(drawing, offer)),
-            tuple(option.name for option in drawing.options if option.picked), drawing.share,
+            drawing.name,
+            drawing.title,
+            tuple(_fields(drawing, offer)),
+            tuple(option.name for option in drawing.options if option.picked),
+            drawing.share,
         )
         for drawing in drawings
-    )  # fmt: skip
+    )
 
 
 _OF_RUNS = {option.name for option in (USE, *CONDITIONS)}

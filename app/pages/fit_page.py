@@ -106,10 +106,18 @@ class FitPageView:
 
 
 def fit_page(
-    stored: Stored, matrix: MatrixView, lacks: MissingView, ladder: LadderView, step: Next, objections: tuple[str, ...],
-    others: Iterable[ParameterSetView] = (), newer: str | None = None, kept: Sequence[Kept] = (),
-    written: AnnotationView | None = None, deletion: DeletionView | None = None,
-) -> FitPageView:  # fmt: skip
+    stored: Stored,
+    matrix: MatrixView,
+    lacks: MissingView,
+    ladder: LadderView,
+    step: Next,
+    objections: tuple[str, ...],
+    others: Iterable[ParameterSetView] = (),
+    newer: str | None = None,
+    kept: Sequence[Kept] = (),
+    written: AnnotationView | None = None,
+    deletion: DeletionView | None = None,
+) -> FitPageView:
     """The page of a fit of this matrix; `others` are fits of the same actuator, to compare it with.
 
     `step` is what to do next, `objections` speak against an approval without a reason. `newer` is the newest revision
@@ -219,10 +227,14 @@ def fit_request(fit: FitResult, parent: str) -> dict[str, Any]:
     given = dict(fit.settings)
     names = ("method", "bounds", "options", "load")
     return {
-        "model": fit.model, "effects": list(fit.effects), "seed": fit.seed, "parent": parent,
-        **{name: given[name] for name in names if name in given}, "set": given.get("fixed", {}),
+        "model": fit.model,
+        "effects": list(fit.effects),
+        "seed": fit.seed,
+        "parent": parent,
+        **{name: given[name] for name in names if name in given},
+        "set": given.get("fixed", {}),
         "custom": [own for own in given.get("custom", ()) if own["name"] in fit.effects],
-    }  # fmt: skip
+    }
 
 
 def _equations(model: Preset) -> Iterator[Equation]:

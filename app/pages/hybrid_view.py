@@ -102,9 +102,12 @@ class HybridSection:
 
 
 def hybrid_view(
-    fit: FitResult, stored: Sequence[HybridView], shown: HybridView | None, job: JobPageView | None,
+    fit: FitResult,
+    stored: Sequence[HybridView],
+    shown: HybridView | None,
+    job: JobPageView | None,
     control: ControlView,
-) -> HybridSection:  # fmt: skip
+) -> HybridSection:
     """The section for the simulations of a fit, the newest first; the controller that is shown is chosen."""
     others = (one for one in stored if shown is None or one.id != shown.id)
     return HybridSection(
@@ -154,9 +157,13 @@ def _effects(fit: FitResult) -> tuple[tuple[str, tuple[EffectChoice, ...]], ...]
 def _choice(fit: FitResult, effect: Effect) -> EffectChoice:
     strength = preset_with(fit.model, (effect.name,)).parameter(effect.name)
     return EffectChoice(
-        effect.name, effect.meaning, strength.name, effect.strength.meaning, _short(strength.upper / 5, strength.unit),
+        effect.name,
+        effect.meaning,
+        strength.name,
+        effect.strength.meaning,
+        _short(strength.upper / 5, strength.unit),
         _short(strength.upper, strength.unit),
-    )  # fmt: skip
+    )
 
 
 def _short(value: float, unit: str) -> str:

@@ -41,12 +41,20 @@ def _step(rung: LadderRung, before: LadderRung | None, here: str) -> Step:
     if rung.approved_at and not rung.current:
         state = ("succeeded", "approved earlier")
     return Step(
-        fit=rung.fit, before=before.fit if before else "", here=rung.fit == here,
+        fit=rung.fit,
+        before=before.fit if before else "",
+        here=rung.fit == here,
         added=tuple((title(name), strength(name, rung.parameters)) for name in rung.added),
-        said_fit=_said(rung, "fit"), said_verify=_said(rung, "verify"), change=_change(rung, before),
-        seed=rung.seed, version=rung.version, data=rung.data_hash[:12], made=rung.created_at,
-        state=state[0], state_text=state[1],
-    )  # fmt: skip
+        said_fit=_said(rung, "fit"),
+        said_verify=_said(rung, "verify"),
+        change=_change(rung, before),
+        seed=rung.seed,
+        version=rung.version,
+        data=rung.data_hash[:12],
+        made=rung.created_at,
+        state=state[0],
+        state_text=state[1],
+    )
 
 
 def _said(rung: LadderRung, use: str) -> ErrorOf:

@@ -55,9 +55,12 @@ def limits_page(context: Context, model: str, batch: str) -> Shown:
     if not names:
         names = {each.name: each.unit for each in PRESETS[chosen].parameters} if chosen in PRESETS else {}
     return {
-        "model": chosen, "batch": batch, "models": sorted({chosen, *PRESETS}), "batches": sorted(own),
+        "model": chosen,
+        "batch": batch,
+        "models": sorted({chosen, *PRESETS}),
+        "batches": sorted(own),
         "rows": entries(names, own.get(batch, {})),
-    }  # fmt: skip
+    }
 
 
 def regression_list(context: Context) -> Shown:

@@ -37,9 +37,12 @@ class Next:
 
 
 def next_step(
-    actuator: ActuatorView, newest: ParameterSetView | None, job: JobView | None,
-    yardstick: Yardstick | None = None, search: Search | None = None,
-) -> Next:  # fmt: skip
+    actuator: ActuatorView,
+    newest: ParameterSetView | None,
+    job: JobView | None,
+    yardstick: Yardstick | None = None,
+    search: Search | None = None,
+) -> Next:
     """The line of an actuator: of a `job` that is to make a fit, else of its set in force, or of its `newest` fit."""
     if job is not None:
         words = "The fit is running." if job.state == "running" else "The fit is queued."

@@ -109,9 +109,14 @@ def _shown(found: PlanView) -> PlanShown:
     limits = ", ".join(f"{LIMITS[name][0].lower()} {quantity(value, UNITS[name])}" for name, value in stated.items())
     refused = tuple((one.id, one.why, "none" if one.factor is None else plain(one.factor, 3)) for one in found.refused)
     return PlanShown(
-        found.id, found.program, found.created_at, limits or "none", refused, tuple(map(_row, found.runs)),
+        found.id,
+        found.program,
+        found.created_at,
+        limits or "none",
+        refused,
+        tuple(map(_row, found.runs)),
         tuple(found.sentences),
-    )  # fmt: skip
+    )
 
 
 def _row(run: PlannedRunView) -> RunRow:

@@ -76,23 +76,28 @@ def position_loop_form(stored: Stored, given: Mapping[str, str], problem: str = 
 
 def position_loop_view(
     stored: Stored, given: Mapping[str, str], request: PositionLoopRequest, found: PositionLoop
-) -> PositionLoopView:  # fmt: skip
+) -> PositionLoopView:
     """The section with its answer."""
     return PositionLoopView(
-        stored.id, True, given,
+        stored.id,
+        True,
+        given,
         sentences=tuple(one.text for one in found.amplitudes),
         unstable=found.state == UNSTABLE,
         rows=tuple(map(_row, found.amplitudes)),
         figures=tuple((name, drawing.title) for name, drawing in drawings(found).items()),
         query=urlencode({"asked": request.model_dump_json(exclude_defaults=True)}),
-    )  # fmt: skip
+    )
 
 
 def _row(one: AmplitudeMargin) -> MarginRow:
     return MarginRow(
-        percent(one.amplitude), _cell(one.gain_margin, "dB"), _cell(one.phase_margin, "°"),
-        _cell(one.oscillation_frequency, "Hz"), _cell(one.oscillation_gain, "1/m"),
-    )  # fmt: skip
+        percent(one.amplitude),
+        _cell(one.gain_margin, "dB"),
+        _cell(one.phase_margin, "°"),
+        _cell(one.oscillation_frequency, "Hz"),
+        _cell(one.oscillation_gain, "1/m"),
+    )
 
 
 def _cell(value: float | None, unit: str) -> str:

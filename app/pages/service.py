@@ -62,10 +62,14 @@ def actuator_list(context: Context, query: str, drifting: str, cursor: str | Non
         for each in found.items
     ]
     return {
-        "rows": rows, "query": query, "drifting": drifting, "followed": followed(approved), "more": found.next,
+        "rows": rows,
+        "query": query,
+        "drifting": drifting,
+        "followed": followed(approved),
+        "more": found.next,
         "next": next_steps(context, found.items, newest, waiting),
         "only_simulated": not (query or cursor) and _simulated(found),
-    }  # fmt: skip
+    }
 
 
 def _simulated(found: ActuatorPage) -> bool:

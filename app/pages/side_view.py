@@ -78,10 +78,18 @@ def side_view(stored: Sequence[Stored], found: SideBySide, matrix: MatrixView) -
     """The page of these fits; `matrix` is that of the first."""
     ids = [one.id for one in stored]
     heads = tuple(
-        Head(one.id, one.serial, column.title, one.found.method, one.found.seed, one.created_at, one.current,
-             "/compare?fits=" + ",".join(other for other in ids if other != one.id))
+        Head(
+            one.id,
+            one.serial,
+            column.title,
+            one.found.method,
+            one.found.seed,
+            one.created_at,
+            one.current,
+            "/compare?fits=" + ",".join(other for other in ids if other != one.id),
+        )
         for one, column in zip(stored, found.columns, strict=True)
-    )  # fmt: skip
+    )
     one_actuator = len(found.serials) == 1
     figures = overlaid(matrix.runs, [one.found for one in stored]) if one_actuator else ()
     return SideView(

@@ -43,11 +43,13 @@ def signals_view(matrix: MatrixView, wanted: Sequence[str]) -> SignalsView:
     drawn = [known[name] for name in dict.fromkeys(wanted)] or matrix.runs[:1]
     clock = "s" if drawn[0].time_unit == "s" else "samples"
     return SignalsView(
-        id=matrix.id, serial=matrix.serial, removed=matrix.removed_at,
+        id=matrix.id,
+        serial=matrix.serial,
+        removed=matrix.removed_at,
         runs=tuple((conditions(run), run in drawn) for run in matrix.runs),
         query=urlencode([("run", run.id) for run in drawn]),
         fields=(Field("start", f"Start ({clock})"), Field("seconds", f"Length ({clock})")),
         duration=max(run.duration for run in drawn),
         shortest=SHORTEST / max(run.sample_rate for run in drawn),
         alone=drawn[0] if len(drawn) == 1 else None,
-    )  # fmt: skip
+    )

@@ -55,9 +55,13 @@ class UseView:
 
 
 def use_view(
-    stored: Stored, control: ControlView, hybrid: HybridSection, what_if: WhatIfView, tracking: TrackingView,
+    stored: Stored,
+    control: ControlView,
+    hybrid: HybridSection,
+    what_if: WhatIfView,
+    tracking: TrackingView,
     position_loop: PositionLoopView,
-) -> UseView:  # fmt: skip
+) -> UseView:
     """The page of a fit with its sections."""
     fit = stored.found
     model = preset_with(fit.model, fit.effects, fit.settings.get("custom", ()))

@@ -243,10 +243,15 @@ def _carried(found: WhatIf, named: Mapping[str, ParameterRow]) -> Iterator[Carri
         before, after = entry.before / size, entry.after / size
         changed = entry.before != entry.after
         yield CarriedRow(
-            symbol=named[name].symbol, meaning=named[name].meaning, before=plain(before, 5), after=plain(after, 5),
-            unit=unit, factor=plain(after / before, 4) if changed and before else "–",
-            why=entry.why, changed=changed,
-        )  # fmt: skip
+            symbol=named[name].symbol,
+            meaning=named[name].meaning,
+            before=plain(before, 5),
+            after=plain(after, 5),
+            unit=unit,
+            factor=plain(after / before, 4) if changed and before else "–",
+            why=entry.why,
+            changed=changed,
+        )
 
 
 def _loop(of: Response) -> LoopRow:

@@ -71,16 +71,28 @@ def view(row: SetRow | repository.FoundSet) -> ParameterSetView:
 
 def _plain(row: repository.FoundSet) -> dict[str, Any]:
     return {
-        "id": row.fit, "serial": row.serial, "batch": row.batch, "model": row.model, "created_at": row.created_at,
-        "approved_at": row.approved_at, "current": row.current, "error_fit": row.error_fit,
-        "error_verify": row.error_verify, "error_with_mean_fit": row.error_with_mean_fit,
-        "error_with_mean_verify": row.error_with_mean_verify, "unstable_fit": row.unstable_fit,
+        "id": row.fit,
+        "serial": row.serial,
+        "batch": row.batch,
+        "model": row.model,
+        "created_at": row.created_at,
+        "approved_at": row.approved_at,
+        "current": row.current,
+        "error_fit": row.error_fit,
+        "error_verify": row.error_verify,
+        "error_with_mean_fit": row.error_with_mean_fit,
+        "error_with_mean_verify": row.error_with_mean_verify,
+        "unstable_fit": row.unstable_fit,
         "unstable_verify": row.unstable_verify,
         "parameters": {
             name: {"value": value, "unit": unit, "std_error": error} for _, name, value, unit, error in row.values
         },
         "lineage": {
-            "data_hash": row.data_hash, "effects": row.effects, "seed": row.seed, "version": row.version,
-            "equations": row.equations, "who": row.who,
+            "data_hash": row.data_hash,
+            "effects": row.effects,
+            "seed": row.seed,
+            "version": row.version,
+            "equations": row.equations,
+            "who": row.who,
         },
-    }  # fmt: skip
+    }

@@ -58,8 +58,12 @@ def asked_plan(request: PlanRequest) -> AskedPlan:
 def _program(request: PlanRequest) -> str | dict[str, Any]:
     """The name of a program, or one of the asker's own: never the path of a file. Raises Unusable."""
     if isinstance(request.program, str) and request.program not in NAMED:
-        raise Unusable("no-such-program", f"no program {shown(request.program)!r}", "program",
-                       did_you_mean(request.program, NAMED, f"give {' or '.join(NAMED)}, or an object"))  # fmt: skip
+        raise Unusable(
+            "no-such-program",
+            f"no program {shown(request.program)!r}",
+            "program",
+            did_you_mean(request.program, NAMED, f"give {' or '.join(NAMED)}, or an object"),
+        )
     return request.program
 
 

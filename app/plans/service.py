@@ -32,9 +32,13 @@ def submit(context: Context, request: PlanRequest, job: str) -> JobView:
     asked = asked_plan(request)
     program = asked.check()
     settings = {
-        "model": "none" if fit is None else fit.model, "effects": [] if fit is None else list(fit.effects),
-        "method": "none", "seed": request.seed, "program": program, "asked": request.model_dump(),
-    }  # fmt: skip
+        "model": "none" if fit is None else fit.model,
+        "effects": [] if fit is None else list(fit.effects),
+        "method": "none",
+        "seed": request.seed,
+        "program": program,
+        "asked": request.model_dump(),
+    }
     return jobs.record(context, job, None, settings, request.fit, KIND)
 
 
@@ -74,9 +78,13 @@ def view(row: PlanRow) -> PlanView:
     data = found.to_json()
     data["runs"] = [{**run, **sizes[run["id"]]} for run in data["runs"]]
     return PlanView(
-        id=row.id, fit=row.fit, created_at=row.created_at, median_share=found.median_share,
-        sentences=list(found.sentences()), **data,
-    )  # fmt: skip
+        id=row.id,
+        fit=row.fit,
+        created_at=row.created_at,
+        median_share=found.median_share,
+        sentences=list(found.sentences()),
+        **data,
+    )
 
 
 def archive(context: Context, identity: str, form: str) -> Path:

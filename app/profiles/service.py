@@ -39,7 +39,12 @@ def found(context: Context, fit_id: str, parameter: str) -> Profile:
     fit = FitResult.from_json(row.result)
     check_profiled(fit, parameter)
     if not preset_with(fit.model, fit.effects, fit.settings.get("custom", ())).is_linear:
-        raise Failure(422, "too-long", "each value takes a refit by simulation", "profile",
-                      "have it made by a job: POST to /fits/ID/profiles, or use `servoident profile`")  # fmt: skip
+        raise Failure(
+            422,
+            "too-long",
+            "each value takes a refit by simulation",
+            "profile",
+            "have it made by a job: POST to /fits/ID/profiles, or use `servoident profile`",
+        )
     key = (str(context.storage.folder), fit_id, parameter)
     return _found.get(key, lambda: profile(matrices.load(context, row.matrix), fit, parameter))

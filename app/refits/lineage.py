@@ -36,9 +36,12 @@ def add(context: Context, fit_id: str, request: EffectsRequest, job: str, who: s
             return service.queue(context, job, parent.matrix, begun, parent.id, who)
     newest, _ = diagnoses.of_fit(context, fit_id)
     settings = with_named(
-        replace(settings, effects=fit.effects, start=None), names, more, newest.found if newest else None,
+        replace(settings, effects=fit.effects, start=None),
+        names,
+        more,
+        newest.found if newest else None,
         lambda: {kept.name: kept.definition for kept in every(context)},
-    )  # fmt: skip
+    )
     return service.queue(context, job, parent.matrix, settings, parent.id, who)
 
 
@@ -57,12 +60,18 @@ def ladder(context: Context, fit_id: str) -> LadderView:
 
 def _rung(row: FitRow, found: FitResult, before: tuple[str, ...]) -> LadderRung:
     return LadderRung(
-        fit=row.id, parent=row.parent, matrix=row.matrix,
+        fit=row.id,
+        parent=row.parent,
+        matrix=row.matrix,
         added=[name for name in found.effects if name not in before],
         error={"fit": row.set.error_fit, "verify": row.set.error_verify},
         error_with_mean={use: found.error_of(use).with_mean for use in USES},
         unstable={use: list(ids) for use in USES if (ids := found.error_of(use).unstable)},
         parameters={name: EstimateView(**vars(entry)) for name, entry in found.parameters.items()},
-        seed=found.seed, version=found.version, data_hash=found.data_hash,
-        created_at=row.created_at, approved_at=row.set.approved_at, current=row.set.current,
-    )  # fmt: skip
+        seed=found.seed,
+        version=found.version,
+        data_hash=found.data_hash,
+        created_at=row.created_at,
+        approved_at=row.set.approved_at,
+        current=row.set.current,
+    )

@@ -36,8 +36,13 @@ def with_effects(context: Context, fit: str, diagnosis: str, effects: Sequence[s
     """
     stored = diagnoses.stored(context, diagnosis)
     if stored.fit != fit:
-        raise Failure(422, "bad-request", f"it is a diagnosis of the fit {stored.fit}", "diagnosis",
-                      "name one of this fit, or leave it out")  # fmt: skip
+        raise Failure(
+            422,
+            "bad-request",
+            f"it is a diagnosis of the fit {stored.fit}",
+            "diagnosis",
+            "name one of this fit, or leave it out",
+        )
     end = end_with(stored.found, effects)
     return None if end is None else settings_of_end(stored.found, end)
 
@@ -58,7 +63,12 @@ def _searched(request: FitRequest, settings: Settings) -> Settings:
     given = request.model_fields_set & set(Chosen.model_fields)
     search = settings.start is not None and settings.start.search
     if given - (_OF_A_SEARCH if search else set()):
-        raise Failure(422, "bad-request", f"{', '.join(sorted(given))} cannot be given with a start", "start",
-                      "leave out what the start decides: model, effects, bounds and values")  # fmt: skip
+        raise Failure(
+            422,
+            "bad-request",
+            f"{', '.join(sorted(given))} cannot be given with a start",
+            "start",
+            "leave out what the start decides: model, effects, bounds and values",
+        )
     chosen = {name: getattr(request, name) for name in given}
     return replace(settings, **chosen)

@@ -35,11 +35,17 @@ def list_regressions(here: Here) -> RegressionList:
     return service.listed(here)
 
 
-@router.get("/{regression}", dependencies=[READERS], response_model=RegressionView,
-            responses={200: {"content": {"application/xml": {}}}})  # fmt: skip
+@router.get(
+    "/{regression}",
+    dependencies=[READERS],
+    response_model=RegressionView,
+    responses={200: {"content": {"application/xml": {}}}},
+)
 def get_regression(
-    here: Here, regression: str, format: Literal["json", "junit"] = "json",  # noqa: A002  as of parameter sets
-) -> RegressionView | Response:  # fmt: skip
+    here: Here,
+    regression: str,
+    format: Literal["json", "junit"] = "json",  # noqa: A002  as of parameter sets
+) -> RegressionView | Response:
     """A regression: what moved of each actuator; as JUnit, a test case an actuator, when all have ended."""
     if format == "junit":
         return Response(service.junit(here, regression), media_type="application/xml")

@@ -96,9 +96,15 @@ def _view(row: RegressionRow, found: Sequence[tuple[RecheckRow, JobRow]]) -> Reg
     counts |= Counter(one.outcome for one in rechecks)
     state: State = "running" if counts["open"] else "passed" if counts["same"] == len(rechecks) else "failed"
     return RegressionView(
-        id=row.id, state=state, asked=row.asked, tolerance=row.tolerance, who=row.who, created_at=row.created_at,
-        counts=counts, rechecks=rechecks,
-    )  # fmt: skip
+        id=row.id,
+        state=state,
+        asked=row.asked,
+        tolerance=row.tolerance,
+        who=row.who,
+        created_at=row.created_at,
+        counts=counts,
+        rechecks=rechecks,
+    )
 
 
 def _recheck(row: RecheckRow, job: JobRow, tolerance: float) -> Recheck:

@@ -81,8 +81,12 @@ def recheck(serial: str, fit: str, stored: FitResult, matrix: Matrix, tolerance:
     failure = ""
     try:
         if stored.ended_early:
-            raise Unusable("ended-early", "the search of this fit ran out of its time", f"fit {fit}",
-                           "fit again without a budget, and approve that")  # fmt: skip
+            raise Unusable(
+                "ended-early",
+                "the search of this fit ran out of its time",
+                f"fit {fit}",
+                "fit again without a budget, and approve that",
+            )
         changes = found(stored, matrix, report)
     except Unusable as error:
         failure = str(error)

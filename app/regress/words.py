@@ -15,18 +15,27 @@ def as_view(one: Recheck, job: str = "", ended: bool = True) -> RecheckView:
     """A recheck as it is sent; `job` is what made it, where one did."""
     outcome: Outcome = "open" if not ended else "failed" if one.failure else "moved" if one.moved else "same"
     return RecheckView(
-        serial=one.serial, fit=one.fit, job=job, outcome=outcome, failure=one.failure if ended else "",
-        seconds=one.seconds or None, moved=[_change(change, one.tolerance) for change in one.moved],
+        serial=one.serial,
+        fit=one.fit,
+        job=job,
+        outcome=outcome,
+        failure=one.failure if ended else "",
+        seconds=one.seconds or None,
+        moved=[_change(change, one.tolerance) for change in one.moved],
         largest=_change(one.largest, one.tolerance) if one.largest else None,
-    )  # fmt: skip
+    )
 
 
 def _change(one: Change, tolerance: float) -> ChangeView:
     return ChangeView(
-        quantity=one.quantity, before=one.before, after=None if math.isnan(one.after) else one.after,
-        std_error=one.std_error, relative=one.relative if math.isfinite(one.relative) else None,
-        moved=one.moved(tolerance), kind=one.kind,
-    )  # fmt: skip
+        quantity=one.quantity,
+        before=one.before,
+        after=None if math.isnan(one.after) else one.after,
+        std_error=one.std_error,
+        relative=one.relative if math.isfinite(one.relative) else None,
+        moved=one.moved(tolerance),
+        kind=one.kind,
+    )
 
 
 def told(one: RecheckView) -> str:

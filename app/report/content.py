@@ -42,7 +42,7 @@ CAPTIONS = {
 
 def content(
     matrix: Matrix, fit: FitResult, diagnosis: Diagnosis | None = None, sheet: Sheet = NOTHING_STATED
-) -> Report:  # fmt: skip
+) -> Report:
     """The report of a fit. Raises Unusable where the fit is of another model's data."""
     found = survey(compare(matrix, fit))
     model = preset_with(fit.model, fit.effects, fit.settings.get("custom", ()))

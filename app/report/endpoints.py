@@ -27,8 +27,14 @@ def stated(
     oil_temperature: Annotated[str, Query(max_length=200, description="With its unit, such as 42 degC")] = "",
 ) -> dict[str, str]:
     """What a data sheet states of the test, over what the data set states."""
-    return {"laboratory": laboratory, "customer": customer, "order": order, "operator": operator, "date": date,
-            "oil_temperature": oil_temperature}  # fmt: skip
+    return {
+        "laboratory": laboratory,
+        "customer": customer,
+        "order": order,
+        "operator": operator,
+        "date": date,
+        "oil_temperature": oil_temperature,
+    }
 
 
 Stated = Annotated[dict[str, str], Depends(stated)]

@@ -65,9 +65,13 @@ def _drawn(figure: Figure, folder: Path) -> dict[str, str | None]:
 def _table(block: Table) -> dict[str, Any]:
     rows = [[str(cell) for cell in row] for row in block.rows]
     return {
-        "kind": block.kind, "header": block.header, "rows": rows, "numbers": block.numbers, "marked": block.marked,
+        "kind": block.kind,
+        "header": block.header,
+        "rows": rows,
+        "numbers": block.numbers,
+        "marked": block.marked,
         "wide": list(_wide(block, rows)),
-    }  # fmt: skip
+    }
 
 
 def _wide(block: Table, rows: list[list[str]]) -> Iterator[int]:

@@ -31,10 +31,14 @@ def budget_rows(budget: Budget | None) -> tuple[Row, ...]:
         return ()
     sizes = {"noise": budget.noise, "linear": budget.linear, "nonlinear": budget.nonlinear}
     return tuple(
-        (name, means, "unknown" if sizes[name] is None else percent_in_print(sizes[name]),
-         *(percent_in_print(bound) for bound in budget.bounds[name]))
+        (
+            name,
+            means,
+            "unknown" if sizes[name] is None else percent_in_print(sizes[name]),
+            *(percent_in_print(bound) for bound in budget.bounds[name]),
+        )
         for name, means in _MEANS.items()
-    )  # fmt: skip
+    )
 
 
 def group_tables(found: Breakdown) -> dict[str, list[Group]]:
@@ -74,7 +78,12 @@ def ladder_steps(diagnosis: Diagnosis) -> list[Step]:
 def candidate_rows(diagnosis: Diagnosis) -> tuple[Row, ...]:
     """Effect, probability, predicted error, errors, why."""
     return tuple(
-        (title(c.effect), probability_said(c.probability), error_in_print(c.predicted_error),
-         *(c.error_of(use).in_print() for use in ("fit", "held_out", "verify")), c.why)
+        (
+            title(c.effect),
+            probability_said(c.probability),
+            error_in_print(c.predicted_error),
+            *(c.error_of(use).in_print() for use in ("fit", "held_out", "verify")),
+            c.why,
+        )
         for c in diagnosis.candidates
-    )  # fmt: skip
+    )

@@ -62,8 +62,10 @@ def _sheet(context: Context, row: FitRow, stated: Mapping[str, str]) -> Sheet:
     approved = next((one for one in known if one.fit == row.id), None)
     settings = context.settings
     given = Sheet(
-        fit=row.id, fitted=row.created_at, logo=logo(settings.logo) if settings.logo else None,
+        fit=row.id,
+        fitted=row.created_at,
+        logo=logo(settings.logo) if settings.logo else None,
         approval=None if approved is None else Approval(approved.who, approved.since, approved.why),
-    ).of(stated)  # fmt: skip
+    ).of(stated)
     house = Provenance(laboratory=settings.laboratory)
     return replace(given, test=given.test.over(matrices.load(context, row.matrix).test).over(house))

@@ -28,8 +28,13 @@ def _errors(fit: FitResult) -> Iterator[Record]:
     for use in USES:
         of = fit.error_of(use)
         if of.error is not None:
-            yield {"data": use, "error": of.error, "error_with_mean": of.with_mean, "offset": fit.offset.get(use),
-                   "noise_floor": fit.noise_floor.get(use)}  # fmt: skip
+            yield {
+                "data": use,
+                "error": of.error,
+                "error_with_mean": of.with_mean,
+                "offset": fit.offset.get(use),
+                "noise_floor": fit.noise_floor.get(use),
+            }
 
 
 def _runs(matrix: Matrix, fit: FitResult) -> list[Record]:
@@ -40,6 +45,10 @@ def _runs(matrix: Matrix, fit: FitResult) -> list[Record]:
 
 def _candidates(diagnosis: Diagnosis) -> Iterator[Record]:
     for one in diagnosis.candidates:
-        yield {"effect": one.effect, "probability": one.probability, "predicted_error": one.predicted_error,
-               **{f"error_{use}": one.error_of(use).error for use in ("fit", "held_out", "verify")},
-               "reason": one.why}  # fmt: skip
+        yield {
+            "effect": one.effect,
+            "probability": one.probability,
+            "predicted_error": one.predicted_error,
+            **{f"error_{use}": one.error_of(use).error for use in ("fit", "held_out", "verify")},
+            "reason": one.why,
+        }

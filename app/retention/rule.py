@@ -52,8 +52,13 @@ def carry_out(context: Context, digest: str) -> RetentionView:
                 409, "no-rule", "the service has no rule for raw runs", "retention", "start it with --keep-raw DAYS"
             )
         if view.digest != digest:
-            raise Failure(409, "not-as-shown", "the list of runs to delete has changed since it was shown", "digest",
-                          "show the list again, and confirm the new digest")  # fmt: skip
+            raise Failure(
+                409,
+                "not-as-shown",
+                "the list of runs to delete has changed since it was shown",
+                "digest",
+                "show the list again, and confirm the new digest",
+            )
         for goer in goers:
             goer.row.removed_at, goer.row.source = now(), {}
     remove_unnamed(context, {blob for goer in goers for blob in goer.blobs})
@@ -94,16 +99,21 @@ def _sizes(context: Context) -> dict[str, int]:
 def _view(context: Context, goers: Sequence[Goer], sizes: Mapping[str, int]) -> RetentionView:
     items = [
         RawView(
-            matrix=goer.row.id, serial=goer.row.serial, created_at=goer.row.created_at,
-            why="superseded" if goer.approved else "never approved", bytes=sum(sizes.get(b, 0) for b in goer.blobs),
+            matrix=goer.row.id,
+            serial=goer.row.serial,
+            created_at=goer.row.created_at,
+            why="superseded" if goer.approved else "never approved",
+            bytes=sum(sizes.get(b, 0) for b in goer.blobs),
         )
         for goer in goers
-    ]  # fmt: skip
+    ]
     told = json.dumps([[goer.row.id, goer.blobs] for goer in goers])
     return RetentionView(
-        days=context.settings.keep_raw, items=items, bytes=sum(item.bytes for item in items),
+        days=context.settings.keep_raw,
+        items=items,
+        bytes=sum(item.bytes for item in items),
         digest=hashlib.sha256(told.encode()).hexdigest(),
-    )  # fmt: skip
+    )
 
 
 def remove_unnamed(context: Context, blobs: set[str]) -> None:

@@ -28,11 +28,13 @@ def fits(session: Session, text: str, limit: int) -> Sequence[tuple[FitRow, Anno
     """Fits whose id begins with a text, or whose name, tags or note hold it; the newest first."""
     escaped = json.dumps(text)[1:-1]  # as the database has the text of a tag
     query = select(FitRow, AnnotationRow).join(AnnotationRow, AnnotationRow.fit == FitRow.id, isouter=True)
-    query = query.where(or_(
-        FitRow.id.startswith(text, autoescape=True),
-        *(column.icontains(text, autoescape=True) for column in (AnnotationRow.name, AnnotationRow.note)),
-        cast(AnnotationRow.tags, Text).icontains(escaped, autoescape=True),
-    ))  # fmt: skip
+    query = query.where(
+        or_(
+            FitRow.id.startswith(text, autoescape=True),
+            *(column.icontains(text, autoescape=True) for column in (AnnotationRow.name, AnnotationRow.note)),
+            cast(AnnotationRow.tags, Text).icontains(escaped, autoescape=True),
+        )
+    )
     found = session.execute(query.order_by(FitRow.created_at.desc(), FitRow.id).limit(limit))
     return [(fit, written) for fit, written in found if _holds(fit, written, text.casefold())]
 

@@ -22,9 +22,13 @@ def found(context: Context, text: str, limit: int) -> SearchView:
             data_sets=[FoundDataSet(matrix=row.id, serial=row.serial, created_at=row.created_at) for row in matrices],
             fits=[
                 FoundFit(
-                    fit=fit.id, serial=fit.serial, model=fit.model, created_at=fit.created_at,
-                    name=written.name if written else "", tags=written.tags if written else [],
+                    fit=fit.id,
+                    serial=fit.serial,
+                    model=fit.model,
+                    created_at=fit.created_at,
+                    name=written.name if written else "",
+                    tags=written.tags if written else [],
                 )
                 for fit, written in fits
             ],
-        )  # fmt: skip
+        )

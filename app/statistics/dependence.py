@@ -55,13 +55,23 @@ def over_condition(
     own, values = found.dependence, found.dependence.values
     ends = (limit.lower, limit.upper) if limit else (None, None)
     view = DependenceView(
-        parameter=parameter, unit=first.unit if first else "1", model=first.model if first else chosen.model or "",
-        over=over, over_unit=condition.unit, n=len(found.points), without=found.without,
-        left_out=found.left_out, points=[_point(*one) for one in found.points], laws=[_law(one) for one in own.laws],
-        law=own.law.name if own.law else None, holds=own.law is not None and own.law.holds, text=str(own.text),
-        band=_band(own), limits=limits_view(values, *ends, 0),
+        parameter=parameter,
+        unit=first.unit if first else "1",
+        model=first.model if first else chosen.model or "",
+        over=over,
+        over_unit=condition.unit,
+        n=len(found.points),
+        without=found.without,
+        left_out=found.left_out,
+        points=[_point(*one) for one in found.points],
+        laws=[_law(one) for one in own.laws],
+        law=own.law.name if own.law else None,
+        holds=own.law is not None and own.law.holds,
+        text=str(own.text),
+        band=_band(own),
+        limits=limits_view(values, *ends, 0),
         at=None if value is None else _at(own, value, first, limit),
-    )  # fmt: skip
+    )
     return view, own
 
 
@@ -93,9 +103,11 @@ def _at(own: Dependence, value: float, first: Point | None, limit: LimitRow | No
     judged = judged_at("", unit, own, value, limit.lower if limit else None, limit.upper if limit else None)
     said = judged.reason if limit or level is None else ""
     return AtView(
-        condition=value, level=_level(value, level) if level else None, outcome=judged.outcome if limit else None,
+        condition=value,
+        level=_level(value, level) if level else None,
+        outcome=judged.outcome if limit else None,
         reason=str(own.silent(value) or said).strip(),
-    )  # fmt: skip
+    )
 
 
 def _band(own: Dependence) -> list[LevelView]:
@@ -111,9 +123,14 @@ def _level(condition: float, level: Level) -> LevelView:
 
 def _law(law: ConditionLaw) -> ConditionLawView:
     return ConditionLawView(
-        name=law.name, formula=law.form.formula, probability=law.probability, scatter=law.scatter,
-        relative=law.relative, lack_of_fit=law.lack_of_fit, holds=law.holds,
-    )  # fmt: skip
+        name=law.name,
+        formula=law.form.formula,
+        probability=law.probability,
+        scatter=law.scatter,
+        relative=law.relative,
+        lack_of_fit=law.lack_of_fit,
+        holds=law.holds,
+    )
 
 
 def _point(point: Point, condition: float) -> ConditionPointView:

@@ -35,32 +35,55 @@ def get_statistics(
 
 @router.get("/over", dependencies=[READERS])
 def get_dependence(
-    here: Here, parameter: Parameter, over: Over = "temperature", at: At = None, batch: str | None = None,
-    serial: str | None = None, model: str | None = None,
-) -> DependenceView:  # fmt: skip
+    here: Here,
+    parameter: Parameter,
+    over: Over = "temperature",
+    at: At = None,
+    batch: str | None = None,
+    serial: str | None = None,
+    model: str | None = None,
+) -> DependenceView:
     """A parameter over a condition of the tests: the law of most evidence, whether it holds, its band, and its value at
     one condition.
     """
     return dependence.over_condition(here, parameter, (over, at), batch, serial, model)[0]
 
 
-@router.get("/figures/control-chart.{kind}", dependencies=[READERS], response_class=Response,
-            responses={200: {"content": _IMAGES}})  # fmt: skip
+@router.get(
+    "/figures/control-chart.{kind}",
+    dependencies=[READERS],
+    response_class=Response,
+    responses={200: {"content": _IMAGES}},
+)
 def draw_control_chart(
-    here: Here, kind: str, parameter: Parameter, batch: str | None = None, serial: str | None = None,
-    model: str | None = None, theme: str = "light", share: Share = 1.0,
-) -> Response:  # fmt: skip
+    here: Here,
+    kind: str,
+    parameter: Parameter,
+    batch: str | None = None,
+    serial: str | None = None,
+    model: str | None = None,
+    theme: str = "light",
+    share: Share = 1.0,
+) -> Response:
     """Individuals and moving-range chart as json (Vega-Lite), svg, png or pdf."""
     content, media = drawing.control_chart(here, parameter, batch, serial, model, kind, (theme, share))
     return Response(content, media_type=media)
 
 
-@router.get("/figures/dependence.{kind}", dependencies=[READERS], response_class=Response,
-            responses={200: {"content": _IMAGES}})  # fmt: skip
+@router.get(
+    "/figures/dependence.{kind}", dependencies=[READERS], response_class=Response, responses={200: {"content": _IMAGES}}
+)
 def draw_dependence(
-    here: Here, kind: str, parameter: Parameter, over: Over = "temperature", batch: str | None = None,
-    serial: str | None = None, model: str | None = None, theme: str = "light", share: Share = 1.0,
-) -> Response:  # fmt: skip
+    here: Here,
+    kind: str,
+    parameter: Parameter,
+    over: Over = "temperature",
+    batch: str | None = None,
+    serial: str | None = None,
+    model: str | None = None,
+    theme: str = "light",
+    share: Share = 1.0,
+) -> Response:
     """A parameter over a condition with its law and band as json (Vega-Lite), svg, png or pdf."""
     content, media = drawing.dependence(here, parameter, over, batch, serial, model, kind, (theme, share))
     return Response(content, media_type=media)

@@ -50,21 +50,37 @@ def statistics(
         checked(session, points, parameter, Chosen(batch, serial, model))
         unstable, points = sum(bool(one.unstable) for one in points), [one for one in points if not one.unstable]
         if not points:
-            raise Failure(409, "too-few", "the model of every set here is unstable on a run", "parameter",
-                          "approve a fit whose model is stable")  # fmt: skip
+            raise Failure(
+                409,
+                "too-few",
+                "the model of every set here is unstable on a run",
+                "parameter",
+                "approve a fit whose model is stable",
+            )
         limit = in_batch(session, points[0].model, batch or EVERY).get(parameter)
     lower, upper = (limit.lower, limit.upper) if limit else (None, None)
     values = [point.value for point in points]
     found, chart = summary(values), control_chart(values)
     return StatisticsView(
-        parameter=parameter, unit=points[0].unit, model=points[0].model, n=found.n, mean=found.mean,
-        deviation=found.deviation, minimum=found.minimum, maximum=found.maximum,
+        parameter=parameter,
+        unit=points[0].unit,
+        model=points[0].model,
+        n=found.n,
+        mean=found.mean,
+        deviation=found.deviation,
+        minimum=found.minimum,
+        maximum=found.maximum,
         percentiles={str(share): value for share, value in found.percentiles.items()},
-        control_chart=_chart(chart), capability=_capability(capability(values, lower, upper), lower, upper),
-        outliers=_outliers(points), drift=_drift(points) if serial is not None else None,
-        points=_points(points, chart), left_out=left_out, limits=limits_view(values, lower, upper, unstable),
-        no_capability=withheld(values, lower, upper), unstable=unstable,
-    )  # fmt: skip
+        control_chart=_chart(chart),
+        capability=_capability(capability(values, lower, upper), lower, upper),
+        outliers=_outliers(points),
+        drift=_drift(points) if serial is not None else None,
+        points=_points(points, chart),
+        left_out=left_out,
+        limits=limits_view(values, lower, upper, unstable),
+        no_capability=withheld(values, lower, upper),
+        unstable=unstable,
+    )
 
 
 def checked(session: Session, points: Sequence[Point], parameter: str, chosen: Chosen) -> None:
@@ -88,18 +104,28 @@ def _nothing(parameter: str, chosen: Chosen, batches: Callable[[], Sequence[str]
             return Failure(
                 404, "no-sets", f"no approved set here has the {where} {name!r}", where, f"did you mean {near}?"
             )
-    return Failure(404, "no-sets", f"no approved set here has {parameter!r}", "parameter",
-                   "see /api/v1/parameter-sets for the names, and approve a fit first")  # fmt: skip
+    return Failure(
+        404,
+        "no-sets",
+        f"no approved set here has {parameter!r}",
+        "parameter",
+        "see /api/v1/parameter-sets for the names, and approve a fit first",
+    )
 
 
 def _chart(chart: ControlChart | None) -> ControlChartView | None:
     if chart is None:
         return None
     return ControlChartView(
-        centre=chart.centre, sigma=chart.sigma, lower=chart.lower, upper=chart.upper, mean_range=chart.mean_range,
-        upper_range=chart.upper_range, wide_ranges=list(chart.wide_ranges),
+        centre=chart.centre,
+        sigma=chart.sigma,
+        lower=chart.lower,
+        upper=chart.upper,
+        mean_range=chart.mean_range,
+        upper_range=chart.upper_range,
+        wide_ranges=list(chart.wide_ranges),
         signals=[SignalView(place=one.place, rule=one.rule, text=one.text) for one in chart.signals],
-    )  # fmt: skip
+    )
 
 
 def _capability(found: Capability | None, lower: float | None, upper: float | None) -> CapabilityView | None:
@@ -135,7 +161,13 @@ def _drift(points: Sequence[Point]) -> DriftView | None:
 def _points(points: Sequence[Point], chart: ControlChart | None) -> list[PointView]:
     ranges = (None, *chart.moving_ranges) if chart else (None,) * len(points)
     return [
-        PointView(fit=one.fit, serial=one.serial, created_at=one.created_at, value=one.value, std_error=one.std_error,
-                  moving_range=range_)
+        PointView(
+            fit=one.fit,
+            serial=one.serial,
+            created_at=one.created_at,
+            value=one.value,
+            std_error=one.std_error,
+            moving_range=range_,
+        )
         for one, range_ in zip(points, ranges, strict=True)
-    ]  # fmt: skip
+    ]

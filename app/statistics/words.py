@@ -67,10 +67,14 @@ def called(found: StatisticsView) -> list[Called]:
     for far in found.outliers:
         why.setdefault(places[far.fit], []).append(f"outlier, modified z-score {plain(far.score, 2)}")
     return [
-        Called(found.points[place].fit, found.points[place].serial, quantity(found.points[place].value, found.unit),
-               "; ".join(dict.fromkeys(texts)))
+        Called(
+            found.points[place].fit,
+            found.points[place].serial,
+            quantity(found.points[place].value, found.unit),
+            "; ".join(dict.fromkeys(texts)),
+        )
         for place, texts in sorted(why.items())
-    ]  # fmt: skip
+    ]
 
 
 def of_dependence(found: DependenceView) -> list[tuple[str, str]]:
@@ -91,11 +95,15 @@ def of_dependence(found: DependenceView) -> list[tuple[str, str]]:
 def laws(found: DependenceView) -> list[tuple[str, str, str, str, str]]:
     """The laws that were tried: name, formula, probability, scatter, chance of the lack of fit."""
     return [
-        (one.name, one.formula, percent_in_print(one.probability),
-         percent_in_print(one.scatter) if one.relative else quantity(one.scatter, found.unit),
-         _lack_of_fit(one))
+        (
+            one.name,
+            one.formula,
+            percent_in_print(one.probability),
+            percent_in_print(one.scatter) if one.relative else quantity(one.scatter, found.unit),
+            _lack_of_fit(one),
+        )
         for one in found.laws
-    ]  # fmt: skip
+    ]
 
 
 def _lack_of_fit(law: ConditionLawView) -> str:

@@ -26,10 +26,13 @@ _MESSAGES = {
 
 
 @router.get(
-    "/stream/ekf", dependencies=[READERS], status_code=101, response_class=Response,
+    "/stream/ekf",
+    dependencies=[READERS],
+    status_code=101,
+    response_class=Response,
     openapi_extra={"x-messages": _MESSAGES},
     responses={101: {"description": "The stream begins"}, 426: {**COMMON[400], "description": "Not a WebSocket"}},
-)  # fmt: skip
+)
 def describe_stream() -> None:
     """Track τyr and kyr of a first-order loop in real time, over a WebSocket.
 

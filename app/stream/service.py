@@ -120,8 +120,13 @@ def warm() -> None:
 
 def _start(text: str | None) -> StreamStart:
     if text is None:
-        raise Failure(422, "bad-message", "the first message is not JSON", "message 1",
-                      "send sample_rate, hold, tau0, gain0 and noise as JSON first")  # fmt: skip
+        raise Failure(
+            422,
+            "bad-message",
+            "the first message is not JSON",
+            "message 1",
+            "send sample_rate, hold, tau0, gain0 and noise as JSON first",
+        )
     return _read(StreamStart, text, "message 1")
 
 
@@ -142,8 +147,13 @@ def _noise(sample_rate: float, given: StreamNoise) -> Noise:
 def _samples(binary: bytes) -> Array:
     """The rows (n, 2) of r and y in a binary message. Raises Failure."""
     if len(binary) % (2 * _ROW.itemsize):
-        raise Failure(422, "bad-message", f"{len(binary)} bytes are no rows of two float64", "samples",
-                      "send r and y of each sample, little-endian, 16 bytes a row")  # fmt: skip
+        raise Failure(
+            422,
+            "bad-message",
+            f"{len(binary)} bytes are no rows of two float64",
+            "samples",
+            "send r and y of each sample, little-endian, 16 bytes a row",
+        )
     rows = np.frombuffer(binary, _ROW).reshape(-1, 2)
     if len(rows) > MOST_ROWS:
         raise _too_large()
@@ -153,8 +163,13 @@ def _samples(binary: bytes) -> Array:
 
 
 def _too_large() -> Failure:
-    return Failure(413, "message-too-large", f"more than {MOST_ROWS} samples or {LARGEST_MESSAGE >> 20} MB", "samples",
-                   "send fewer samples at a time")  # fmt: skip
+    return Failure(
+        413,
+        "message-too-large",
+        f"more than {MOST_ROWS} samples or {LARGEST_MESSAGE >> 20} MB",
+        "samples",
+        "send fewer samples at a time",
+    )
 
 
 def _read(model: type[Model], text: str, where: str) -> Model:
@@ -163,5 +178,10 @@ def _read(model: type[Model], text: str, where: str) -> Model:
     except ValidationError as error:
         first = error.errors(include_url=False, include_context=False, include_input=False)[0]
         place = ".".join(map(str, first["loc"]))
-        raise Failure(422, "bad-message", f"{place}: {first['msg']}" if place else first["msg"], where,
-                      "see docs/service.md for the messages of a stream") from None  # fmt: skip
+        raise Failure(
+            422,
+            "bad-message",
+            f"{place}: {first['msg']}" if place else first["msg"],
+            where,
+            "see docs/service.md for the messages of a stream",
+        ) from None

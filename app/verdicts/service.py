@@ -42,9 +42,15 @@ def judge(context: Context, serial: str, over: str = TEMPERATURE, at: str | None
     decisive = {"fail": "outside", "unknown": "unknown", "pass": "inside"}[found]
     reasons = [one.reason for one in judged if one.outcome == decisive]
     return LineVerdictView(
-        serial=serial, verdict=found, reasons=reasons, fit=row.fit, model=row.model, batch=row.batch,
-        approved_at=row.approved_at, judged=[_view(one) for one in judged],
-    )  # fmt: skip
+        serial=serial,
+        verdict=found,
+        reasons=reasons,
+        fit=row.fit,
+        model=row.model,
+        batch=row.batch,
+        approved_at=row.approved_at,
+        judged=[_view(one) for one in judged],
+    )
 
 
 def sheet(context: Context, fit: str) -> SheetView:
@@ -55,34 +61,61 @@ def sheet(context: Context, fit: str) -> SheetView:
         values = {value.name: value for value in row.values if value.name.startswith(PREFIX)}
         judged = {one.name: one for one in judged_by(row, bounds) if one.name.startswith(PREFIX)}
     if not values:
-        raise Failure(409, "no-sheet", f"the fit of {row.model} has no acceptance sheet", "fit",
-                      "give a fit of bench records, made with this version")  # fmt: skip
+        raise Failure(
+            409,
+            "no-sheet",
+            f"the fit of {row.model} has no acceptance sheet",
+            "fit",
+            "give a fit of bench records, made with this version",
+        )
     names = [PREFIX + name for name in QUANTITIES if PREFIX + name in values.keys() | judged.keys()]
     return SheetView(
-        fit=fit, serial=row.serial, model=row.model, batch=row.batch,
+        fit=fit,
+        serial=row.serial,
+        model=row.model,
+        batch=row.batch,
         verdict=verdict(list(judged.values())) if judged else None,
         lines=[_line(name.removeprefix(PREFIX), values.get(name), judged.get(name)) for name in names],
-    )  # fmt: skip
+    )
 
 
 def _line(name: str, found: ValueRow | None, judged: Judged | None) -> SheetLine:
     unit, meaning = QUANTITIES[name]
     return SheetLine(
-        name=name, meaning=meaning, value=found.value if found else None, std_error=found.std_error if found else None,
-        unit=unit, lower=judged.lower if judged else None, upper=judged.upper if judged else None,
-        outcome=judged.outcome if judged else None, reason=judged.reason if judged else None,
-    )  # fmt: skip
+        name=name,
+        meaning=meaning,
+        value=found.value if found else None,
+        std_error=found.std_error if found else None,
+        unit=unit,
+        lower=judged.lower if judged else None,
+        upper=judged.upper if judged else None,
+        outcome=judged.outcome if judged else None,
+        reason=judged.reason if judged else None,
+    )
 
 
 def _view(one: Judged) -> JudgedView:
     return JudgedView(
-        name=one.name, value=one.value, std_error=one.std_error, unit=one.unit, lower=one.lower, upper=one.upper,
-        outcome=one.outcome, uncertain=one.uncertain, reason=one.reason,
-    )  # fmt: skip
+        name=one.name,
+        value=one.value,
+        std_error=one.std_error,
+        unit=one.unit,
+        lower=one.lower,
+        upper=one.upper,
+        outcome=one.outcome,
+        uncertain=one.uncertain,
+        reason=one.reason,
+    )
 
 
 def _unknown(serial: str, batch: str, row: SetRow | None, why: str) -> LineVerdictView:
     return LineVerdictView(
-        serial=serial, verdict="unknown", reasons=[why], fit=row.fit if row else None, batch=batch, judged=[],
-        model=row.model if row else None, approved_at=row.approved_at if row else None,
-    )  # fmt: skip
+        serial=serial,
+        verdict="unknown",
+        reasons=[why],
+        fit=row.fit if row else None,
+        batch=batch,
+        judged=[],
+        model=row.model if row else None,
+        approved_at=row.approved_at if row else None,
+    )

@@ -41,9 +41,12 @@ class Courier:
     """Brings what waits, where the operator named any host at all. `clock` and `http` are exchanged by tests."""
 
     def __init__(
-        self, sessions: sessionmaker[Session], settings: Settings, clock: Callable[[], datetime] | None = None,
+        self,
+        sessions: sessionmaker[Session],
+        settings: Settings,
+        clock: Callable[[], datetime] | None = None,
         http: httpx.Client | None = None,
-    ) -> None:  # fmt: skip
+    ) -> None:
         self.sessions, self.settings, self.http = sessions, settings, http
         self.clock = clock or (lambda: datetime.now(UTC))
         self.origins = origins(settings.webhook_hosts)

@@ -37,8 +37,12 @@ def allowed(url: str, named: Iterable[str]) -> str:
     found = _read(url, "url", "write https://HOST/PATH")
     origin = origin_of(found)
     if origin not in origins(named):
-        raise Unusable("host-not-named", f"{origin} is no host that webhooks may reach", "url",
-                       "start the service with --webhook-host and this host")  # fmt: skip
+        raise Unusable(
+            "host-not-named",
+            f"{origin} is no host that webhooks may reach",
+            "url",
+            "start the service with --webhook-host and this host",
+        )
     return origin
 
 

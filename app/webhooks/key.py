@@ -42,8 +42,12 @@ def key_of(settings: Settings) -> Key:
     """The key of a service, drawn where there is none yet. Raises Unusable where one that is given is short."""
     given = settings.webhook_key
     if given and len(given) < _SHORTEST:
-        raise Unusable("short-key", f"it has {len(given)} characters where {_SHORTEST} are needed",
-                       "SERVOIDENT_WEBHOOK_KEY", "draw one with `servoident token`")  # fmt: skip
+        raise Unusable(
+            "short-key",
+            f"it has {len(given)} characters where {_SHORTEST} are needed",
+            "SERVOIDENT_WEBHOOK_KEY",
+            "draw one with `servoident token`",
+        )
     if given:
         return Key(given.encode())
     file = settings.data / NAME

@@ -66,16 +66,30 @@ def deliveries(context: Context, webhook: str | None, after: str | None, limit: 
 
 def _view(row: WebhookRow, waiting: int, problem: str) -> WebhookView:
     return WebhookView(
-        id=row.id, url=row.url, events=row.events, who=row.who, created_at=row.created_at, revoked_at=row.revoked_at,
-        waiting=waiting, problem=problem,
-    )  # fmt: skip
+        id=row.id,
+        url=row.url,
+        events=row.events,
+        who=row.who,
+        created_at=row.created_at,
+        revoked_at=row.revoked_at,
+        waiting=waiting,
+        problem=problem,
+    )
 
 
 def _delivery(row: DeliveryRow, url: str) -> DeliveryView:
     return DeliveryView.model_validate(
         {
-            "id": row.id, "webhook": row.webhook, "url": url, "event": row.event, "state": row.state,
-            "tries": row.tries, "status": row.status, "problem": row.problem, "created_at": row.created_at,
-            "next_at": row.next_at if row.state == "waiting" else None, "ended_at": row.ended_at,
+            "id": row.id,
+            "webhook": row.webhook,
+            "url": url,
+            "event": row.event,
+            "state": row.state,
+            "tries": row.tries,
+            "status": row.status,
+            "problem": row.problem,
+            "created_at": row.created_at,
+            "next_at": row.next_at if row.state == "waiting" else None,
+            "ended_at": row.ended_at,
         }
-    )  # fmt: skip
+    )

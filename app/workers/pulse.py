@@ -60,9 +60,13 @@ class Pulse:
     def _enter(self) -> None:
         with self.sessions.begin() as session:
             repository.enter(
-                session, self.name, start=self.begun, host=platform.node(), process=os.getpid(),
+                session,
+                self.name,
+                start=self.begun,
+                host=platform.node(),
+                process=os.getpid(),
                 version=version("servoident"),
-            )  # fmt: skip
+            )
 
     def _beat(self) -> None:
         while not self._ended.wait(BEAT):

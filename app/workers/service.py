@@ -21,6 +21,14 @@ def _view(row: WorkerRow, job: JobRow | None, serial: str | None) -> WorkerView:
     """A worker as it is sent."""
     state = "silent" if row.silent else "at work" if job else "waiting"
     return WorkerView(
-        name=row.name, host=row.host, process=row.process, version=row.version, started_at=row.started_at, state=state,
-        job=job.id if job else None, kind=job.kind if job else None, serial=serial, lease=job.fence if job else None,
-    )  # fmt: skip
+        name=row.name,
+        host=row.host,
+        process=row.process,
+        version=row.version,
+        started_at=row.started_at,
+        state=state,
+        job=job.id if job else None,
+        kind=job.kind if job else None,
+        serial=serial,
+        lease=job.fence if job else None,
+    )

@@ -25,7 +25,7 @@ PICTURES = {
     "time": {},
     "evolution": {},
     "sensitivity": {},
-}  # fmt: skip
+}
 
 
 def main() -> None:

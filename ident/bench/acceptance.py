@@ -39,13 +39,22 @@ QUANTITIES = {
     "phase_margin": ("rad", "least phase margin of the position loop with the stated regulator"),
 }
 """What a limit may be set for: unit and meaning."""
-_PRINTED = {"1": (100.0, "%"), "s": (1e3, "ms"), "Pa": (1e-6, "MPa"), "m/s": (1e3, "mm/s"), "dB": (1.0, "dB"),
-            "rad": (180.0 / math.pi, "°")}  # fmt: skip
+_PRINTED = {
+    "1": (100.0, "%"),
+    "s": (1e3, "ms"),
+    "Pa": (1e-6, "MPa"),
+    "m/s": (1e3, "mm/s"),
+    "dB": (1.0, "dB"),
+    "rad": (180.0 / math.pi, "°"),
+}
 """By SI unit, what a value is multiplied by for a reader, and in which unit it is then. No answer depends on it."""
 _CHARACTERISTIC = {
-    "gain": "gain", "gain_forward": "forward", "gain_back": "back", "nonlinearity": "nonlinearity",
+    "gain": "gain",
+    "gain_forward": "forward",
+    "gain_back": "back",
+    "nonlinearity": "nonlinearity",
     "asymmetry": "asymmetry",
-}  # fmt: skip
+}
 _SLOPE = (1e-8, "MPa/%")
 """The same of the slope of a pressure. No answer depends on it."""
 
@@ -94,8 +103,13 @@ def found_quantities(analysis: Analysis) -> dict[str, Found]:
     out: dict[str, Found] = {}
     if analysis.static is not None:
         s = analysis.static
-        out |= {"zero_shift": s.zero_shift, "dead_space": s.dead_space, "hysteresis": s.hysteresis, "kp": s.slope,
-                "friction": s.friction}  # fmt: skip
+        out |= {
+            "zero_shift": s.zero_shift,
+            "dead_space": s.dead_space,
+            "hysteresis": s.hysteresis,
+            "kp": s.slope,
+            "friction": s.friction,
+        }
     if analysis.whole is not None:
         out |= _of_whole(analysis)
     if analysis.delay is not None:

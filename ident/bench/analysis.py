@@ -142,10 +142,17 @@ def _whole(bench: BenchSet, model: Model, seen: dict[str, Observed], found: Anal
     with_delay, doubt = delay_check(whole, drifting)
     whole = replace(whole, scatter=scatter(whole) if doubt.doubt else with_delay[:-1, :-1])
     return replace(
-        found, static=refined_static(still, whole), by_range=ranges(still, whole), dynamics=lag,
-        speed=characteristic, delay=doubt, steps=steps, whole=whole,
-        errors=errors(whole.model, every), step_errors=errors(steps, every),
-    )  # fmt: skip
+        found,
+        static=refined_static(still, whole),
+        by_range=ranges(still, whole),
+        dynamics=lag,
+        speed=characteristic,
+        delay=doubt,
+        steps=steps,
+        whole=whole,
+        errors=errors(whole.model, every),
+        step_errors=errors(steps, every),
+    )
 
 
 def fit_whole(

@@ -25,9 +25,15 @@ _KEPT = 64
 
 
 def chain_response(
-    chain: Chain, values: Mapping[str, Array], supply: float, current: Array, rate: float, hold: str, start: float,
+    chain: Chain,
+    values: Mapping[str, Array],
+    supply: float,
+    current: Array,
+    rate: float,
+    hold: str,
+    start: float,
     what: str = "position",
-) -> Array:  # fmt: skip
+) -> Array:
     """One of :data:`SHOWN` for vectors of values, (vectors, n), of an actuator that stands at `start` (m).
 
     `current` is in rated currents, `values` maps what the chain's equations read to arrays (vectors,), SI.

@@ -52,8 +52,12 @@ def _refuse_candidates_given(fit: FitResult) -> None:
     own = of_model(given, preset_with(fit.model, fit.effects, given.custom))
     for name in (*given.bounds, *given.fixed):
         if name not in own.bounds and name not in own.fixed:
-            raise Unusable("bad-option", f"{name} is given, and effects of a bench are tried without bounds",
-                           "bounds or values", "leave it out")  # fmt: skip
+            raise Unusable(
+                "bad-option",
+                f"{name} is given, and effects of a bench are tried without bounds",
+                "bounds or values",
+                "leave it out",
+            )
 
 
 class BenchDiagnoser:
@@ -93,22 +97,34 @@ class BenchDiagnoser:
         )
         missing = () if self.complete else (FURTHER,)
         said = verdict_text(
-            added, groups, (), verdict.unexplained, errors, float(before["fit"] or 0.0), floor=self.floor["fit"],
+            added,
+            groups,
+            (),
+            verdict.unexplained,
+            errors,
+            float(before["fit"] or 0.0),
+            floor=self.floor["fit"],
             complete=self.complete,
-        )  # fmt: skip
+        )
         text = " ".join((said, *not_looked_at(missing)))
         return Diagnosis(
-            model=self.fit.model, effects=base.effects,
+            model=self.fit.model,
+            effects=base.effects,
             baseline=Baseline(before, self._offset(base), unstable=self._unstable(base)),
             noise_floor={"fit": self.floor["fit"], "held_out": None, "verify": self.floor["verify"]},
             candidates=tuple(self._ranked(c, group, base, i == 0) for i, c in enumerate(first)),
             ladder=tuple(self._rung(step, steps[i - 1] if i else None) for i, step in enumerate(steps)),
             verdict=replace(verdict, text=text),
-            proposals=(), complete=self.complete, not_looked_at=missing, seed=self.fit.seed,
+            proposals=(),
+            complete=self.complete,
+            not_looked_at=missing,
+            seed=self.fit.seed,
             seconds=self.course.seconds_taken,
-            version=version("servoident"), data_hash=self.matrix.data_hash,
-            settings=dict(self.fit.settings), preprocessing=self.fit.preprocessing,
-        )  # fmt: skip
+            version=version("servoident"),
+            data_hash=self.matrix.data_hash,
+            settings=dict(self.fit.settings),
+            preprocessing=self.fit.preprocessing,
+        )
 
     def _add(self, first: list[Candidate], steps: list[Refit]) -> None:
         """Fill the first ranking, and the refits from the fitted model to the last, each with one effect more."""
@@ -149,8 +165,10 @@ class BenchDiagnoser:
 
     def _unstable(self, refit: Refit) -> dict[str, tuple[str, ...]]:
         """By the use of records the ids of those on which the model is unstable, where there is time to simulate."""
-        runs = {use: in_time(lambda records=records: errors_of(records, refit.model)) or ()  # type: ignore[misc]
-                for use, records in self.records.items()}  # fmt: skip
+        runs = {
+            use: in_time(lambda records=records: errors_of(records, refit.model)) or ()  # type: ignore[misc]
+            for use, records in self.records.items()
+        }
         found = {use: tuple(one.id for one in of if one.unstable) for use, of in runs.items()}
         return {use: ids for use, ids in found.items() if ids}
 
@@ -171,20 +189,28 @@ class BenchDiagnoser:
         refit, effect = candidate.refit, self.refitter.effects[candidate.effect]
         helps, errors = candidate.worth_adding, (base.held_out_error, refit.held_out_error)
         return Ranked(
-            effect=candidate.effect, error=self._errors(refit), offset=self._offset(refit),
-            predicted_error=candidate.predicted, parameters=self._parameters(refit), unstable=self._unstable(refit),
+            effect=candidate.effect,
+            error=self._errors(refit),
+            offset=self._offset(refit),
+            predicted_error=candidate.predicted,
+            parameters=self._parameters(refit),
+            unstable=self._unstable(refit),
             group=group if candidate.effect in group and len(group) > 1 else (),
             evidence=evidence_figures(candidate.evidence, effect, helps),
             why=why_of_evidence(candidate.evidence, effect, errors, helps, None, best),
-        )  # fmt: skip
+        )
 
     def _rung(self, step: Refit, before: Refit | None) -> Rung:
         nats = None if before is None else compare(before.held_out, step.held_out).gain
         added = None if before is None else step.effects[-1]
         return Rung(
-            added=added, error=self._errors(step), offset=self._offset(step), nats=nats,
-            parameters=self._parameters(step), unstable=self._unstable(step),
-        )  # fmt: skip
+            added=added,
+            error=self._errors(step),
+            offset=self._offset(step),
+            nats=nats,
+            parameters=self._parameters(step),
+            unstable=self._unstable(step),
+        )
 
 
 def _alike(ranking: list[Candidate]) -> tuple[str, ...]:

@@ -91,9 +91,20 @@ def division(
 
 @jit(nogil=True, error_model="numpy")
 def respond_exact(  # noqa: PLR0912, PLR0915 - one loop over the samples, whose state would else be handed about
-    current: Array, late: float, step: float, held: bool, constants: Array, nodes: Array, pieces: Array, moves: Array,
-    begin_at: float, picked: NDArray[np.int64], between: float, position: Array, pressure: Array,
-) -> None:  # fmt: skip
+    current: Array,
+    late: float,
+    step: float,
+    held: bool,
+    constants: Array,
+    nodes: Array,
+    pieces: Array,
+    moves: Array,
+    begin_at: float,
+    picked: NDArray[np.int64],
+    between: float,
+    position: Array,
+    pressure: Array,
+) -> None:
     """Fill `position` (rows, picked) at samples, and `pressure` (rows or 0, n), in m and Pa.
 
     The first row is the answer; where there are more, the next :data:`CONSTANTS` are its derivatives with respect to T,

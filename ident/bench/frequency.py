@@ -59,8 +59,12 @@ def point(measured: Record) -> Response:
     drive = fit_sine(alpha, record.current, drift=True)
     count = int(np.floor(alpha[-1] / (2 * np.pi) + _OF.lacking))
     if count < 1 or drive.a2 <= 0:
-        raise Unusable("no-period", f"the record holds no whole period of {frequency:g} Hz", run_name(record.id),
-                       "record at least two periods, or correct frequency")  # fmt: skip
+        raise Unusable(
+            "no-period",
+            f"the record holds no whole period of {frequency:g} Hz",
+            run_name(record.id),
+            "record at least two periods, or correct frequency",
+        )
     first = 1 if count > 1 else 0  # the first period holds the start
     edges = [round(i * record.rate / frequency) for i in range(first, count + 1)]
     fits = [fit_sine(alpha[a:b], record.position[a:b], drift=True) for a, b in pairwise(edges)]
@@ -70,9 +74,16 @@ def point(measured: Record) -> Response:
     plain, printed = fit_sine(alpha[last], record.position[last]), as_printed(alpha[last], record.position[last])
     many = max(len(fits), 1) ** 0.5
     return Response(
-        record.id, frequency, drive.a2, float(amplitude.mean() / drive.a2), float(np.mean(lag)),
-        float(np.mean([fit.a1 for fit in fits])), float(np.mean([fit.drift for fit in fits])) * 2 * np.pi * frequency,
+        record.id,
+        frequency,
+        drive.a2,
+        float(amplitude.mean() / drive.a2),
+        float(np.mean(lag)),
+        float(np.mean([fit.a1 for fit in fits])),
+        float(np.mean([fit.drift for fit in fits])) * 2 * np.pi * frequency,
         float(np.mean([fit.rms for fit in fits]) / max(amplitude.mean() / np.sqrt(2), TINY)),
-        float(amplitude.std() / drive.a2 / many), float(np.std(lag) / many), len(fits),
+        float(amplitude.std() / drive.a2 / many),
+        float(np.std(lag) / many),
+        len(fits),
         printed.a2 / plain.a2 - 1.0,
-    )  # fmt: skip
+    )

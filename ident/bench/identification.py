@@ -193,24 +193,39 @@ class BenchIdentification:
             if (n := p.in_equations)
         }
         return FitResult(
-            model=self.preset.name, effects=tuple(effect.name for effect in self.preset.effects),
-            parameters=parameters, correlation=_called(called, solution.correlation), determined=(),
+            model=self.preset.name,
+            effects=tuple(effect.name for effect in self.preset.effects),
+            parameters=parameters,
+            correlation=_called(called, solution.correlation),
+            determined=(),
             undetermined=tuple(Undetermined(called[n], "these records hardly depend on it") for n in undetermined),
             error={"fit": _mean(runs, "fit", "error"), "held_out": None, "verify": _mean(runs, "verify", "error")},
             offset={"fit": _mean(runs, "fit", "offset"), "verify": _mean(runs, "verify", "offset")},
             error_with_mean={use: _mean(runs, use, "error_with_mean") for use in ("fit", "verify")},
             **rmse_of(runs, {use: [1.0] * sum(run.use == use for run in runs) for use in ("fit", "verify")}),
-            noise_floor={use: noise_floor(self.matrix, use) for use in ("fit", "verify")}, runs=runs,
-            method=self.settings.method, seed=self.settings.seed,
-            evaluations=int(state["evaluations"]) + solution.evaluations, seconds=time.monotonic() - self._started,
-            version=version("servoident"), data_hash=self.matrix.data_hash,
-            notes=(*self._far_bounds(_mean(runs, "fit", "error")), *self.matrix.notices, *self._doubts, *notes,
-                   *_compared(self.analysis, solution)),
-            settings=self.settings.to_json(), searched=tuple(called[n] for n in self.space.names),
-            evolution=evolution(self.space, state), actuator=self.matrix.actuator,
-            preprocessing=self.matrix.preprocessing, conditions=self.matrix.conditions,
+            noise_floor={use: noise_floor(self.matrix, use) for use in ("fit", "verify")},
+            runs=runs,
+            method=self.settings.method,
+            seed=self.settings.seed,
+            evaluations=int(state["evaluations"]) + solution.evaluations,
+            seconds=time.monotonic() - self._started,
+            version=version("servoident"),
+            data_hash=self.matrix.data_hash,
+            notes=(
+                *self._far_bounds(_mean(runs, "fit", "error")),
+                *self.matrix.notices,
+                *self._doubts,
+                *notes,
+                *_compared(self.analysis, solution),
+            ),
+            settings=self.settings.to_json(),
+            searched=tuple(called[n] for n in self.space.names),
+            evolution=evolution(self.space, state),
+            actuator=self.matrix.actuator,
+            preprocessing=self.matrix.preprocessing,
+            conditions=self.matrix.conditions,
             sheet=sheet_quantities(self.analysis, read_limits(self.matrix.limits_text, self.matrix.limits or "limits")),
-        )  # fmt: skip
+        )
 
     def _far_bounds(self, error: float | None) -> list[str]:
         """What was given far from where an actuator has the parameter, where the fit is hardly better than none."""
@@ -227,13 +242,26 @@ class BenchIdentification:
         return [note for note in self.analysis.notes if note != delay]
 
     def _estimate(
-        self, parameter: Parameter, value: float, deviation: float | None, bounds: tuple[float, float] | None,
+        self,
+        parameter: Parameter,
+        value: float,
+        deviation: float | None,
+        bounds: tuple[float, float] | None,
         unsure: bool,
-    ) -> Estimate:  # fmt: skip
+    ) -> Estimate:
         lower, upper = bounds or (value, value)
         at_bound = bounds is not None and not lower < value < upper
-        return Estimate(value, parameter.unit, None if unsure else deviation, lower, upper, at_bound, parameter.symbol,
-                        parameter.meaning, fixed=bounds is None)  # fmt: skip
+        return Estimate(
+            value,
+            parameter.unit,
+            None if unsure else deviation,
+            lower,
+            upper,
+            at_bound,
+            parameter.symbol,
+            parameter.meaning,
+            fixed=bounds is None,
+        )
 
 
 def _called(names: Mapping[str, str], correlation: Mapping[str, Mapping[str, float]]) -> dict[str, dict[str, float]]:

@@ -133,9 +133,16 @@ class Model:
         play = float(np.clip(self.I0, driven[0] - self.B, driven[0] + self.B))
         out = np.empty((3, len(driven)))
         respond(
-            driven, 1.0 / rate, divided, hold == "zoh", self.constants, self.table.nodes, self.table.pieces,
-            np.array([start, driven[0], driven[0], play]), out,
-        )  # fmt: skip
+            driven,
+            1.0 / rate,
+            divided,
+            hold == "zoh",
+            self.constants,
+            self.table.nodes,
+            self.table.pieces,
+            np.array([start, driven[0], driven[0], play]),
+            out,
+        )
         return Answer(*out)
 
 

@@ -128,10 +128,19 @@ class Observed:
             return out
         scales = np.array([self.position_scale if positions else 0.0, self.pressure_scale or 0.0])
         residuals(
-            record.current, 1.0 / record.rate, record.hold == "zoh", models.constants, models.each[0].table.nodes,
-            models.pieces, record.position, record.pressure if record.pressure is not None else _NOTHING,
-            np.array(self.parts, dtype=np.int64).reshape(-1, 2), scales, self.drifting, out,
-        )  # fmt: skip
+            record.current,
+            1.0 / record.rate,
+            record.hold == "zoh",
+            models.constants,
+            models.each[0].table.nodes,
+            models.pieces,
+            record.position,
+            record.pressure if record.pressure is not None else _NOTHING,
+            np.array(self.parts, dtype=np.int64).reshape(-1, 2),
+            scales,
+            self.drifting,
+            out,
+        )
         return out
 
     def _at_readings(self, models: Models, told: Readings, out: Array) -> None:
@@ -186,18 +195,37 @@ class Observed:
     ) -> None:
         record = self.record
         respond_exact(
-            record.current, model.delay * record.rate, 1.0 / record.rate, record.hold == "zoh", model.constants,
-            model.table.nodes, model.table.pieces, moves, self.start, picked, between, positions, pressures,
-        )  # fmt: skip
+            record.current,
+            model.delay * record.rate,
+            1.0 / record.rate,
+            record.hold == "zoh",
+            model.constants,
+            model.table.nodes,
+            model.table.pieces,
+            moves,
+            self.start,
+            picked,
+            between,
+            positions,
+            pressures,
+        )
 
     def _compared(
         self, told: Readings, picked: NDArray[np.int64], positions: Array, pressures: Array, slopes: bool, out: Array
     ) -> None:
         compared(
-            positions, pressures, slopes, picked, told.values, told.deviations,
+            positions,
+            pressures,
+            slopes,
+            picked,
+            told.values,
+            told.deviations,
             self.record.pressure if self.record.pressure is not None else _NOTHING,
-            np.array(self.parts, dtype=np.int64).reshape(-1, 2), self.pressure_scale or 0.0, self.drifting, out,
-        )  # fmt: skip
+            np.array(self.parts, dtype=np.int64).reshape(-1, 2),
+            self.pressure_scale or 0.0,
+            self.drifting,
+            out,
+        )
 
     def way(self, model: Model) -> Array:
         """The position of a model sample by sample, m, (n,)."""

@@ -130,10 +130,15 @@ def _row(one: AmplitudeMargin) -> tuple[str, ...]:
         return "none" if value is None else f"{value:.4g} {unit}"
 
     return (
-        f"{PER_CENT * one.amplitude:.4g} %", quantity(one.gain, "m/s"), f"{one.phase:.3g}°",
-        cell(one.gain_margin, "dB"), cell(one.phase_margin, "°"), cell(one.crossover, "Hz"),
-        cell(one.oscillation_frequency, "Hz"), cell(one.oscillation_gain, "1/m"),
-    )  # fmt: skip
+        f"{PER_CENT * one.amplitude:.4g} %",
+        quantity(one.gain, "m/s"),
+        f"{one.phase:.3g}°",
+        cell(one.gain_margin, "dB"),
+        cell(one.phase_margin, "°"),
+        cell(one.crossover, "Hz"),
+        cell(one.oscillation_frequency, "Hz"),
+        cell(one.oscillation_gain, "1/m"),
+    )
 
 
 def position_loop(fit: FitResult, regulator: Regulator, amplitudes: Sequence[float] = ()) -> PositionLoop:
@@ -173,12 +178,20 @@ def _actuator(fit: FitResult) -> Model:
     """The model of a fit. Raises Unusable."""
     preset = preset_with(fit.model, fit.effects, fit.settings.get("custom", ()))
     if preset.kind != "bench":
-        raise Unusable("another-model", f"the model {fit.model} has no play before its speed", "fit",
-                       "give a fit with --model kononykhin, or leave the regulator out")  # fmt: skip
+        raise Unusable(
+            "another-model",
+            f"the model {fit.model} has no play before its speed",
+            "fit",
+            "give a fit with --model kononykhin, or leave the regulator out",
+        )
     known = {COMMAND_DELAY.name, SECOND_LAG.name}
     if strange := [name for name in fit.effects if name not in known]:
-        raise Unusable("effect-in-loop", f"a describing function has no {strange[0]}", "fit",
-                       f"give a fit with no other effects than {' and '.join(sorted(known))}")  # fmt: skip
+        raise Unusable(
+            "effect-in-loop",
+            f"a describing function has no {strange[0]}",
+            "fit",
+            f"give a fit with no other effects than {' and '.join(sorted(known))}",
+        )
     supply = fit.actuator.supply_pressure if fit.actuator else None
     values = {name.replace(".", "__"): value for name, value in fit.values.items()}
     return model_of(values, math.inf if supply is None else supply, preset)

@@ -85,10 +85,18 @@ class Record:
         if self.hold == "zoh":  # at a sample the held current jumps: straight lines see the middle of the jump
             current = np.concatenate([current[:1], 0.5 * (current[:-1] + current[1:])])
         made = Record(
-            self.id, self.kind, self.rate / m, "linear", means(current), means(self.position),
-            None if self.pressure is None else means(self.pressure), self.resolution, self.frequency,
-            self.position_range, self.use,
-        )  # fmt: skip
+            self.id,
+            self.kind,
+            self.rate / m,
+            "linear",
+            means(current),
+            means(self.position),
+            None if self.pressure is None else means(self.pressure),
+            self.resolution,
+            self.frequency,
+            self.position_range,
+            self.use,
+        )
         made.__dict__["parts"] = tuple(
             (-(-a // m), b // m) for a, b in self.parts if b // m - -(-a // m) >= _OF.shortest
         )
@@ -123,8 +131,12 @@ def bench_set(matrix: Matrix, use: str | None = None) -> BenchSet:
     """The bench records of a matrix, all or of one use. Raises Unusable where there is none, or one lacks a channel."""
     runs = [run for run in matrix.runs if run.kind in BENCH and use in (None, run.use)]
     if not runs:
-        raise Unusable("missing-record", "no bench record: none of static, frequency, speed-levels, speed-continuous",
-                       "runs", "state kind: of each run")  # fmt: skip
+        raise Unusable(
+            "missing-record",
+            "no bench record: none of static, frequency, speed-levels, speed-continuous",
+            "runs",
+            "state kind: of each run",
+        )
     rated, notes = _rated(runs)
     supply = matrix.actuator.supply_pressure
     if supply is None:
@@ -137,8 +149,12 @@ def bench_set(matrix: Matrix, use: str | None = None) -> BenchSet:
 def _rated(runs: Sequence[Run]) -> tuple[float, list[str]]:
     stated = {run.rated_current for run in runs if run.rated_current is not None}
     if len(stated) > 1:
-        raise Unusable("rated-current", f"the runs state {len(stated)} rated currents", "rated_current",
-                       "state the same one for every run")  # fmt: skip
+        raise Unusable(
+            "rated-current",
+            f"the runs state {len(stated)} rated currents",
+            "rated_current",
+            "state the same one for every run",
+        )
     if stated:
         return stated.pop(), []
     largest = max(float(np.max(np.abs(_current(run)))) for run in runs)
@@ -169,9 +185,18 @@ def _record(run: Run, rated: float) -> Record:
     if run.kind == "frequency" and frequency is None:
         frequency = dominant(_current(run), run.sample_rate)
     return Record(
-        run.id, run.kind, run.sample_rate, run.hold, _current(run) / rated, position, pressure, resolution(position),
-        frequency, run.position_range, run.use,
-    )  # fmt: skip
+        run.id,
+        run.kind,
+        run.sample_rate,
+        run.hold,
+        _current(run) / rated,
+        position,
+        pressure,
+        resolution(position),
+        frequency,
+        run.position_range,
+        run.use,
+    )
 
 
 def step_of(records: Sequence[Record]) -> float:

@@ -54,10 +54,14 @@ def _speed(found: Speed) -> dict[str, Any]:
         "straightness": asdict(found.straightness),
         "levels": [asdict(level) for level in found.levels],
         "bezier": {"heights": list(found.bezier), "ends": list(found.bezier_ends)},
-        "table": {"currents": list(found.table.fractions), "forward": list(map(float, found.table.forward)),
-                  "back": list(map(float, found.table.back)), "interpolation": found.table.kind},
+        "table": {
+            "currents": list(found.table.fractions),
+            "forward": list(map(float, found.table.forward)),
+            "back": list(map(float, found.table.back)),
+            "interpolation": found.table.kind,
+        },
         "deviations": found.deviations,
-    }  # fmt: skip
+    }
 
 
 def _model(model: Model) -> dict[str, Any]:

@@ -81,9 +81,16 @@ def earlier(samples: Array, place: float) -> float:
 
 @jit(nogil=True, error_model="numpy")
 def respond(
-    current: Array, step: float, steps: int, held: bool, constants: Array, nodes: Array, pieces: Array, start: Array,
+    current: Array,
+    step: float,
+    steps: int,
+    held: bool,
+    constants: Array,
+    nodes: Array,
+    pieces: Array,
+    start: Array,
     out: Array,
-) -> None:  # fmt: skip
+) -> None:
     """Fill `out` (3, n) with position (m), pressure difference (Pa) and the current after the play.
 
     `constants` holds T, B, I0, kp, ΔPfr, Ps and the parameters of effects: second lag (s), stiction (Pa above ΔPfr),
@@ -148,9 +155,19 @@ def rest(answer: Array, measured: Array, first: int, end: int, scale: float, dri
 
 @jit(nogil=True, error_model="numpy")
 def residuals(
-    current: Array, step: float, held: bool, constants: Array, nodes: Array, pieces: Array,
-    position: Array, pressure: Array, parts: NDArray[np.int64], scales: Array, drifting: bool, out: Array,
-) -> None:  # fmt: skip
+    current: Array,
+    step: float,
+    held: bool,
+    constants: Array,
+    nodes: Array,
+    pieces: Array,
+    position: Array,
+    pressure: Array,
+    parts: NDArray[np.int64],
+    scales: Array,
+    drifting: bool,
+    out: Array,
+) -> None:
     """Fill `out` (models, samples compared) with the scaled residuals of several models on one record.
 
     `scales` are those of position and pressure, 0 where it is not compared; `pressure` is empty then.
@@ -175,9 +192,18 @@ def residuals(
 
 @jit(nogil=True, error_model="numpy")
 def compared(
-    positions: Array, pressures: Array, slopes: bool, picked: NDArray[np.int64], values: Array, deviations: Array,
-    measured: Array, parts: NDArray[np.int64], scale: float, drifting: bool, out: Array,
-) -> None:  # fmt: skip
+    positions: Array,
+    pressures: Array,
+    slopes: bool,
+    picked: NDArray[np.int64],
+    values: Array,
+    deviations: Array,
+    measured: Array,
+    parts: NDArray[np.int64],
+    scale: float,
+    drifting: bool,
+    out: Array,
+) -> None:
     """Fill `out` (rows, readings and pressures) with what answers leave of the readings, each over its deviation.
 
     `positions` (rows, picked) less `values`, less the mean of each part weighed by the deviations, or where `drifting`

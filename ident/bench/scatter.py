@@ -53,9 +53,14 @@ def _positions(residual: Residual, point: Array, observed: Observed, J: Array, r
     seen = np.flatnonzero(np.any(slopes, axis=1))
     scores = np.zeros((PLACES, len(slopes)))
     scores[:, seen] = at_places(
-        way, np.ascontiguousarray(slopes[seen].T), fastest(np.diff(way, prepend=way[0])), told.step, told.extra,
-        np.array(observed.parts, dtype=np.int64).reshape(-1, 2), PLACES,
-    )  # fmt: skip
+        way,
+        np.ascontiguousarray(slopes[seen].T),
+        fastest(np.diff(way, prepend=way[0])),
+        told.step,
+        told.extra,
+        np.array(observed.parts, dtype=np.int64).reshape(-1, 2),
+        PLACES,
+    )
     return np.asarray(out + np.cov(scores, rowvar=False).reshape(out.shape))
 
 

@@ -90,7 +90,9 @@ def dominant(signal: Array, rate: float) -> float:
     lines = np.abs(np.fft.rfft(drive * np.hanning(len(drive))))
     at, time = max(int(np.argmax(lines)), 1) * width, np.arange(len(drive)) / rate
     found = scipy.optimize.minimize_scalar(
-        lambda f: fit_sine(2 * np.pi * f * time, drive).rms, bounds=(at - width, at + width), method="bounded",
+        lambda f: fit_sine(2 * np.pi * f * time, drive).rms,
+        bounds=(at - width, at + width),
+        method="bounded",
         options={"xatol": ROUNDING * at},
-    )  # fmt: skip
+    )
     return float(found.x)

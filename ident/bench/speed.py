@@ -74,8 +74,12 @@ def speed(model: Model, records: Sequence[Record], observed: Sequence[Observed],
     curves = [curve(model, record) for record in records if record.kind == "speed-continuous"]
     points = _points(found, curves)
     if not len(points):
-        raise Unusable("no-movement", "the speed characteristic cannot be found: the link did not move at any level",
-                       run_name(records[0].id), "record levels beyond the dead space")  # fmt: skip
+        raise Unusable(
+            "no-movement",
+            "the speed characteristic cannot be found: the link did not move at any level",
+            run_name(records[0].id),
+            "record levels beyond the dead space",
+        )
     solution = fit_table(replace(model, table=through(points - [model.I0, 0.0], model.table)), observed)
     table = solution.model.table
     heights, ends = bezier(points[:, 0], points[:, 1], min(degree, max(1, len(points) - 1)), model.I0)

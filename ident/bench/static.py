@@ -60,8 +60,10 @@ def refined_static(records: Sequence[Record], whole: Solution) -> Static:
     observed = tuple(one for one in whole.residual.observed if one.record.id in wanted)
     seen = max(one.reach for one in observed) + abs(whole.model.I0) if any(one.positions for one in observed) else 0.0
     table = whole.model.table
-    sides = [names[:_speeds_seen(table, seen)] for names in (table.names[: len(table.fractions)],
-                                                            table.names[len(table.fractions) :])]  # fmt: skip
+    sides = [
+        names[: _speeds_seen(table, seen)]
+        for names in (table.names[: len(table.fractions)], table.names[len(table.fractions) :])
+    ]
     solution = solve(Residual(whole.model, observed, (*NAMES, *sides[0], *sides[1])), way=BENCH_CRITERIA.fits.last)
     return _result(records, replace(solution, scatter=scatter(solution)))
 
@@ -124,8 +126,12 @@ def by_groups(records: Sequence[Record]) -> tuple[float, float, float]:
             moving[sign].append(_pressure(record)[state == sign])
     up, down = (np.concatenate(starts[sign]) for sign in (1, -1))
     if not len(up) or not len(down):
-        raise Unusable("no-movement", "dead space and zero shift cannot be found: the link did not start both ways",
-                       run_name(records[0].id), "let the set position go further than the dead space")  # fmt: skip
+        raise Unusable(
+            "no-movement",
+            "dead space and zero shift cannot be found: the link did not start both ways",
+            run_name(records[0].id),
+            "let the set position go further than the dead space",
+        )
     high, low = (float(np.median(np.concatenate(moving[sign]))) for sign in (1, -1))
     zero, width = 0.5 * float(np.median(up) + np.median(down)), 0.5 * float(np.median(up) - np.median(down))
     return zero, max(width, _OF.least_width), max(0.5 * (high - low), 1.0)
@@ -133,6 +139,10 @@ def by_groups(records: Sequence[Record]) -> tuple[float, float, float]:
 
 def _pressure(record: Record) -> Array:
     if record.pressure is None:
-        raise Unusable("missing-channel", "kp, friction and hysteresis cannot be found without pressure_a, pressure_b",
-                       run_name(record.id), "record both cavity pressures at the static test")  # fmt: skip
+        raise Unusable(
+            "missing-channel",
+            "kp, friction and hysteresis cannot be found without pressure_a, pressure_b",
+            run_name(record.id),
+            "record both cavity pressures at the static test",
+        )
     return record.pressure

@@ -37,9 +37,12 @@ def straightness(current: Array, speed: Array) -> Straightness:
     gains = [_through_zero(current[side], speed[side]) for side in (current > 0, current < 0)]
     mean = 0.5 * (gains[0] + gains[1])
     return Straightness(
-        float(line[0]), float(np.max(np.abs(speed - A @ line))) / full, gains[0], gains[1],
+        float(line[0]),
+        float(np.max(np.abs(speed - A @ line))) / full,
+        gains[0],
+        gains[1],
         (gains[0] - gains[1]) / mean if mean else 0.0,
-    )  # fmt: skip
+    )
 
 
 def of_table(table: SpeedTable) -> Straightness:

@@ -22,8 +22,10 @@ def with_sheet(analysis: Analysis, lines: Iterable[Line]) -> Iterator[Listing | 
     yield Listing("", header, sheet_rows(lines), numbers)
     if analysis.delay is not None:
         related = analysis.delay.correlation
-        yield (f"correlation: T and delay {related['T']['delay']:.2f}, B and delay {related['B']['delay']:.2f}, "
-               f"T and B {related['T']['B']:.2f}")  # fmt: skip
+        yield (
+            f"correlation: T and delay {related['T']['delay']:.2f}, B and delay {related['B']['delay']:.2f}, "
+            f"T and B {related['T']['B']:.2f}"
+        )
     for missing in analysis.missing:
         yield f"not found: {missing.text}"
     for note in analysis.notes:

@@ -43,9 +43,17 @@ def _conditions(run: Run, actuator: Actuator) -> dict[str, float]:
     specimen = run.specimen or Specimen()
     area = 1.0 if actuator.piston_area is None else actuator.piston_area
     supply = _mean(run, "supply_pressure", "Pa") or actuator.supply_pressure or NEVER
-    return {"Kp": run.Kp, "mL": specimen.mass, "k": specimen.stiffness, "cL": specimen.damping, "A": area,
-            "Ir": run.rated_current or 1.0, "Ps": supply, "Nv": _mean(run, "vertical_load", "N"),
-            **means(run)}  # fmt: skip
+    return {
+        "Kp": run.Kp,
+        "mL": specimen.mass,
+        "k": specimen.stiffness,
+        "cL": specimen.damping,
+        "A": area,
+        "Ir": run.rated_current or 1.0,
+        "Ps": supply,
+        "Nv": _mean(run, "vertical_load", "N"),
+        **means(run),
+    }
 
 
 def _mean(run: Run, channel: str, unit: str) -> float:

@@ -45,9 +45,11 @@ def _refined(command: Samples, line: float) -> float:
     from scipy.optimize import minimize_scalar  # noqa: PLC0415 - few records need it
 
     found = minimize_scalar(
-        lambda tried: _left(command, tried), bounds=(line - NEAR, line + NEAR), method="bounded",
+        lambda tried: _left(command, tried),
+        bounds=(line - NEAR, line + NEAR),
+        method="bounded",
         options={"xatol": NEAR / STEPS},
-    )  # fmt: skip
+    )
     return float(found.x)
 
 

@@ -66,10 +66,15 @@ def shares(run: Run) -> tuple[float, float] | None:
     if len(u) - lags < LEAST * (lags + OTHER) or _still(u) > STILL:
         return None
     # What is foretold, the mean and the command's past; then the output's past; then its present.
-    table = np.column_stack([
-        _lagged(u, 0, 1, lags), np.ones(len(u) - lags), _lagged(u, 1, lags, lags), _lagged(y, 1, OTHER, lags),
-        _lagged(y, 0, 1, lags),
-    ])  # fmt: skip
+    table = np.column_stack(
+        [
+            _lagged(u, 0, 1, lags),
+            np.ones(len(u) - lags),
+            _lagged(u, 1, lags, lags),
+            _lagged(y, 1, OTHER, lags),
+            _lagged(y, 0, 1, lags),
+        ]
+    )
     rows = _ordinary(table[:, : lags + 2])
     if rows is None:
         return None

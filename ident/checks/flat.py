@@ -32,9 +32,15 @@ def flat(run: Run) -> Iterator[Finding]:
         if name == run.output and starts_again_from_rest(run.channels[name], end):
             continue
         text = message(
-            "check.flat", channel=name, run=run.id, first=first, last=end - 1,
-            duration=(end - first) / run.sample_rate, unit=run.time_unit, other=other,
-        )  # fmt: skip
+            "check.flat",
+            channel=name,
+            run=run.id,
+            first=first,
+            last=end - 1,
+            duration=(end - first) / run.sample_rate,
+            unit=run.time_unit,
+            other=other,
+        )
         yield Finding.of(run.id, "doubt", "flat", text)
 
 

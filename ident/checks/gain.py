@@ -16,8 +16,12 @@ BAND = (0.0, 0.1)  # of the command's power
 TURNED = 120.0  # degrees; the loop lags by less than 90 there
 LARGE, SMALL = 2.0, 1 / 7  # a closed position loop gives 0.5 to 1.2; stiff specimens and leakage lower it
 FACTORS = {
-    2.54: [("in", "cm")], 10.0: [("cm", "mm")], 25.4: [("in", "mm")], 100.0: [("m", "cm")], 1000.0: [("m", "mm")],
-}  # fmt: skip
+    2.54: [("in", "cm")],
+    10.0: [("cm", "mm")],
+    25.4: [("in", "mm")],
+    100.0: [("m", "cm")],
+    1000.0: [("m", "mm")],
+}
 """Factors of wrong units, with the two units that each lies between."""
 USUAL = 0.8  # gain of a position loop near the lowest frequencies of its band
 NEAR = 1.6  # either way; half the distance from 10 to 25.4

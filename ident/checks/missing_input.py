@@ -173,6 +173,12 @@ def _evidence(run: Run, motion: Motion, begins: Sequence[int], at_rest: NDArray[
     speed = least * run.sample_rate / motion.samples, by_time
     output = run.output if unit == "1" else f"{run.output} ({unit})"
     return message(
-        "missing_input", run=run.id, output=output, count=len(begins), start=begins[0] / run.sample_rate,
-        unit=run.time_unit, share=float(np.mean(moved >= least)), speed=speed,
-    )  # fmt: skip
+        "missing_input",
+        run=run.id,
+        output=output,
+        count=len(begins),
+        start=begins[0] / run.sample_rate,
+        unit=run.time_unit,
+        share=float(np.mean(moved >= least)),
+        speed=speed,
+    )

@@ -31,9 +31,12 @@ class SelfOscillation:
     def to_json(self) -> dict[str, str | float]:
         """In the contract's words."""
         return {
-            "run": self.run, "frequency": self.frequency, "growth": self.growth, "cause": str(self.cause),
+            "run": self.run,
+            "frequency": self.frequency,
+            "growth": self.growth,
+            "cause": str(self.cause),
             "evidence": str(self.evidence),
-        }  # fmt: skip
+        }
 
 
 def self_oscillating(run: Run) -> Iterator[Finding]:
@@ -51,9 +54,10 @@ def self_oscillation(run: Run) -> SelfOscillation | None:
         return None
     seconds, growth = run.time_unit == "s", found.growth * run.sample_rate
     said = {
-        "run": run.id, "output": run.output,
+        "run": run.id,
+        "output": run.output,
         "frequency": (frequency := found.frequency * run.sample_rate, "Hz" if seconds else "1/sample"),
-    }  # fmt: skip
+    }
     if growth:
         evidence = message("oscillation.growing", **said, time=(math.log(2) / growth, run.time_unit))
     else:

@@ -67,8 +67,9 @@ class Motion:
         count = len(self.way) - rest - self.samples
         most, fewest, up, down = (
             _ahead(of, self.way[begin:], self.samples)[:count]
-            for begin in (0, rest) for of in (maximum_filter1d, minimum_filter1d)
-        )  # fmt: skip
+            for begin in (0, rest)
+            for of in (maximum_filter1d, minimum_filter1d)
+        )
         creep, bend = 0.5 * (most + fewest), most - fewest
         rests = np.maximum(most, -fewest) <= SLOW * self.quick
         far = np.where(rests, least, np.maximum(least, BEND * bend))

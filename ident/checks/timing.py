@@ -44,9 +44,13 @@ def timing(run: Run, response: Response | None) -> Iterator[Finding]:
     highest = response.below(POWER)
     if run.hold != "band-limited" and run.sample_rate < SAMPLES_A_CYCLE * highest:
         text = message(
-            "check.few_samples", run=run.id, samples=run.sample_rate / highest, highest=highest, share=POWER,
+            "check.few_samples",
+            run=run.id,
+            samples=run.sample_rate / highest,
+            highest=highest,
+            share=POWER,
             least=SAMPLES_A_CYCLE * highest,
-        )  # fmt: skip
+        )
         yield Finding.of(run.id, "doubt", "sample-rate", text)
 
 

@@ -22,8 +22,11 @@ from ident.words.message import Message, message
 NEAR = 0.02  # a clock is right to 1e-4 and a repeated RMS to 1 %; by chance one ratio in 40 is so near to a factor
 Units = Sequence[tuple[str, str]]
 FACTORS: Mapping[float, Units] = {
-    25.4: [("in", "mm")], 60.0: [("min", "s")], 180 / pi: [("deg", "rad")], 9.80665: [("kgf", "N"), ("g", "m/s^2")],
-}  # fmt: skip
+    25.4: [("in", "mm")],
+    60.0: [("min", "s")],
+    180 / pi: [("deg", "rad")],
+    9.80665: [("kgf", "N"), ("g", "m/s^2")],
+}
 """Factors with the units that they lie between."""
 TENS: Mapping[int, Units] = {1: [("cm", "mm")], 2: [("m", "cm")], 3: [("m", "mm"), ("s", "ms")]}
 """Powers of ten that lie between units; the others count, too."""
@@ -310,8 +313,10 @@ def _alike(one: Record, other: Record) -> bool:
     """Whether two runs are of one kind: what is stated, and how often and how far the input moves."""
     first, second = one.run, other.run
     stated = (first.kind, first.output, first.units.get(one.driver)) == (
-        second.kind, second.output, second.units.get(other.driver)
-    )  # fmt: skip
+        second.kind,
+        second.output,
+        second.units.get(other.driver),
+    )
     return (
         stated
         and one.driver == other.driver

@@ -193,8 +193,10 @@ class Comparison(Shown):
     @property
     def fit_percent(self) -> dict[str, float | None]:
         """The fit to the data averaged over the runs of each use, %; None where the model is unstable on one."""
-        return {use: None if any(one.unstable for one in self._meant(use)) else self._mean(use, "fit_percent")
-                for use in USES}  # fmt: skip
+        return {
+            use: None if any(one.unstable for one in self._meant(use)) else self._mean(use, "fit_percent")
+            for use in USES
+        }
 
     @property
     def rmse(self) -> dict[str, float | None]:
@@ -233,11 +235,19 @@ class Comparison(Shown):
         `error_with_mean` is RMS(x − x_m)/std(x_m). Where the model is unstable on a run there is no RMSE and no MAE.
         """
         return [
-            {"id": one.run.id, "use": one.run.use, "error": one.error, "offset": one.offset,
-             "error_with_mean": one.error_with_mean, "fit_percent": one.fit_percent, "rmse": one.rmse, "mae": one.mae,
-             "unit": one.unit}
+            {
+                "id": one.run.id,
+                "use": one.run.use,
+                "error": one.error,
+                "offset": one.offset,
+                "error_with_mean": one.error_with_mean,
+                "fit_percent": one.fit_percent,
+                "rmse": one.rmse,
+                "mae": one.mae,
+                "unit": one.unit,
+            }
             for one in self.runs
-        ]  # fmt: skip
+        ]
 
     def _meant(self, use: str) -> list[RunComparison]:
         """The runs of a use that a mean is over: not those that the fit left out."""
@@ -302,6 +312,10 @@ def response(fit: FitResult, run: Run, actuator: Actuator, frequency: Array) -> 
     """
     preset, matrix, values = fitted(fit, Matrix(actuator, (run,)))
     if preset.core.memories:
-        raise Unusable("no-linear-core", f"the model {preset.name} has no linear core: its play acts at any amplitude",
-                       "frequency response", "use the figures of the bench")  # fmt: skip
+        raise Unusable(
+            "no-linear-core",
+            f"the model {preset.name} has no linear core: its play acts at any amplitude",
+            "frequency response",
+            "use the figures of the bench",
+        )
     return np.asarray(linear_model(preset.core, values, matrix.runs[0], actuator).frequency_response(frequency)[0])

@@ -181,8 +181,12 @@ class _Held:
         start = space.point({**wanted, **space.fixed}) if space.axes else np.empty(0)
         point, here = objective.optimum(np.clip(start, 0.0, 1.0))
         if not math.isfinite(here.error):
-            raise Unusable("unstable-model", f"the model is unstable with {name} = {value:.4g}", "profile",
-                           "narrow the bounds of the parameter")  # fmt: skip
+            raise Unusable(
+                "unstable-model",
+                f"the model is unstable with {name} = {value:.4g}",
+                "profile",
+                "narrow the bounds of the parameter",
+            )
         found = {key: float(entry[0]) for key, entry in space.values(point[None]).items()}
         return here, {key: found[preset.parameter(key).in_equations] for key in near}
 

@@ -41,10 +41,16 @@ def response_error(fit: FitResult, run: Run, actuator: Actuator, frequency: Arra
         return np.asarray(np.log(model.frequency_response(frequency)[0]))
 
     here = log_response(fit)
-    slopes = np.array([_wrapped(log_response(_moved(fit, name, _STEP * error)) - here) / _STEP
-                       for name, error in zip(names, deviation, strict=True)])  # fmt: skip
-    size, phase = (np.sqrt(np.maximum(np.einsum("af,ab,bf->f", part, correlation, part), 0.0))
-                   for part in (slopes.real, slopes.imag))  # fmt: skip
+    slopes = np.array(
+        [
+            _wrapped(log_response(_moved(fit, name, _STEP * error)) - here) / _STEP
+            for name, error in zip(names, deviation, strict=True)
+        ]
+    )
+    size, phase = (
+        np.sqrt(np.maximum(np.einsum("af,ab,bf->f", part, correlation, part), 0.0))
+        for part in (slopes.real, slopes.imag)
+    )
     return size, phase
 
 

@@ -82,9 +82,7 @@ def step_response(
     time = (np.arange(_SAMPLES) - round(_BEFORE * _SAMPLES)) / rate
     command = np.where(time >= 0, size, 0.0)
     channels = {"command": command, run.output: np.zeros(_SAMPLES)}
-    probe = replace(
-        run, channels=channels, sample_rate=rate, hold="zoh", assumed_beginning="at rest", past=None
-    )  # fmt: skip
+    probe = replace(run, channels=channels, sample_rate=rate, hold="zoh", assumed_beginning="at rest", past=None)
     (found,) = compare(Matrix(actuator, (probe,)), fit, simulator).runs
     response = StepResponse(time, found.modelled, size)
     if not np.isfinite(found.modelled).all() or not response.final:

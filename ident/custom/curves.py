@@ -35,8 +35,12 @@ def curve_of(fields: Fields) -> tuple[Line, tuple[Parameter, ...]] | None:
     knots = _knots(_listed(entry, "knots"))
     values = _listed(entry, "values")
     if len(values) != len(knots) or not 2 <= len(knots) <= MOST:
-        raise Unusable("bad-curve", f"{len(knots)} knots and {len(values)} values", "curve",
-                       f"give as many values as knots, 2 to {MOST}")  # fmt: skip
+        raise Unusable(
+            "bad-curve",
+            f"{len(knots)} knots and {len(values)} values",
+            "curve",
+            f"give as many values as knots, 2 to {MOST}",
+        )
     if any(b <= a for a, b in pairwise(knots)):
         raise Unusable("bad-curve", "the knots do not rise", "curve knots", "give them from the least to the largest")
     names = [f"{symbol}_{number}" for number in range(1, len(knots) + 1)]

@@ -42,8 +42,14 @@ from ident.units.quantity import shown
 Definition = Mapping[str, Any]
 KEYS = ("name", "place", "equation", "strength", "shape", "curve", "state", "meaning", "looks", "source")
 HANDED_ON = {
-    "controller": "e", "valve": "q", "spool": "w", "flow": "Q", "pressure": "D", "load": "R", "sensor": "y_fb",
-}  # fmt: skip
+    "controller": "e",
+    "valve": "q",
+    "spool": "w",
+    "flow": "Q",
+    "pressure": "D",
+    "load": "R",
+    "sensor": "y_fb",
+}
 """The signal that a place hands on: what an equation without ``NAME =`` redefines."""
 _LARGEST = 1_000_000  # bytes of a file
 _LINES = 8
@@ -103,12 +109,18 @@ def _read(text: str, model: str) -> Effect:
         own |= {f"curve value {p.name}": p.symbol for p in curve[1]}
     chosen = check_names(lines, place, own, _models(model))
     effect = Effect(
-        name=name, place=place, meaning=fields.text("meaning", "an effect of the user"), strength=strength,
-        texts=tuple(line.equation for line in lines), shape=shapes,
+        name=name,
+        place=place,
+        meaning=fields.text("meaning", "an effect of the user"),
+        strength=strength,
+        texts=tuple(line.equation for line in lines),
+        shape=shapes,
         units={line.target: chosen.chain.units[line.target] for line in lines if line.target in chosen.chain.units},
-        looks=fields.text("looks"), source=fields.text("source", "defined by the user"),
-        steps=2 if any(_KINKS.search(line.right) for line in lines) else 1, own=True,
-    )  # fmt: skip
+        looks=fields.text("looks"),
+        source=fields.text("source", "defined by the user"),
+        steps=2 if any(_KINKS.search(line.right) for line in lines) else 1,
+        own=True,
+    )
     refuse_unless_off(effect, chosen)
     return effect
 
@@ -141,8 +153,12 @@ def _models(model: str) -> tuple[Preset, ...]:
 def _name(fields: Fields) -> str:
     name = fields.text("name")
     if not is_name(name):
-        raise Unusable("bad-name", f"{shown(name)!r} is not a name of an effect", "effect name",
-                       "give letters, digits and single underscores, a letter first")  # fmt: skip
+        raise Unusable(
+            "bad-name",
+            f"{shown(name)!r} is not a name of an effect",
+            "effect name",
+            "give letters, digits and single underscores, a letter first",
+        )
     if name in {effect.name for effect in CATALOGUE}:
         raise Unusable("name-taken", f"the effect library has an effect {name}", "effect name", "give it another name")
     return name

@@ -71,8 +71,12 @@ def check_names(lines: Sequence[Line], place: str, own: Mapping[str, str], model
     chosen = next((model for model in models if _signals(model, place) & set(targets)), None)
     if chosen is None:
         there = " ".join(sorted({name for model in models for name in _signals(model, place, exactly=True)}))
-        raise Unusable("acts-on-nothing", f"{targets[-1]} is not a signal of the place {place} or before it",
-                       lines[-1].at(targets[-1]), f"redefine one of: {there or 'none in this model'}")  # fmt: skip
+        raise Unusable(
+            "acts-on-nothing",
+            f"{targets[-1]} is not a signal of the place {place} or before it",
+            lines[-1].at(targets[-1]),
+            f"redefine one of: {there or 'none in this model'}",
+        )
     known = _known(chosen)
     _refuse_shadows(lines, place, own, chosen, known)
     allowed = known | set(own.values()) | set(targets) | {TIME, *READABLE}

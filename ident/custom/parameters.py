@@ -47,8 +47,12 @@ def symbol_of(entry: Fields, given: object) -> str:
     """A symbol that can stand in an equation. Raises Unusable."""
     text = str(given)
     if not re.fullmatch(r"[A-Za-z][A-Za-z0-9]*(_[A-Za-z0-9]+)*", text) or len(text) > 30 or keyword.iskeyword(text):
-        raise Unusable("bad-name", f"{shown(text)!r} is not a symbol", entry.place("symbol"),
-                       "give letters and digits, a letter first")  # fmt: skip
+        raise Unusable(
+            "bad-name",
+            f"{shown(text)!r} is not a symbol",
+            entry.place("symbol"),
+            "give letters and digits, a letter first",
+        )
     return text
 
 

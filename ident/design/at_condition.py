@@ -55,8 +55,12 @@ class AtCondition:
         """
         here = fit.conditions.get(self.over)
         if here is None:
-            raise Unusable("no-condition", f"the fit does not know its {self.condition.title}", "at",
-                           "state it in the block test of matrix.yaml, and fit again")  # fmt: skip
+            raise Unusable(
+                "no-condition",
+                f"the fit does not know its {self.condition.title}",
+                "at",
+                "state it in the block test of matrix.yaml, and fit again",
+            )
         found = {name: Dependence.of_sets(self.over, self.sets, name) for name in fit.parameters}
         self._check(found, here)
         moved, said, kept = {}, [], []
@@ -66,14 +70,31 @@ class AtCondition:
                 kept.append(name)
             elif law.name != "constant":
                 moved[name] = _moved(estimate, law.change(here, self.value))
-                said.append(str(message("moved.by", name=name, law=law.name, before=estimate.value,
-                                        after=moved[name].value, unit=printed_unit(estimate.unit))))  # fmt: skip
-        text = [message("moved.from", there=self.condition.said(self.value), here=self.condition.said(here),
-                        of=self.of, sets=self._known, what="; ".join(said) or "nothing moves")]  # fmt: skip
+                said.append(
+                    str(
+                        message(
+                            "moved.by",
+                            name=name,
+                            law=law.name,
+                            before=estimate.value,
+                            after=moved[name].value,
+                            unit=printed_unit(estimate.unit),
+                        )
+                    )
+                )
+        text = [
+            message(
+                "moved.from",
+                there=self.condition.said(self.value),
+                here=self.condition.said(here),
+                of=self.of,
+                sets=self._known,
+                what="; ".join(said) or "nothing moves",
+            )
+        ]
         text += [message("moved.kept", names=kept)] if kept else []
         conditions = {**fit.conditions, self.over: self.value}
-        return Moved(replace(fit, parameters={**fit.parameters, **moved}, conditions=conditions),
-                     tuple(map(str, text)))  # fmt: skip
+        return Moved(replace(fit, parameters={**fit.parameters, **moved}, conditions=conditions), tuple(map(str, text)))
 
     @property
     def _known(self) -> int:

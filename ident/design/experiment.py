@@ -93,12 +93,22 @@ class Experiment(Shown):
         s = self.specimen
         specimen = None if s is None else {"mass": s.mass, "stiffness": s.stiffness, "damping": s.damping}
         return {
-            "specimen": specimen, "gain": self.gain, "amplitude": self.amplitude, "unit": self.unit,
-            "signal": self.signal, "frequency": self.frequency, "seconds": self.seconds,
-            "sample_rate": self.sample_rate, "seed": self.seed, "separation": self.separation, "so_far": self.so_far,
-            "typical": self.typical, "information": self.information, "std_errors": dict(self.std_errors),
+            "specimen": specimen,
+            "gain": self.gain,
+            "amplitude": self.amplitude,
+            "unit": self.unit,
+            "signal": self.signal,
+            "frequency": self.frequency,
+            "seconds": self.seconds,
+            "sample_rate": self.sample_rate,
+            "seed": self.seed,
+            "separation": self.separation,
+            "so_far": self.so_far,
+            "typical": self.typical,
+            "information": self.information,
+            "std_errors": dict(self.std_errors),
             "text": self.text,
-        }  # fmt: skip
+        }
 
     def entry(self) -> dict[str, Any]:
         """The run as matrix.yaml wants it, once it was recorded beside the command."""
@@ -108,10 +118,15 @@ class Experiment(Shown):
             "damping": f"{self.specimen.damping:g} N*s/m",
         }
         found = {
-            "id": f"next-{self.signal}", "file": "runs/next.csv", "sample_rate": f"{self.sample_rate:g} Hz",
-            "specimen": specimen, "gain": self.gain, "amplitude": f"{self.amplitude:g} {self.unit}",
-            "kind": KINDS[self.signal], "use": "fit",
-        }  # fmt: skip
+            "id": f"next-{self.signal}",
+            "file": "runs/next.csv",
+            "sample_rate": f"{self.sample_rate:g} Hz",
+            "specimen": specimen,
+            "gain": self.gain,
+            "amplitude": f"{self.amplitude:g} {self.unit}",
+            "kind": KINDS[self.signal],
+            "use": "fit",
+        }
         return {key: value for key, value in found.items() if value is not None}
 
     def write(self, out: Path) -> None:

@@ -60,8 +60,12 @@ def inside_rig(
             kept.setdefault((*key, smaller.amplitude), smaller)
     if not kept:
         remedy = f"at {needed:.3g} times the amplitudes of the matrix" if needed else "at smaller gains"
-        raise Unusable("beyond-limits", "every run that could be proposed leaves the limits of the rig", "rig",
-                       f"make runs {remedy}, or state wider limits")  # fmt: skip
+        raise Unusable(
+            "beyond-limits",
+            "every run that could be proposed leaves the limits of the rig",
+            "rig",
+            f"make runs {remedy}, or state wider limits",
+        )
     return list(kept.values())
 
 

@@ -79,9 +79,13 @@ def propose(in_question: Rivals, matrix: Matrix, seed: int = 0) -> Experiment:
     best = max(worths, key=lambda w: w.rank) if tells_apart else max(worths, key=lambda w: w.information)
     typical = float(np.median(pairs)) if len(rivals) > 1 else None
     found = replace(
-        best.experiment, separation=best.separation, so_far=so_far, typical=typical, information=best.information,
+        best.experiment,
+        separation=best.separation,
+        so_far=so_far,
+        typical=typical,
+        information=best.information,
         std_errors=best.std_errors,
-    )  # fmt: skip
+    )
     return _within_rig(replace(found, text=_text(found, rivals, tells_apart)), rivals, tells_apart)
 
 
@@ -153,8 +157,10 @@ def _judged(rivals: Sequence[Rival], experiments: Sequence[Experiment]) -> list[
     own = each(lambda one: one[0].normal_matrices(_recorded(kept, one[1])), told)
     worths = []
     for place, i in enumerate(sound):
-        tells = [_told(c, m[place], runs[i], y, experiments[i].seconds / length)
-                 for c, m, y in zip(rivals, own, outputs, strict=True)]  # fmt: skip
+        tells = [
+            _told(c, m[place], runs[i], y, experiments[i].seconds / length)
+            for c, m, y in zip(rivals, own, outputs, strict=True)
+        ]
         worths.append(Worth(experiments[i], pairs[place], min(t[0] for t in tells), tells[0][1]))
     return worths
 
@@ -164,9 +170,20 @@ def _run(experiment: Experiment, name: str, like: Run) -> Run:
     command = experiment.command()
     still = np.zeros(len(command))
     channels = {"command": command, like.output: still, "force": still}
-    return Run(name, "", experiment.sample_rate, channels, like.units, like.time_unit, experiment.specimen,
-               experiment.gain, kind=KINDS[experiment.signal], hold=like.hold, output=like.output,
-               assumed_beginning="at rest")  # fmt: skip
+    return Run(
+        name,
+        "",
+        experiment.sample_rate,
+        channels,
+        like.units,
+        like.time_unit,
+        experiment.specimen,
+        experiment.gain,
+        kind=KINDS[experiment.signal],
+        hold=like.hold,
+        output=like.output,
+        assumed_beginning="at rest",
+    )
 
 
 def _sound(y: Array, run: Run) -> bool:

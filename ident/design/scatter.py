@@ -30,8 +30,12 @@ class Scatter:
         Raises Unusable for fewer than three sets.
         """
         if len(sets) < FEWEST:
-            raise Unusable("too-few", f"{len(sets)} parameter sets of {of}", "spread",
-                           f"give at least {FEWEST}, or state the spread")  # fmt: skip
+            raise Unusable(
+                "too-few",
+                f"{len(sets)} parameter sets of {of}",
+                "spread",
+                f"give at least {FEWEST}, or state the spread",
+            )
         shared = set.intersection(*(set(one) for one in sets))
         values = {name: np.array([one[name] for one in sets]) for name in sets[0] if name in shared}
         means = {name: float(found.mean()) for name, found in values.items()}

@@ -56,9 +56,10 @@ def alternative_models(matrix: Matrix, fit: FitResult, custom: Iterable[Effect])
     for one in fit.structures:
         if one.machine != fit.model and one.values:
             settings = Settings(
-                model=one.machine, preprocessing=fit.settings.get("preprocessing", {}),
+                model=one.machine,
+                preprocessing=fit.settings.get("preprocessing", {}),
                 known_zeros=tuple(fit.settings.get("known_zeros", ())),
-            )  # fmt: skip
+            )
             family = CandidateModels.of(matrix, settings, custom)
             values = {family.preset.parameter(name).in_equations: value for name, value in one.values.items()}
             found.append(AlternativeModel(family, values))

@@ -41,7 +41,7 @@ def _like(refit: FittedModel, here: FittedModel, best: FittedModel) -> FittedMod
 
 def competing(
     fitted: FittedModel, others: Sequence[FittedModel], groups: Mapping[str, Sequence[Member]]
-) -> tuple[Alternative, ...]:  # fmt: skip
+) -> tuple[Alternative, ...]:
     """Each effect of the models `others` in the place of one of the fitted model and in no group with it, with the
     numbers of the two models.
     """

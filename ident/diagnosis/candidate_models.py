@@ -78,9 +78,13 @@ class CandidateModels:
 
     @classmethod
     def of(
-        cls, matrix: Matrix, given: Settings, custom: Iterable[Effect] = (), horizon: float | None = None,
+        cls,
+        matrix: Matrix,
+        given: Settings,
+        custom: Iterable[Effect] = (),
+        horizon: float | None = None,
         memory: float | None = None,
-    ) -> CandidateModels:  # fmt: skip
+    ) -> CandidateModels:
         """The models of the settings' preset with every effect that it has a place for."""
         preset, prepared = prepare(preset_named(given.model), matrix, given.load, given.preprocessing)
         matrix = with_known_zeros(prepared, given.known_zeros)
@@ -220,7 +224,7 @@ class CandidateModels:
 
     def reaching(
         self, effects: Iterable[str], fitness: SimulatedFitness, starts: Sequence[Mapping[str, float]], *found: str
-    ) -> SimulatedFitness:  # fmt: skip
+    ) -> SimulatedFitness:
         """The objective, reaching as far as some starts where nobody set how far: strengths, and those `found`."""
         names = [name for name in effects if name in self.effects and self.may_reach_farther(fitness, name)]
         own, space = searched_beyond(fitness, {*self.given.fixed, *self.given.bounds}, found), fitness.space
@@ -237,18 +241,23 @@ class CandidateModels:
             space = search_space(model, self.matrix, given, self.band)
             runs = self._shortened(samples) if samples else self.runs
             objectives[key] = SimulatedFitness(
-                model, self.matrix, runs, self.band, space, horizon=self.horizon, memory=self.memory, trusting=True,
+                model,
+                self.matrix,
+                runs,
+                self.band,
+                space,
+                horizon=self.horizon,
+                memory=self.memory,
+                trusting=True,
                 recent=self._recent,
-            )  # fmt: skip
+            )
         return objectives[key].fresh(objectives[key].runs)  # no search goes on from the first states of another
 
     def compared_records(self, samples: int = 0) -> ComparedRecords:
         """The records of at most so many samples in all, as models are compared on them."""
         runs = self._shortened(samples) if samples else self.runs
-        return self._compared.setdefault(samples, self._compared.get(samples) or ComparedRecords(runs, self._floors))
-
-    def _floors(self) -> Floors:
-        return self.floors
+        of_these = self._compared.get(samples) or ComparedRecords(runs, lambda: self.floors)
+        return self._compared.setdefault(samples, of_these)
 
     def _shortened(self, samples: int) -> tuple[Run, ...]:
         """The records at that length, the same ones for every model: what is known of a record is found once."""
@@ -264,9 +273,8 @@ class CandidateModels:
         """The noise floors of all runs of the matrix; over windows with what the noise adds where each begins."""
         begun = SimulatedRuns(self.preset, self.matrix, (), self.band, horizon=self.horizon, memory=self.memory)
         floors = noise_floors(self.matrix.runs, self.band, self.left_out, begun.shown)
-        floors = replace(
-            floors, by_run={run: None if run in self.contradicted else f for run, f in floors.by_run.items()}
-        )
+        by_run = {run: None if run in self.contradicted else floor for run, floor in floors.by_run.items()}
+        floors = replace(floors, by_run=by_run)
         if self.horizon is None or floors.measured:
             return floors
         return floors.times({run.id: float(np.sqrt(begun.anchoring(run).noise)) for run in self.matrix.runs})
@@ -327,7 +335,7 @@ class CandidateModels:
 
     def better_optimum(
         self, refit: FittedModel, starts: Sequence[Mapping[str, float]], aim: float = np.inf
-    ) -> FittedModel | None:  # fmt: skip
+    ) -> FittedModel | None:
         """The best refit of the same model from other starts, where one is better than `refit` and comes below `aim`.
 
         Both are judged on the beginnings of the records.
@@ -384,11 +392,7 @@ class CandidateModels:
         return each(lambda one: self.continued(one, on, CRITERIA.estimation.trial_samples), leading)
 
     def refit(
-        self,
-        effects: tuple[str, ...],
-        start: Mapping[str, float],
-        samples: int = 0,
-        way: Way | None = None,
+        self, effects: tuple[str, ...], start: Mapping[str, float], samples: int = 0, way: Way | None = None
     ) -> FittedModel:
         """The optimum near `start`, on shortened records where `samples` is given."""
         fitness = self.fitness(effects, samples)
@@ -402,9 +406,8 @@ class CandidateModels:
         if way is not free and found.asks_for(free, CRITERIA.ranking.promising):
             way, found = free, self._optimum(effects, fitness, found.point, free, samples)
         for _ in range(FIT_CRITERIA.ranges.rounds):
-            ended = [
-                self.strength(name) for name in effects if name in self.effects and self._asks_farther(found, name)
-            ]
+            added = [name for name in effects if name in self.effects]
+            ended = [self.strength(name) for name in added if self._asks_farther(found, name)]
             if not ended:
                 break
             wider = replace(self.fitness(effects, samples), space=wider_at(found.space, found.point, ended))
@@ -416,7 +419,7 @@ class CandidateModels:
 
     def _optimum(
         self, effects: tuple[str, ...], fitness: SimulatedFitness, start: Array, way: Way, samples: int
-    ) -> FittedModel:  # fmt: skip
+    ) -> FittedModel:
         """The optimum near a point of the objective's unit cube."""
         point, here = fitness.optimum(start, way)
         off = {p.in_equations for name, e in self.effects.items() if name not in effects for p in e.added}
@@ -471,7 +474,7 @@ class CandidateModels:
 
     def trial(
         self, effects: tuple[str, ...], starts: Sequence[Mapping[str, float]], aim: float = np.inf
-    ) -> FittedModel:  # fmt: skip
+    ) -> FittedModel:
         """A first refit on the beginnings of the records, from the one of the starts where the error is least.
 
         It is given up where it cannot come below `aim`.
@@ -479,13 +482,11 @@ class CandidateModels:
         fitness = self.fitness(effects, CRITERIA.estimation.trial_samples)
         values = [{**self.off, **start, **fitness.space.fixed} for start in starts]
         fitness = self.reaching(effects, fitness, values, *set(starts[0]).intersection(*starts[1:]))
-        errors = fitness.errors(
-            self.resting.held(fitness.space, np.array([fitness.space.point(one) for one in values]))
-        )
+        points = np.array([fitness.space.point(one) for one in values])
+        errors = fitness.errors(self.resting.held(fitness.space, points))
         start, _ = stable_minimum(list(zip(starts, errors.tolist(), strict=True)), lambda one: one[1])
-        return self.refit(
-            effects, start, CRITERIA.estimation.trial_samples, replace(CRITERIA.estimation.trial, aim=aim)
-        )
+        way = replace(CRITERIA.estimation.trial, aim=aim)
+        return self.refit(effects, start, CRITERIA.estimation.trial_samples, way)
 
     def pair_trial(self, first: FittedModel, second: FittedModel, aim: float) -> FittedModel:
         """A first refit with the last effects of two that has to come below `aim`, from either and from halfway."""

@@ -27,9 +27,13 @@ Names = tuple[str, ...]
 
 
 def challenged(
-    selection: Selection, steps: Rungs, suspects: Sequence[Suspect], stages: Stages, lag_pairs: Sequence[Names] = (),
+    selection: Selection,
+    steps: Rungs,
+    suspects: Sequence[Suspect],
+    stages: Stages,
+    lag_pairs: Sequence[Names] = (),
     elsewhere: Sequence[Explanation] = (),
-) -> Findings:  # fmt: skip
+) -> Findings:
     """The findings on a selection: its residual, validation data and bounds, together with those of other stages."""
     models, fitted, sets = selection.models, selection.fitted, selection.refitted_sets
     residual = in_time(lambda: models.last_residual(fitted))

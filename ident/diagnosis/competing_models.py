@@ -26,8 +26,12 @@ def competing_models(diagnosis: Diagnosis, custom: Sequence[Effect] = ()) -> Riv
     few values to put its models together.
     """
     if diagnosis.model in PRESETS and PRESETS[diagnosis.model].kind == "bench":
-        raise Unusable("no-experiment", "no run is proposed for the records of a bench", f"model {diagnosis.model}",
-                       "repeat the records on which the effects differ")  # fmt: skip
+        raise Unusable(
+            "no-experiment",
+            "no run is proposed for the records of a bench",
+            f"model {diagnosis.model}",
+            "repeat the records on which the effects differ",
+        )
     models = tuple(_model(diagnosis, values, custom) for values in _chosen(diagnosis))
     floor = diagnosis.noise_floor.get("fit") or 0.0
     suspect_runs = frozenset(suspect.run for suspect in diagnosis.verdict.suspects)

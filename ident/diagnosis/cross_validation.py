@@ -90,9 +90,13 @@ def scored(error: float, offset: float, weight: float) -> float:
 
 
 def out_of_fold(
-    point: Array, here: Local, simulate: Simulate, seen: Callable[[int, Array], Array], lengths: Sequence[int],
+    point: Array,
+    here: Local,
+    simulate: Simulate,
+    seen: Callable[[int, Array], Array],
+    lengths: Sequence[int],
     swept: bool = False,
-) -> list[Array]:  # fmt: skip
+) -> list[Array]:
     """The residuals (n,) of each run, each sample by a model that was fitted without its fold; means and all.
 
     The nuisance parameter of a record, its mean, is estimated from the whole record.
@@ -146,9 +150,12 @@ def _of_short_steps(
 
 
 def _of_long_steps(
-    point: Array, steps: Mapping[int, Array], simulate: Simulate, error: Callable[[Sequence[Array], int], float],
+    point: Array,
+    steps: Mapping[int, Array],
+    simulate: Simulate,
+    error: Callable[[Sequence[Array], int], float],
     held: Sequence[Sequence[int]],
-) -> dict[int, Sequence[Array]]:  # fmt: skip
+) -> dict[int, Sequence[Array]]:
     """The residuals by steps that are shortened until they explain the other folds better than the fit of all data."""
     if not steps:
         return {}

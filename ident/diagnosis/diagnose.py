@@ -30,7 +30,7 @@ from ident.diagnosis.sentences import (
     free_run_sentence,
     horizon_sentence,
     slip_sentence,
-)  # fmt: skip
+)
 from ident.diagnosis.shown_effects import fitted_with_shown
 from ident.diagnosis.slip_forces import slip_forces
 from ident.diagnosis.stages import EFFECTS, ERROR_BUDGET, FURTHER, LABELS, LATER, NEXT_RUN, TERMS, Stages, not_looked_at

@@ -119,8 +119,10 @@ def freed_refit(
         return None
     refit = models.converged(models.refit(best.effects, best.values))
     while refit.finite and (loose := undetermined(refit, models.effects[name])):
-        shape = tuple(replace(p, searched=p.searched and p.of_effect(name).in_equations not in loose)
-                      for p in models.effects[name].shape)  # fmt: skip
+        shape = tuple(
+            replace(p, searched=p.searched and p.of_effect(name).in_equations not in loose)
+            for p in models.effects[name].shape
+        )
         if not any(p.searched for p in shape):
             return None
         models = models.with_shapes({**models.effects, name: replace(models.effects[name], shape=shape)})

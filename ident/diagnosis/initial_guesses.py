@@ -47,10 +47,14 @@ def in_place_of_spring(base: FittedModel, effect: Effect) -> list[dict[str, floa
     motion = float(np.mean([run.motion for run in base.fitness.runs]))
     amplitude = float(np.sqrt(2.0)) * motion if way else 1.0  # that of a sine: it has yielded at the turning points
     return [
-        {**base.values, spring: (1.0 - share) * stiffness, strength: share * stiffness * amplitude,
-         **({way.in_equations: amplitude} if way else {})}
+        {
+            **base.values,
+            spring: (1.0 - share) * stiffness,
+            strength: share * stiffness * amplitude,
+            **({way.in_equations: amplitude} if way else {}),
+        }
         for share in criteria.spring_shares
-    ]  # fmt: skip
+    ]
 
 
 def way_of(effect: Effect) -> Parameter | None:

@@ -63,11 +63,13 @@ def _begun(models: CandidateModels, base: FittedModel, promising: Sequence[Predi
     strengths = [models.strength(prediction.effect) for prediction in promising]
     first_steps = [
         models.refit(
-            effects, {**values, **{name: share / len(promising) * values[name] for name in strengths}},
-            CRITERIA.estimation.rough_samples, CRITERIA.estimation.screen,
+            effects,
+            {**values, **{name: share / len(promising) * values[name] for name in strengths}},
+            CRITERIA.estimation.rough_samples,
+            CRITERIA.estimation.screen,
         )
         for share in CRITERIA.estimation.pair_shares
-    ]  # fmt: skip
+    ]
     return _refit(models, effects, stable_minimum(first_steps, lambda refit: refit.local.error).values)
 
 

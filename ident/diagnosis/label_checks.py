@@ -49,9 +49,10 @@ def label_suspects(models: CandidateModels, fitted: FittedModel, floors: Mapping
     usual = float(np.median(ratios))
     spread = robust_deviation(ratios - usual)
     outside = [
-        run for run, ratio in zip(runs, ratios, strict=True)
+        run
+        for run, ratio in zip(runs, ratios, strict=True)
         if ratio - usual > max(np.log(CRITERIA.labels.least_excess), CRITERIA.labels.outlier * spread)
-    ]  # fmt: skip
+    ]
     if len(outside) > max(1, CRITERIA.labels.most * len(runs)):
         return []
 

@@ -99,8 +99,9 @@ class Moves:
 
     def _ranking_by_path(self, selection: Selection) -> tuple[Candidate, ...]:
         base = selection.base
-        alone = {fitted.effects[-1]: fitted for fitted in selection.path
-                 if len(fitted.effects) == len(base.effects) + 1}  # fmt: skip
+        alone = {
+            fitted.effects[-1]: fitted for fitted in selection.path if len(fitted.effects) == len(base.effects) + 1
+        }
 
         def by_path(candidate: Candidate) -> Candidate:
             met, known = alone.get(candidate.effect), candidate.refit

@@ -56,9 +56,12 @@ def names(diagnosis: Diagnosis) -> Iterator[str]:
 
 
 def with_named(
-    settings: Settings, wanted: Sequence[str], custom: Sequence[Definition] = (), diagnosis: Diagnosis | None = None,
+    settings: Settings,
+    wanted: Sequence[str],
+    custom: Sequence[Definition] = (),
+    diagnosis: Diagnosis | None = None,
     kept: Kept = dict,
-) -> Settings:  # fmt: skip
+) -> Settings:
     """The settings of a fit with effects by name, and with all effects that `custom` defines.
 
     A name is first sought in the catalogue and the definitions, then in the `diagnosis`, then among the effects

@@ -10,8 +10,15 @@ from ident.diagnosis.sentences import has_two
 from ident.diagnosis.summary import next_step
 from ident.words.message import Message, message, said
 
-_NO_RUN = ("next.input", "next.oscillation", "next.label", "next.label_and", "next.label_value", "next.label_value_and",
-           "next.compare")  # fmt: skip
+_NO_RUN = (
+    "next.input",
+    "next.oscillation",
+    "next.label",
+    "next.label_and",
+    "next.label_value",
+    "next.label_value_and",
+    "next.compare",
+)
 """Steps that come before any run, because they change the models in question."""
 _RUN_FIRST = ("next.distinguish", "next.then")
 _RUN_NAMED = (*_RUN_FIRST, "next.add_and")

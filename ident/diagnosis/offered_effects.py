@@ -19,7 +19,7 @@ _OF_DRIVE = ("valve", "spool", "flow", "pressure")
 
 def offered_effects(
     catalogue: Iterable[Effect], custom: Iterable[Effect], preset: Preset, matrix: Matrix
-) -> dict[str, Effect]:  # fmt: skip
+) -> dict[str, Effect]:
     """The effects of the catalogue and of the user by their names, each about the middle of the stroke."""
     yields, has_places = _has_specimen(preset, matrix), not turns_round(matrix)
     listed = (*(e for e in catalogue if (yields or not e.of_specimen) and (has_places or not e.of_place)), *custom)

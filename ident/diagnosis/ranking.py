@@ -37,9 +37,14 @@ def _no_listener(_candidates: list[Candidate]) -> None:
 
 
 def rank(
-    models: CandidateModels, base: FittedModel, names: Sequence[str], report: Report, thorough: bool = True,
-    strong: bool = False, listener: Listener = _no_listener,
-) -> list[Candidate]:  # fmt: skip
+    models: CandidateModels,
+    base: FittedModel,
+    names: Sequence[str],
+    report: Report,
+    thorough: bool = True,
+    strong: bool = False,
+    listener: Listener = _no_listener,
+) -> list[Candidate]:
     """The candidates, best first.
 
     `thorough`: more are refitted, and also where no prediction is worth it. `strong`: from strong effects, too. A
@@ -49,9 +54,14 @@ def rank(
 
 
 def rank_each(
-    models: CandidateModels, bases: Sequence[Base], report: Report, thorough: bool = True, strong: bool = False,
-    incumbent: FittedModel | None = None, listener: Listener = _no_listener,
-) -> list[list[Candidate]]:  # fmt: skip
+    models: CandidateModels,
+    bases: Sequence[Base],
+    report: Report,
+    thorough: bool = True,
+    strong: bool = False,
+    incumbent: FittedModel | None = None,
+    listener: Listener = _no_listener,
+) -> list[list[Candidate]]:
     """The same for several models, with what is refitted for all of them side by side.
 
     With an `incumbent`, a model that each base is a part of, only candidates about as good as that count, and others
@@ -101,7 +111,7 @@ def rank_each(
 
 def _counted(
     stage: str, items: Sequence[Sequence[Item]], function: Callable[[FittedModel, Item], Candidate], report: Report
-) -> Callable[[FittedModel, Item], Candidate]:  # fmt: skip
+) -> Callable[[FittedModel, Item], Candidate]:
     """The function, which reports each item that it is through with, of those there are by then."""
 
     def total() -> int:
@@ -114,7 +124,7 @@ def _counted(
 
 def _that_count(
     base: FittedModel, trials: Sequence[Candidate], incumbent: FittedModel | None, error: float
-) -> list[Candidate]:  # fmt: skip
+) -> list[Candidate]:
     """The trials; that of the incumbent itself only where it is below an error, at a better optimum."""
     return [one for one in trials if not _is_incumbent(base, one.prediction, incumbent) or _comes_below(one, error)]
 
@@ -127,9 +137,12 @@ def _so_far(predicted: Sequence[Prediction], *stages: Sequence[Candidate]) -> li
 
 
 def _in_turn(
-    models: CandidateModels, bases: Sequence[FittedModel], predicted: Sequence[Sequence[Prediction]],
-    on_trial: list[list[Prediction]], trial: Callable[[FittedModel, Prediction], Candidate],
-) -> list[list[Candidate]]:  # fmt: skip
+    models: CandidateModels,
+    bases: Sequence[FittedModel],
+    predicted: Sequence[Sequence[Prediction]],
+    on_trial: list[list[Prediction]],
+    trial: Callable[[FittedModel, Prediction], Candidate],
+) -> list[list[Candidate]]:
     """A trial of each base's contenders, to which what they pass over is added, and then of that."""
     first = _side_by_side(trial, bases, on_trial)
     overlooked = [_overlooked(models, *of) for of in zip(bases, predicted, first, strict=True)]
@@ -139,9 +152,12 @@ def _in_turn(
 
 
 def _joined(
-    models: CandidateModels, base: FittedModel, predicted: Sequence[Prediction], stages: Sequence[Sequence[Candidate]],
+    models: CandidateModels,
+    base: FittedModel,
+    predicted: Sequence[Prediction],
+    stages: Sequence[Sequence[Candidate]],
     incumbent: FittedModel | None,
-) -> list[Candidate]:  # fmt: skip
+) -> list[Candidate]:
     """The candidates as far as each came; the model `beside` the base as it is, unless it was found anew and better."""
     came = {one.effect: one for one in chain(*stages)}
     came |= {
@@ -154,7 +170,7 @@ def _joined(
 
 def deepened(
     models: CandidateModels, base: FittedModel, ranking: Sequence[Candidate], report: Report
-) -> list[Candidate]:  # fmt: skip
+) -> list[Candidate]:
     """The ranking of a small matrix, once all its finalists are looked for elsewhere; as it is of a large one."""
     if not models.is_quick(base):
         return list(ranking)
@@ -281,7 +297,7 @@ def _near(models: CandidateModels, base: FittedModel, predictions: Sequence[Pred
 
 def _overlooked(
     models: CandidateModels, base: FittedModel, predictions: Sequence[Prediction], tried: Sequence[Candidate]
-) -> list[Prediction]:  # fmt: skip
+) -> list[Prediction]:
     """What promises anything near what was found, where those that promised most found less than that."""
     found = min((one.trial.local.error for one in tried if one.trial is not None), default=np.inf)
     near = CRITERIA.ranking.near_best * min(found / models.trial_error(base), 1.0)
@@ -304,7 +320,7 @@ def _few(models: CandidateModels, base: FittedModel) -> int:
 
 def _multistart(
     models: CandidateModels, targets: Mapping[tuple[str, ...], float], base: FittedModel, candidate: Candidate
-) -> Candidate:  # fmt: skip
+) -> Candidate:
     """The candidate, refitted from other strengths too where its error stays above the noise: there are local optima.
 
     Given up is what does not come below what is `asked` beside a base.

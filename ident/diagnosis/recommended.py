@@ -30,7 +30,7 @@ class End:
 
 def settings_after(
     found: FitResult | Diagnosis, effects: Sequence[str] = (), terms: int | None = None, search: bool = False
-) -> Settings:  # fmt: skip
+) -> Settings:
     """The settings of the fit that begins where a fit ended, or the recommended refit of a diagnosis.
 
     `effects` take another model that the diagnosis refitted, with just these added to the fitted one; `terms` the first
@@ -38,8 +38,12 @@ def settings_after(
     """
     if isinstance(found, FitResult):
         if effects or terms is not None:
-            raise Unusable("bad-option", "a start that is a fit takes neither effects nor terms", "start",
-                           "give a diagnosis, which refitted what it adds, or fit without a start")  # fmt: skip
+            raise Unusable(
+                "bad-option",
+                "a start that is a fit takes neither effects nor terms",
+                "start",
+                "give a diagnosis, which refitted what it adds, or fit without a start",
+            )
         return settings_from(found, search)
     if effects and terms is not None:
         raise Unusable(
@@ -48,8 +52,12 @@ def settings_after(
     end = end_with(found, effects) if effects else recommended(found, terms)
     if end is None:
         known = "; ".join(dict.fromkeys(", ".join(one.added) for one in _ends(found) if one.added))
-        raise Unusable("no-such-end", f"the diagnosis refitted no model with just {', '.join(effects)} added", "start",
-                       f"choose from {known or 'none'}; or fit without a start")  # fmt: skip
+        raise Unusable(
+            "no-such-end",
+            f"the diagnosis refitted no model with just {', '.join(effects)} added",
+            "start",
+            f"choose from {known or 'none'}; or fit without a start",
+        )
     return settings_of_end(found, end, search)
 
 
@@ -63,15 +71,20 @@ def recommended(diagnosis: Diagnosis, terms: int | None = None) -> End:
     """
     proposals = diagnosis.proposals or ()
     if terms is not None and not 0 <= terms <= len(proposals):
-        raise Unusable("bad-option", f"{count(terms, 'term')} of {len(proposals)}", "terms",
-                       f"give 0 to {len(proposals)}")  # fmt: skip
+        raise Unusable(
+            "bad-option", f"{count(terms, 'term')} of {len(proposals)}", "terms", f"give 0 to {len(proposals)}"
+        )
     taken = _supported(proposals) if terms is None else proposals[:terms]
     if taken:
         return _with_terms(taken)
     ladder = [end for end in _rungs(diagnosis) if not {*end.added} & {*diagnosis.verdict.unsupported}]
     if not ladder:
-        raise Unusable("bad-diagnosis", "the diagnosis holds no refit", "start",
-                       "give what `servoident diagnose --json FILE` wrote")  # fmt: skip
+        raise Unusable(
+            "bad-diagnosis",
+            "the diagnosis holds no refit",
+            "start",
+            "give what `servoident diagnose --json FILE` wrote",
+        )
     return ladder[-1]
 
 
@@ -101,9 +114,15 @@ def settings_of_end(diagnosis: Diagnosis, end: End, search: bool = False) -> Set
     before = Settings.from_json(dict(diagnosis.settings)) if diagnosis.settings else Settings(seed=diagnosis.seed)
     values = {name: one.value for name, one in end.parameters.items()}
     start = Start(
-        "diagnosis", values, diagnosis.horizon, diagnosis.memory, diagnosis.left_out, end.error.get("fit"),
-        diagnosis.data_hash, search=search,
-    )  # fmt: skip
+        "diagnosis",
+        values,
+        diagnosis.horizon,
+        diagnosis.memory,
+        diagnosis.left_out,
+        end.error.get("fit"),
+        diagnosis.data_hash,
+        search=search,
+    )
     effects, custom = tuple(dict.fromkeys((*diagnosis.effects, *end.added))), together(before.custom, end.custom)
     return replace(before, model=diagnosis.model, effects=effects, custom=custom, budget=None, start=start)
 

@@ -105,15 +105,28 @@ def _text(selection: Selection, steps: Rungs, findings: Findings, floor: Errors)
     steps = [step for step in steps if step[0] not in verdict.unsupported]
     fewer = None if verdict.contradictions else better_with_fewer(steps)
     return verdict_text(
-        verdict.effects, verdict.indistinguishable, findings.suspects, verdict.unexplained, steps[-1][1].errors,
-        selection.base.error, in_band is not False, floor["fit"], verdict.contradictions, selection.complete,
-        models.described, [name for name in findings.at_bound if name not in verdict.unsupported], fewer,
-        steps[-1][1].unstable.get("verify", ()), verdict.probabilities, verdict.group_probabilities, selection.limit,
+        verdict.effects,
+        verdict.indistinguishable,
+        findings.suspects,
+        verdict.unexplained,
+        steps[-1][1].errors,
+        selection.base.error,
+        in_band is not False,
+        floor["fit"],
+        verdict.contradictions,
+        selection.complete,
+        models.described,
+        [name for name in findings.at_bound if name not in verdict.unsupported],
+        fewer,
+        steps[-1][1].unstable.get("verify", ()),
+        verdict.probabilities,
+        verdict.group_probabilities,
+        selection.limit,
         [unconfirmed[name] for name in verdict.unconfirmed],
         verdict.noise_test is not None and verdict.noise_test.predicted is not None,
         noise_on_validation_data(steps[-1][1].errors, floor),
         (verdict.by_chance, after) if verdict.by_chance else None,
-    )  # fmt: skip
+    )
 
 
 def better_with_fewer(steps: Rungs) -> tuple[float, tuple[str, ...]] | None:
@@ -142,23 +155,27 @@ def _ranked(selection: Selection, floor: float | None, verdict: Verdict) -> list
     listed = []
     for i, candidate in enumerate(selection.ranking):
         refit, effect = candidate.refit, models.effects[candidate.effect]
-        listed.append(Ranked(
-            effect=candidate.effect,
-            error=refit.errors if refit else dict(NO_ERRORS),
-            offset=refit.held_out.offset if refit else None,
-            predicted_error=base.error * candidate.prediction.remaining,
-            parameters=refit.parameters if refit else {},
-            group=group_of(candidate.effect, verdict),
-            probability=verdict.probabilities.get(candidate.effect),
-            error_with_mean=refit.errors_with_mean if refit else {},
-            rmse=refit.rmse if refit else {},
-            rmse_unit=refit.rmse_unit if refit and refit.rmse else "",
-            unstable=refit.unstable if refit else {},
-            transducer_offset=refit.transducer_offset if refit else {},
-            evidence={"predicted_fall": candidate.prediction.reduction,
-                      **evidence_figures(candidate.evidence, effect, candidate.worth_adding)},
-            why=why(candidate, effect, before, floor, i == 0),
-        ))  # fmt: skip
+        listed.append(
+            Ranked(
+                effect=candidate.effect,
+                error=refit.errors if refit else dict(NO_ERRORS),
+                offset=refit.held_out.offset if refit else None,
+                predicted_error=base.error * candidate.prediction.remaining,
+                parameters=refit.parameters if refit else {},
+                group=group_of(candidate.effect, verdict),
+                probability=verdict.probabilities.get(candidate.effect),
+                error_with_mean=refit.errors_with_mean if refit else {},
+                rmse=refit.rmse if refit else {},
+                rmse_unit=refit.rmse_unit if refit and refit.rmse else "",
+                unstable=refit.unstable if refit else {},
+                transducer_offset=refit.transducer_offset if refit else {},
+                evidence={
+                    "predicted_fall": candidate.prediction.reduction,
+                    **evidence_figures(candidate.evidence, effect, candidate.worth_adding),
+                },
+                why=why(candidate, effect, before, floor, i == 0),
+            )
+        )
     return listed
 
 

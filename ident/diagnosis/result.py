@@ -332,12 +332,15 @@ class Diagnosis(Shown):
         """One record for each ranked effect, best first, for a data frame."""
         return [
             {
-                "effect": one.effect, "probability": one.probability, "predicted_error": one.predicted_error,
+                "effect": one.effect,
+                "probability": one.probability,
+                "predicted_error": one.predicted_error,
                 **{use: one.error.get(use) for use in ("fit", "held_out", "verify")},
-                "strength": strength.value if (strength := one.strength) else None, "why": one.why,
+                "strength": strength.value if (strength := one.strength) else None,
+                "why": one.why,
             }
             for one in self.candidates
-        ]  # fmt: skip
+        ]
 
     def to_json(self) -> dict[str, Any]:
         """The diagnosis as plain JSON data (no NaN, no infinity), without fields that an earlier version did not
@@ -370,5 +373,9 @@ def _in_own_names(data: object) -> object:
 
 def bad_diagnosis(why: str, where: str = "diagnosis") -> Unusable:
     """The refusal of data that are no diagnosis, or of a diagnosis whose models cannot be put together."""
-    return Unusable("bad-diagnosis", f"not the JSON of a diagnosis: {why}", where,
-                    "give the file that `servoident diagnose --json FILE` wrote")  # fmt: skip
+    return Unusable(
+        "bad-diagnosis",
+        f"not the JSON of a diagnosis: {why}",
+        where,
+        "give the file that `servoident diagnose --json FILE` wrote",
+    )

@@ -194,7 +194,7 @@ def _predicted(given: _Sensitivities, base: FittedModel, names: Sequence[str]) -
 
 def _beyond(
     models: CandidateModels, fitness: SimulatedFitness, values: Mapping[str, float], promises: Iterable[_Promise]
-) -> list[_Trial]:  # fmt: skip
+) -> list[_Trial]:
     """Strengths beyond the end of a range, of effects that promise most there, and more the stronger they are.
 
     The range of a machine of unknown size is an order of magnitude.

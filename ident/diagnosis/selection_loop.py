@@ -27,8 +27,12 @@ def select(moves: Moves, selection: Selection) -> Selection:
     with suppress(TimeIsUp):
         selection = add_and_exchange(moves, selection)
         for look_farther in (
-            moves.exchange_pass, moves.joint_refit, moves.strong_starts, moves.runner_up, moves.pair_search,
-        ):  # fmt: skip
+            moves.exchange_pass,
+            moves.joint_refit,
+            moves.strong_starts,
+            moves.runner_up,
+            moves.pair_search,
+        ):
             if moves.above_floor(selection):
                 farther = look_farther(selection) or selection
                 selection = add_and_exchange(moves, farther) if farther.changes > selection.changes else farther

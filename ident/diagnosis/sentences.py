@@ -38,14 +38,14 @@ def why(candidate: Candidate, effect: Effect, before: float, floor: float | None
 
 def why_of_evidence(
     evidence: Evidence, effect: Effect, errors: tuple[float, float], worth_adding: bool, floor: float | None, best: bool
-) -> str:  # fmt: skip
+) -> str:
     """The same of an effect that was refitted; `errors` are those on held-out data without it and with it."""
     return said(list(_reasons(evidence, effect, errors, worth_adding, floor, best)))
 
 
 def _reasons(
     evidence: Evidence, effect: Effect, errors: tuple[float, float], worth_adding: bool, floor: float | None, best: bool
-) -> Iterator[Message]:  # fmt: skip
+) -> Iterator[Message]:
     (before, after), refusal = errors, refusing(evidence, worth_adding)
     if refusal is None and floor is not None:
         yield message("why.change_floor", before=before, after=after, floor=floor)
@@ -66,13 +66,20 @@ def evidence_figures(evidence: Evidence | None, effect: Effect, worth_adding: bo
     if evidence is None:
         return {"confirmed": False, "looks": effect.looks}
     return {
-        "confirmed": True, "nats": evidence.gain, "nats_without_best_run": evidence.without, "most_nats": evidence.most,
-        "share": evidence.share.mean, "share_error": _known(evidence.share.error),
-        "weighted_share": evidence.weighted_share.mean, "weighted_share_error": _known(evidence.weighted_share.error),
-        "distinct": evidence.distinct, "beyond_chance": worth_adding,
+        "confirmed": True,
+        "nats": evidence.gain,
+        "nats_without_best_run": evidence.without,
+        "most_nats": evidence.most,
+        "share": evidence.share.mean,
+        "share_error": _known(evidence.share.error),
+        "weighted_share": evidence.weighted_share.mean,
+        "weighted_share_error": _known(evidence.weighted_share.error),
+        "distinct": evidence.distinct,
+        "beyond_chance": worth_adding,
         **{asked.figure: asked.yes(evidence, EVIDENCE_CRITERIA) for asked in QUESTIONS if asked.figure},
-        "looks": effect.looks, "meaning": effect.meaning,
-    }  # fmt: skip
+        "looks": effect.looks,
+        "meaning": effect.meaning,
+    }
 
 
 def _known(error: float) -> float | None:
@@ -80,14 +87,28 @@ def _known(error: float) -> float | None:
 
 
 def verdict_text(
-    added: Sequence[str], groups: Sequence[tuple[str, ...]], suspects: Sequence[Suspect], unexplained: bool,
-    errors: Mapping[str, float | None], before: float, in_band: bool = True, floor: float | None = None,
-    against: Sequence[Contradiction] = (), complete: bool = True, described: Callable[[str], str] = title,
-    bounded: Sequence[str] = (), fewer: tuple[float, Sequence[str]] | None = None, unstable: Sequence[str] = (),
-    probabilities: Mapping[str, float] = MappingProxyType({}), group_probabilities: Sequence[float] = (),
-    limit: int | None = None, unconfirmed: Sequence[VerifyChange] = (), by_prediction: bool = False,
-    noise_there: float | None = None, by_chance: tuple[Sequence[str], float | None] | None = None,
-) -> str:  # fmt: skip
+    added: Sequence[str],
+    groups: Sequence[tuple[str, ...]],
+    suspects: Sequence[Suspect],
+    unexplained: bool,
+    errors: Mapping[str, float | None],
+    before: float,
+    in_band: bool = True,
+    floor: float | None = None,
+    against: Sequence[Contradiction] = (),
+    complete: bool = True,
+    described: Callable[[str], str] = title,
+    bounded: Sequence[str] = (),
+    fewer: tuple[float, Sequence[str]] | None = None,
+    unstable: Sequence[str] = (),
+    probabilities: Mapping[str, float] = MappingProxyType({}),
+    group_probabilities: Sequence[float] = (),
+    limit: int | None = None,
+    unconfirmed: Sequence[VerifyChange] = (),
+    by_prediction: bool = False,
+    noise_there: float | None = None,
+    by_chance: tuple[Sequence[str], float | None] | None = None,
+) -> str:
     """The verdict in a few sentences, contradictions first.
 
     `in_band` is false where the noise in the band of the command is not known, `complete` where the search was stopped.
@@ -161,7 +182,7 @@ def _shows_nothing(named: str, change: VerifyChange) -> Message:
 
 def _falls(
     added: Sequence[str], effects: Sequence[Message], change: Message, partly: bool, improbable: bool
-) -> Message:  # fmt: skip
+) -> Message:
     """The message that the error falls with the added effects, and its meaning for the model."""
     if partly:
         return message("verdict.partly", effects=effects, change=change)
@@ -173,9 +194,13 @@ def _falls(
 
 
 def _remaining(
-    complete: bool, limit: int | None, probabilities: Mapping[str, float], in_band: bool, floor: float | None,
+    complete: bool,
+    limit: int | None,
+    probabilities: Mapping[str, float],
+    in_band: bool,
+    floor: float | None,
     predicted: bool,
-) -> Iterator[Message]:  # fmt: skip
+) -> Iterator[Message]:
     """The messages that the residual is more than noise, and why a part of it may be noise or a further effect."""
     examined = complete and limit is None
     if is_rather_noise(probabilities):
@@ -192,10 +217,12 @@ def _remaining(
 
 
 _PROBABLE: Mapping[str, str] = {
-    "effect": "effect.probable", "verdict.nothing": "verdict.nothing_probable",
-    "verdict.unpredicted": "verdict.unpredicted_probable", "verdict.unlisted": "verdict.unlisted_probable",
+    "effect": "effect.probable",
+    "verdict.nothing": "verdict.nothing_probable",
+    "verdict.unpredicted": "verdict.unpredicted_probable",
+    "verdict.unlisted": "verdict.unlisted_probable",
     "verdict.remains": "verdict.remains_probable",
-}  # fmt: skip
+}
 """For each message the message with a probability."""
 
 
@@ -207,9 +234,12 @@ def _probable(key: str, name: str, probabilities: Mapping[str, float], **values:
 
 
 def _lacking(
-    name: str, added: Sequence[str], of_groups: Mapping[tuple[str, ...], float], probabilities: Mapping[str, float],
+    name: str,
+    added: Sequence[str],
+    of_groups: Mapping[tuple[str, ...], float],
+    probabilities: Mapping[str, float],
     named: Callable[[str], str],
-) -> Message:  # fmt: skip
+) -> Message:
     """An effect and its probability; for an effect of a group, the whole group and the group's probability."""
     group = next((group for group in of_groups if name in group and not has_two(group, added)), ())
     if not group:
@@ -252,9 +282,11 @@ def cannot_distinguish(group: Sequence[str], added: Sequence[str]) -> str:
 
 
 def _change(
-    before: float, errors: Mapping[str, float | None], fewer: tuple[float, Sequence[str]] | None,
+    before: float,
+    errors: Mapping[str, float | None],
+    fewer: tuple[float, Sequence[str]] | None,
     unstable: Sequence[str],
-) -> Message:  # fmt: skip
+) -> Message:
     """The change of the error on estimation data, and the error on validation data."""
     after, verify = errors["fit"], errors.get("verify")
     if unstable:

@@ -73,7 +73,7 @@ class StructureChoice:
 
 def compared_structures(
     matrix: Matrix, report: Report = silent, preprocessing: Mapping[str, bool] = ALL_ON
-) -> tuple[Structure, ...]:  # fmt: skip
+) -> tuple[Structure, ...]:
     """The models in question, the chosen one first: the simplest whose held-out error is not worse.
 
     Where its residual exceeds the noise, each has one effect, and the most probable one is first. A machine that moves
@@ -87,7 +87,7 @@ def compared_structures(
 
 def _compared(
     matrix: Matrix, report: Report, preprocessing: Mapping[str, bool]
-) -> tuple[tuple[Structure, ...], FitResult | None]:  # fmt: skip
+) -> tuple[tuple[Structure, ...], FitResult | None]:
     """The models in question as :func:`compared_structures` has them, and the fit of the first where it was made.
 
     A loop that nobody stated is the only one where its fit explains the records. Where it explains hardly anything,
@@ -299,7 +299,7 @@ def _likeliest_windows(fitted: Sequence[_FittedStructure]) -> Window | None:
 
 def _all_fitted(
     models: Sequence[Preset], matrix: Matrix, report: Report, preprocessing: Mapping[str, bool]
-) -> dict[str, _FittedStructure]:  # fmt: skip
+) -> dict[str, _FittedStructure]:
     """The models in question, fitted. A model that a command in closed loop does not allow is left out if others
     remain, and so is a model with a level that the records do not determine, if a model that integrates remains.
 
@@ -322,7 +322,7 @@ def _all_fitted(
 
 def choose_structure(
     matrix: Matrix, report: Report = silent, preprocessing: Mapping[str, bool] = ALL_ON
-) -> StructureChoice:  # fmt: skip
+) -> StructureChoice:
     """The models in question, and the matrix with a notice that gives the reason for the first.
 
     There is no notice where the first is the usual model and the only one in question. `preprocessing` has false for

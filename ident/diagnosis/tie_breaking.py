@@ -16,9 +16,11 @@ Item = TypeVar("Item")
 
 
 def stable_ranking(
-    items: Sequence[Item], size: Callable[[Item], float], alike: Callable[[Item, Item], bool] = lambda *_: False,
+    items: Sequence[Item],
+    size: Callable[[Item], float],
+    alike: Callable[[Item, Item], bool] = lambda *_: False,
     tied: Callable[[Sequence[Item]], Sequence[Item]] = lambda ties: ties,
-) -> list[Item]:  # fmt: skip
+) -> list[Item]:
     """The items by size, the least first; items that tie with the least of them, or are `alike` with it, in their
     order.
 

@@ -104,7 +104,7 @@ def lag_ambiguities(models: CandidateModels, refit: FittedModel, added: Sequence
 
 def _in_place_of(
     models: CandidateModels, refit: FittedModel, pair: tuple[str, str], asked: float, two: tuple[str, str]
-) -> bool:  # fmt: skip
+) -> bool:
     """Whether two others do as well in the place of a pair, but for chance: a first refit has to come below `asked`."""
     rest = tuple(name for name in refit.effects if name not in pair)
     values = without_effect(without_effect(refit.values, pair[0]), pair[1])

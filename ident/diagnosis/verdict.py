@@ -203,7 +203,7 @@ def _unexplained(findings: Findings, criteria: Criteria) -> bool:
 
 def _reasons(
     findings: Findings, named: Names, dispensable_contradicted: bool, criteria: Criteria
-) -> tuple[Reason, ...]:  # fmt: skip
+) -> tuple[Reason, ...]:
     """Why the named effects may stand for others."""
     residual = findings.residual
     floor_known = residual is not None and residual.floor is not None

@@ -65,9 +65,14 @@ class Contradiction:
         if self.with_mean and self.after <= self.before:
             first, last = self.with_mean
             return message(
-                "contradicted.mean", named=of, first=first, last=last, deviations=self.deviations, before=self.before,
+                "contradicted.mean",
+                named=of,
+                first=first,
+                last=last,
+                deviations=self.deviations,
+                before=self.before,
                 after=self.after,
-            )  # fmt: skip
+            )
         if self.deviations is None:
             return message("contradicted.rises", named=of, before=self.before, after=self.after)
         return message(
@@ -128,9 +133,12 @@ class VerifyChange:
 
 
 def verify_change(
-    effect: str, runs: Sequence[Run], before: Sequence[Array], after: Sequence[Array],
+    effect: str,
+    runs: Sequence[Run],
+    before: Sequence[Array],
+    after: Sequence[Array],
     means: tuple[Array, Array] | None = None,
-) -> VerifyChange | None:  # fmt: skip
+) -> VerifyChange | None:
     """How the error over `runs` changes with an effect; None where the model is unstable without it.
 
     `before` and `after` are the residuals of each run without the effect and with it, (n,), less their mean or over
@@ -151,9 +159,14 @@ def verify_change(
     if means is None:
         return VerifyChange(effect, *with_mean, std_error, shown=shown)
     return VerifyChange(
-        effect, _error(runs, before), _error(runs, after), std_error, with_mean=with_mean, shown=shown,
+        effect,
+        _error(runs, before),
+        _error(runs, after),
+        std_error,
+        with_mean=with_mean,
+        shown=shown,
         std_error_without_mean=_error_of_difference(runs, before, after),
-    )  # fmt: skip
+    )
 
 
 def _raised(residuals: Sequence[Array], means: Array) -> list[Array]:

@@ -104,8 +104,12 @@ class Draft:
         time, rate, assumed = _clock(file, said)
         used = [answer.column for answer in (*found.values(), time) if answer.column != ""]
         if twice := {str(column) for column in used if used.count(column) > 1}:
-            raise Unusable("column-twice", f"{', '.join(sorted(twice))} is asked to be two channels", file.name,
-                           "give each channel its own column")  # fmt: skip
+            raise Unusable(
+                "column-twice",
+                f"{', '.join(sorted(twice))} is asked to be two channels",
+                file.name,
+                "give each channel its own column",
+            )
         hold = str(self.answers.common.get("hold", "")) or self._hold(file, found)
         return Known(found, time, rate, hold, (*doubts, *assumed, *_unused(file, used)))
 
@@ -231,8 +235,11 @@ class Draft:
 
     def _are_curves(self, known: Sequence[Known]) -> bool:
         """Whether reading will take the commands, of which none is held, to be band-limited."""
-        drives = [(file, one.channels["command"]) for file, one in zip(self.files, known, strict=True)
-                  if "command" in one.channels]  # fmt: skip
+        drives = [
+            (file, one.channels["command"])
+            for file, one in zip(self.files, known, strict=True)
+            if "command" in one.channels
+        ]
         return are_band_limited([file.values(answer.column) for file, answer in drives])
 
     def description(self) -> dict[str, Any]:

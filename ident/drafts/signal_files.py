@@ -121,6 +121,8 @@ def _run_names(runs: Sequence[tuple[str, str, str]]) -> list[str]:
     """A name for each run: what its files' names share, behind the folder's where that alone is not its own."""
     plain = [(before + after).strip("_-. ") for _, before, after in runs]
     folders = [PurePosixPath(folder).name for folder, *_ in runs]
-    found = [one if plain.count(one) == 1 else "-".join(filter(None, (of, one)))
-             for of, one in zip(folders, plain, strict=True)]  # fmt: skip
+    found = [
+        one if plain.count(one) == 1 else "-".join(filter(None, (of, one)))
+        for of, one in zip(folders, plain, strict=True)
+    ]
     return [one or of or "run" for one, of in zip(found, folders, strict=True)]

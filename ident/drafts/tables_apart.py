@@ -46,10 +46,12 @@ def _parts(name: str, data: bytes) -> list[tuple[str, bytes]]:
     path = PurePosixPath(name)
     told = "{}from {}, table {} of {}\n".format
     return [
-        (str(path.with_name(f"{path.stem}-{number}.txt")),
-         told(CUT, path.name, number, len(starts)).encode() + text[start:end])
+        (
+            str(path.with_name(f"{path.stem}-{number}.txt")),
+            told(CUT, path.name, number, len(starts)).encode() + text[start:end],
+        )
         for number, (start, end) in enumerate(zip(starts, [*starts[1:], len(text)], strict=True), 1)
-    ]  # fmt: skip
+    ]
 
 
 def _starts(text: bytes, layout: Layout) -> list[int]:
@@ -82,8 +84,10 @@ def _is_row(layout: Layout) -> Callable[[str], bool]:
 
     def is_row(line: str) -> bool:
         fields = layout.form.fields(line)
-        return len(fields) > max((*layout.numbers, *layout.stamps)) and all(
-            is_numeral(fields[n], bool(layout.form.comma)) for n in layout.numbers
-        ) and all(is_stamp(fields[n]) for n in layout.stamps)  # fmt: skip
+        return (
+            len(fields) > max((*layout.numbers, *layout.stamps))
+            and all(is_numeral(fields[n], bool(layout.form.comma)) for n in layout.numbers)
+            and all(is_stamp(fields[n]) for n in layout.stamps)
+        )
 
     return is_row

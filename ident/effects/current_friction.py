@@ -16,4 +16,4 @@ CURRENT_FRICTION = Effect(
     source="Bingham model of a magnetorheological damper; Spencer, Dyke, Sain and Carlson 1997",
     steps=2,
     needs=force_answers,
-)  # fmt: skip
+)

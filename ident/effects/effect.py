@@ -79,11 +79,19 @@ class Effect:
     def __post_init__(self) -> None:
         _ = self.equations
         if self.place not in PLACES or not self.name.isidentifier() or "__" in self.name:
-            raise Unusable("bad-effect", f"place {self.place!r}", f"effect {self.name!r}",
-                           f"choose a place from {', '.join(PLACES)} and an identifier as name")  # fmt: skip
+            raise Unusable(
+                "bad-effect",
+                f"place {self.place!r}",
+                f"effect {self.name!r}",
+                f"choose a place from {', '.join(PLACES)} and an identifier as name",
+            )
         if self.strength.value != 0 or not self.strength.lower <= 0 <= self.strength.upper:
-            raise Unusable("bad-effect", "0 is not in the bounds of the strength, or not its default",
-                           f"effect {self.name!r}", "let the strength be 0 where the effect is off")  # fmt: skip
+            raise Unusable(
+                "bad-effect",
+                "0 is not in the bounds of the strength, or not its default",
+                f"effect {self.name!r}",
+                "let the strength be 0 where the effect is off",
+            )
 
     @cached_property
     def equations(self) -> tuple[Equation, ...]:

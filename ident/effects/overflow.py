@@ -9,14 +9,27 @@ OVERFLOW = Effect(
     place="load",
     meaning="the liquid overflows an edge at the level 1/g, so the level hardly rises above it",
     strength=Parameter(
-        "inverse_level", "g", "1/m", 0.0, 1e3, 0.0, "inverse of the level of the edge", start=Starts.STROKE_END,
+        "inverse_level",
+        "g",
+        "1/m",
+        0.0,
+        1e3,
+        0.0,
+        "inverse of the level of the edge",
+        start=Starts.STROKE_END,
         of_motion=True,
     ),
     texts=("xo = xo * (1 + ro * max(g * x - 1, 0))",),
     units={"xo": "m"},
     shape=(
         Parameter(
-            "ratio", "ro", "1", 1.0, 30.0, 10.0, "growth of the outflow by a level above the edge, both of the whole",
+            "ratio",
+            "ro",
+            "1",
+            1.0,
+            30.0,
+            10.0,
+            "growth of the outflow by a level above the edge, both of the whole",
             start=Starts.AS_KNOWN,
         ),
     ),
@@ -24,4 +37,4 @@ OVERFLOW = Effect(
     source="weir, made linear in the small height above its edge",
     steps=2,
     needs=one_sided_position,
-)  # fmt: skip
+)

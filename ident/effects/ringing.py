@@ -61,9 +61,12 @@ def shown_twice(of: Sequence[Sequence[Mode]]) -> float | None:
     """The frequency of the least damped of the modes that two of several records show, or None."""
     found = [
         (max(one[0], other[0]), float(np.sqrt(one[1] * other[1])))
-        for number, modes in enumerate(of) for one in modes for others in of[:number] for other in others
+        for number, modes in enumerate(of)
+        for one in modes
+        for others in of[:number]
+        for other in others
         if _alike(one, other)
-    ]  # fmt: skip
+    ]
     return min(found)[1] if found else None
 
 

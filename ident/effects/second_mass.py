@@ -16,11 +16,18 @@ from ident.parameter import Parameter, Starts
 SHARE = Parameter("share", "mu", "1", 0.0, 0.98, 0.0, "share of the moving mass that is behind the spring")
 SHAPE = (
     Parameter(
-        "frequency", "wj", "1/s", 1.0, 1e3, 30.0, "frequency of the mass behind the spring, the drive at rest, rad/s",
-        searched=True, start=Starts.RESONANCE,
+        "frequency",
+        "wj",
+        "1/s",
+        1.0,
+        1e3,
+        30.0,
+        "frequency of the mass behind the spring, the drive at rest, rad/s",
+        searched=True,
+        start=Starts.RESONANCE,
     ),
     Parameter("damping", "zeta", "1", 0.01, 0.35, 0.1, "damping ratio of this motion"),
-)  # fmt: skip
+)
 TEXTS = (
     "xj' = v - vj",
     "vj' = wj**2 * xj + 2 * zeta * wj * (v - vj) - aB",

@@ -9,7 +9,13 @@ SENSOR_CURVE = Effect(
     place="sensor",
     meaning="the characteristic of the recorded displacement is curved to one side, right at both ends of its range",
     strength=Parameter(
-        "curvature", "c", "1/m", -10.0, 10.0, 0.0, "relative error for each metre from the end of the range",
+        "curvature",
+        "c",
+        "1/m",
+        -10.0,
+        10.0,
+        0.0,
+        "relative error for each metre from the end of the range",
         of_motion=True,
     ),
     texts=("y = y * (1 + c * (y - ye))",),
@@ -22,4 +28,4 @@ SENSOR_CURVE = Effect(
     looks="a gain that changes with the level; in open loop the dynamics do not change",
     source="terminal-based linearity of a level or pressure gauge, its second-order term",
     needs=one_sided_position,
-)  # fmt: skip
+)

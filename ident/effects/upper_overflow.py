@@ -16,7 +16,13 @@ UPPER_OVERFLOW = Effect(
     units={"ho": "m", "hi": "m"},
     shape=(
         Parameter(
-            "ratio", "ro", "1", 1.0, 30.0, 10.0, "growth of the outflow by a level above the edge, both of the whole",
+            "ratio",
+            "ro",
+            "1",
+            1.0,
+            30.0,
+            10.0,
+            "growth of the outflow by a level above the edge, both of the whole",
             start=Starts.AS_KNOWN,
         ),
         Parameter("caught", "si", "1", 0.0, 1.0, 0.5, "share of the overflow that the lower tank receives"),
@@ -25,4 +31,4 @@ UPPER_OVERFLOW = Effect(
     source="weir, made linear in the small height above its edge; Schoukens and Noël 2017",
     steps=2,
     needs=one_sided_position,
-)  # fmt: skip
+)

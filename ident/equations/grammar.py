@@ -69,8 +69,19 @@ TIME = "t"
 _ARGUMENTS = {"clip": 3, "max": 2, "min": 2, "where": 3, "lag": 2, "lag2": 3, "delay": 2, "dry": 4}
 _OPERATORS = (ast.Add, ast.Sub, ast.Mult, ast.Div, ast.Pow, ast.USub, ast.UAdd, ast.Not, ast.And, ast.Or)
 _COMPARISONS = (ast.Lt, ast.LtE, ast.Gt, ast.GtE)
-_NODES = (ast.BinOp, ast.UnaryOp, ast.BoolOp, ast.Compare, ast.IfExp, ast.Call, ast.Name, ast.Load, ast.Constant,
-          *_OPERATORS, *_COMPARISONS)  # fmt: skip
+_NODES = (
+    ast.BinOp,
+    ast.UnaryOp,
+    ast.BoolOp,
+    ast.Compare,
+    ast.IfExp,
+    ast.Call,
+    ast.Name,
+    ast.Load,
+    ast.Constant,
+    *_OPERATORS,
+    *_COMPARISONS,
+)
 _LONGEST, _DEEPEST, _MOST = 1000, 40, 300  # of what a user writes: characters, levels, quantities and operations
 _LARGEST = 1e60  # a number beyond it is no quantity of a machine
 _HIGHEST = 10.0  # power

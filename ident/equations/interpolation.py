@@ -45,8 +45,10 @@ def spline_slopes(h: Array, steepness: Array) -> Array:
     for i in range(1, n - 1):
         A[i, i - 1], A[i, i], A[i, i + 1] = width[i], 2.0 * (width[i - 1] + width[i]), width[i - 1]
         rhs[i] = 3.0 * (width[i] * steepness[i - 1] + width[i - 1] * steepness[i])
-    for row, a, b, first, second in ((0, 0, 1, steepness[0], steepness[1]),
-                                     (n - 1, -1, -2, steepness[-1], steepness[-2])):  # fmt: skip
+    for row, a, b, first, second in (
+        (0, 0, 1, steepness[0], steepness[1]),
+        (n - 1, -1, -2, steepness[-1], steepness[-2]),
+    ):
         step, total = (1, width[0] + width[1]) if row == 0 else (-1, width[-1] + width[-2])
         A[row, row], A[row, row + step] = width[b], total
         rhs[row] = ((width[a] + 2.0 * total) * width[b] * first + width[a] ** 2 * second) / total

@@ -10,8 +10,16 @@ from copy import deepcopy
 from ident.equations.equation import Equation
 
 _GREEK = {
-    "tau": "τ", "omega": "ω", "zeta": "ζ", "xi": "ξ", "beta": "β", "kappa": "κ", "alpha": "α", "sigma": "σ", "mu": "μ",
-}  # fmt: skip
+    "tau": "τ",
+    "omega": "ω",
+    "zeta": "ζ",
+    "xi": "ξ",
+    "beta": "β",
+    "kappa": "κ",
+    "alpha": "α",
+    "sigma": "σ",
+    "mu": "μ",
+}
 _WORD = 4  # letters: fewer are a symbol and its index
 _BINARY: dict[type[ast.AST], str] = {
     ast.Add: "+",

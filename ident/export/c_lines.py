@@ -10,9 +10,17 @@ from ident.equations.grammar import statement_of
 from ident.simulation.kernel import LANES
 
 _SIGNS: dict[type[ast.operator] | type[ast.cmpop], str] = {
-    ast.Add: "+", ast.Sub: "-", ast.Mult: "*", ast.Div: "/",
-    ast.Lt: "<", ast.LtE: "<=", ast.Gt: ">", ast.GtE: ">=", ast.Eq: "==", ast.NotEq: "!=",
-}  # fmt: skip
+    ast.Add: "+",
+    ast.Sub: "-",
+    ast.Mult: "*",
+    ast.Div: "/",
+    ast.Lt: "<",
+    ast.LtE: "<=",
+    ast.Gt: ">",
+    ast.GtE: ">=",
+    ast.Eq: "==",
+    ast.NotEq: "!=",
+}
 
 
 def c_lines(lines: Sequence[str], rows: Collection[int]) -> list[str]:

@@ -48,16 +48,25 @@ def _compiled(sources: dict[str, str], ending: str) -> bytes:
     """The shared library. Raises Unusable: ``no-compiler``, ``not-compiled``."""
     compiler = next(filter(None, map(shutil.which, COMPILERS)), None)
     if compiler is None:
-        raise Unusable("no-compiler", "an FMU holds machine code, and there is no C compiler here", "format fmu",
-                       "install gcc, or export the C header")  # fmt: skip
+        raise Unusable(
+            "no-compiler",
+            "an FMU holds machine code, and there is no C compiler here",
+            "format fmu",
+            "install gcc, or export the C header",
+        )
     with tempfile.TemporaryDirectory() as folder:
         for name, text in sources.items():
             (Path(folder) / name).write_text(text, encoding="utf-8")
         made = Path(folder) / f"{NAME}{ending}"
         options = ("-std=c99", "-O2", "-shared", "-fvisibility=hidden", *(() if ending == ".dll" else ("-fPIC",)))
         try:
-            subprocess.run([compiler, *options, "fmi.c", "-o", made.name, "-lm"], cwd=folder, check=True,
-                           capture_output=True, timeout=_LONGEST)  # fmt: skip
+            subprocess.run(
+                [compiler, *options, "fmi.c", "-o", made.name, "-lm"],
+                cwd=folder,
+                check=True,
+                capture_output=True,
+                timeout=_LONGEST,
+            )
         except (subprocess.SubprocessError, OSError) as error:
             said = getattr(error, "stderr", None) or b""
             what = (

@@ -27,11 +27,17 @@ def as_header(machine: ExportedMachine) -> str:
         conditions="\n".join(f" *   {comment(f'{name} = {value:.9g}')}" for name, value in machine.values.items()),
         channels="\n".join(f" *   y[{i}] {name} in {machine.unit(name)}" for i, name in enumerate(shown)),
         names="\n".join(f"#define SERVOIDENT_{name.upper()} {place}" for place, name in enumerate(shown)),
-        outputs=len(shown), rows=len(packed.rows), rate=number(machine.sample_rate), steps=machine.steps,
-        late=int(packed.whole[0]), delayed=int(packed.whole[0] + packed.share[0] > 0), before=before,
+        outputs=len(shown),
+        rows=len(packed.rows),
+        rate=number(machine.sample_rate),
+        steps=machine.steps,
+        late=int(packed.whole[0]),
+        delayed=int(packed.whole[0] + packed.share[0] > 0),
+        before=before,
         start=",\n    ".join(number(value) for value in packed.rows[:, 0]),
-        advance="\n    ".join(advance), show="\n    ".join(show),
-    )  # fmt: skip
+        advance="\n    ".join(advance),
+        show="\n    ".join(show),
+    )
 
 
 _HEADER = """/* {title}

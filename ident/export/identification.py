@@ -39,21 +39,31 @@ def as_identification(analysis: Analysis) -> str:
         or model.table.kind != SPLINE
         or any(one.readings is None for one in seen)
     ):
-        raise Unusable("no-export", "the model has effects, which a control unit does not identify", "fit",
-                       "identify the actuator without effects")  # fmt: skip
+        raise Unusable(
+            "no-export",
+            "the model has effects, which a control unit does not identify",
+            "fit",
+            "identify the actuator without effects",
+        )
     steps = {one.readings.step for one in seen if one.readings is not None}
     parts = [part for one in seen for part in one.parts]
     return CODE.substitute(
-        records=len(seen), parts=max(len(parts), 1), nodes=len(model.table.fractions), supply=_c(model.Ps),
-        converter=number(max(steps)), begin=_listed(values_of(model)),
+        records=len(seen),
+        parts=max(len(parts), 1),
+        nodes=len(model.table.fractions),
+        supply=_c(model.Ps),
+        converter=number(max(steps)),
+        begin=_listed(values_of(model)),
         moving=_listed(values_of(seen[0].moving or model)),
-        node_places=_listed(model.table.nodes.tolist()), basis=_basis(model.table),
+        node_places=_listed(model.table.nodes.tolist()),
+        basis=_basis(model.table),
         part_ends=",\n    ".join(f"{{{first}, {end}}}" for first, end in parts) or "{0, 0}",
         table=",\n    ".join(_record(one, sum(len(each.parts) for each in seen[:i])) for i, one in enumerate(seen)),
         order="\n".join(f" *   {i} {comment(one.record.id)}" for i, one in enumerate(seen)),
         names="\n".join(f"#define SERVOIDENT_{name.upper()} {i}" for i, name in enumerate(QUANTITIES)),
-        quantities=len(QUANTITIES), simulation=SIMULATION,
-    )  # fmt: skip
+        quantities=len(QUANTITIES),
+        simulation=SIMULATION,
+    )
 
 
 def values_of(model: Model) -> list[float]:
@@ -66,10 +76,16 @@ def _record(one: Observed, first_part: int) -> str:
     assert one.readings is not None
     told = one.positions > 0
     fields = (
-        one.record.length, first_part, len(one.parts), int(one.record.hold == "zoh"), int(told),
-        number(1.0 / one.record.rate), number(one.readings.extra if told else 1.0), number(one.pressure_scale or 0.0),
+        one.record.length,
+        first_part,
+        len(one.parts),
+        int(one.record.hold == "zoh"),
+        int(told),
+        number(1.0 / one.record.rate),
+        number(one.readings.extra if told else 1.0),
+        number(one.pressure_scale or 0.0),
         number(one.reach),
-    )  # fmt: skip
+    )
     return f"{{{', '.join(map(str, fields))}}}"
 
 

@@ -67,9 +67,11 @@ class ExportedMachine:
 
 
 def exported(
-    fit: FitResult, specimen: Specimen = Specimen(), gain: float | None = None,  # noqa: B008
+    fit: FitResult,
+    specimen: Specimen = Specimen(),  # noqa: B008
+    gain: float | None = None,
     sample_rate: float = USUAL_RATE,
-) -> ExportedMachine:  # fmt: skip
+) -> ExportedMachine:
     """The machine of a fit with what it moves, its gain Kp (that of the model, or 1) and a sample rate (Hz).
 
     The current of a bench's actuator is counted in rated currents; without a stated supply pressure none limits it.
@@ -89,8 +91,12 @@ def exported(
     if preset.kind == "bench":
         _check_bench(specimen, gain, actuator)
     elif "Ps" in preset.core.symbols and actuator.supply_pressure is None:
-        raise Unusable("not-stated", "this model depends on the supply pressure", "actuator supply_pressure",
-                       "state it in matrix.yaml and fit again")  # fmt: skip
+        raise Unusable(
+            "not-stated",
+            "this model depends on the supply pressure",
+            "actuator supply_pressure",
+            "state it in matrix.yaml and fit again",
+        )
     if any(name in fit.parameters for name, _ in (preset.without_area or {}).values()):
         actuator = replace(actuator, piston_area=None)  # the values are ratios to it
     elif preset.kind == "chain" and "A" in preset.chain.symbols and actuator.piston_area is None:
@@ -110,22 +116,38 @@ def exported(
 def _check_bench(specimen: Specimen, gain: float | None, actuator: Actuator) -> None:
     """Refuse what the actuator of a bench has not: a loop of its own, a mass, a spring on an unknown area."""
     if gain is not None or specimen.mass or specimen.damping:
-        raise Unusable("no-export", "an actuator of a bench has no loop, and moves no mass", "export",
-                       "leave gain, mass and damping out")  # fmt: skip
+        raise Unusable(
+            "no-export",
+            "an actuator of a bench has no loop, and moves no mass",
+            "export",
+            "leave gain, mass and damping out",
+        )
     if specimen.stiffness and actuator.piston_area is None:
-        raise Unusable("not-stated", "a spring acts on the piston area", "actuator piston_area",
-                       "state it in matrix.yaml and fit again")  # fmt: skip
+        raise Unusable(
+            "not-stated",
+            "a spring acts on the piston area",
+            "actuator piston_area",
+            "state it in matrix.yaml and fit again",
+        )
 
 
 def _check_driven(fit: FitResult, preset: Preset, specimen: Specimen) -> None:
     """Refuse what a file without a record has not: a measured force, and an input that is drawn through its samples."""
     read = frozenset[str]().union(*(equation.names for equation in preset.chain.equations))
     if FORCE in read:
-        raise Unusable("no-export", "a measured force drives this machine in addition to its command", "fit",
-                       "fit a model whose load is a specimen")  # fmt: skip
+        raise Unusable(
+            "no-export",
+            "a measured force drives this machine in addition to its command",
+            "fit",
+            "fit a model whose load is a specimen",
+        )
     if fit.settings.get("load") == "force" and specimen == Specimen():
-        raise Unusable("not-stated", "the load of this fit was the measured force, known for the measured runs only",
-                       "export", "state the specimen that it moves")  # fmt: skip
+        raise Unusable(
+            "not-stated",
+            "the load of this fit was the measured force, known for the measured runs only",
+            "export",
+            "state the specimen that it moves",
+        )
     if preset.data.driven_by in MOTIONS and INPUT_RATE in read:
         what = f"the {preset.data.driven_by} is drawn through its samples, and an exported machine holds its input"
         raise Unusable("no-export", what, "fit", "export a machine that a command or a force drives")

@@ -66,9 +66,15 @@ def as_mat(machine: ExportedMachine) -> bytes:
     """
     part = linear_part(machine)
     held: dict[str, Any] = {name: getattr(part, name) for name in ("A", "B", "C", "D")}
-    held |= {"x0": np.zeros((len(part.A), 1)), "Ts": 1.0 / machine.sample_rate, "InputName": _cells((part.input,)),
-             "OutputName": _cells(part.outputs), "OutputUnit": _cells(tuple(map(machine.unit, part.outputs))),
-             "StateName": _cells(part.states), "LeftOut": _cells(part.left_out)}  # fmt: skip
+    held |= {
+        "x0": np.zeros((len(part.A), 1)),
+        "Ts": 1.0 / machine.sample_rate,
+        "InputName": _cells((part.input,)),
+        "OutputName": _cells(part.outputs),
+        "OutputUnit": _cells(tuple(map(machine.unit, part.outputs))),
+        "StateName": _cells(part.states),
+        "LeftOut": _cells(part.left_out),
+    }
     file = io.BytesIO()
     scipy.io.savemat(file, held, format="5")
     return file.getvalue()

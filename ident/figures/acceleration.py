@@ -24,8 +24,9 @@ def acceleration_chart(shown: Mapping[str, HybridResult], look: Look) -> Chart:
     kept = {name: one.acceleration for name, one in shown.items() if one.acceleration is not None}
     rows: list[Row] = [
         {"f": round(f, 4), "l": round(level, 4), "s": name}
-        for name, one in kept.items() for f, level in zip(one.frequency, one.level, strict=True)
-    ]  # fmt: skip
+        for name, one in kept.items()
+        for f, level in zip(one.frequency, one.level, strict=True)
+    ]
     told = [
         f"{name}: at most {f'{one.worst:+.2f}'.replace('-', '−')} dB, at {one.worst_at:.3g} Hz"
         for name, one in kept.items()
@@ -49,6 +50,9 @@ def _drawn(of: Simulated, look: Look, _: Options) -> Chart:
 
 
 ACCELERATION = Drawing(
-    "acceleration", "Acceleration spectrum", Simulated, _drawn,
+    "acceleration",
+    "Acceleration spectrum",
+    Simulated,
+    _drawn,
     there=lambda of: any(one.acceleration is not None for one in of.runs.values()),
-)  # fmt: skip
+)

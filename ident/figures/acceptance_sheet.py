@@ -82,9 +82,11 @@ def _table(lines: Sequence[Line], of: Look) -> Panel:
         .mark_text(align="left", fontSize=11)
         .encode(
             x=alt.X("x:Q", axis=None, scale=alt.Scale(domain=[-8, 660], nice=False)),
-            y=alt.Y("y:Q", axis=None, scale=scale), text="t:N", color=colour,
+            y=alt.Y("y:Q", axis=None, scale=scale),
+            text="t:N",
+            color=colour,
         )
-    )  # fmt: skip
+    )
     return panel
 
 

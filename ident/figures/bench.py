@@ -16,6 +16,10 @@ def model_and_records(study: Study, what: str, *kinds: str) -> tuple[Model, tupl
     bench: BenchSet = bench_set(study.matrix)
     found = bench.of_kind(*kinds)
     if not found:
-        raise Unusable("missing-record", f"the {what} cannot be drawn without a record of kind {kinds[0]}", "figure",
-                       f"add a run with kind: {kinds[0]}")  # fmt: skip
+        raise Unusable(
+            "missing-record",
+            f"the {what} cannot be drawn without a record of kind {kinds[0]}",
+            "figure",
+            f"add a run with kind: {kinds[0]}",
+        )
     return model_of(values, bench.supply_pressure, preset), found

@@ -47,9 +47,14 @@ def readable(runs: Sequence[Run]) -> tuple[Run, ...]:
 
 
 def bode(
-    responses: Responses, told: Sequence[str], actuator: Actuator, look: Look, *, band: Band = OPEN,
+    responses: Responses,
+    told: Sequence[str],
+    actuator: Actuator,
+    look: Look,
+    *,
+    band: Band = OPEN,
     read: Sequence[Readouts] = (),
-) -> Filled:  # fmt: skip
+) -> Filled:
     """Magnitude (dB), phase (degrees, unwrapped) and coherence over frequency; one column a gain Kp.
 
     Measured points fade with their coherence, their bars hold 95 % of their random error. Lines are the models' own
@@ -65,10 +70,13 @@ def bode(
         "labels": responses.domain,
         "magnitude": list(responses.limits("a", "A")),
         "phase": list(responses.limits("p", "P")),
-        "lowest": lower, "highest": upper, "near": fine_ticks(lower, upper), "far": decade_ticks(lower, upper),
+        "lowest": lower,
+        "highest": upper,
+        "near": fine_ticks(lower, upper),
+        "far": decade_ticks(lower, upper),
         **{f"gain{place}": words.gain(gain) for place, gain in enumerate(gains)},
         **band_values(band),
-    }  # fmt: skip
+    }
     tables = {_data(place): responses.points[gain] for place, gain in enumerate(gains)}
     tables |= {_lines(place): responses.lines[gain] for place, gain in enumerate(gains)}
     marks = responses.marks(read)
@@ -128,9 +136,14 @@ def _frame(alike: _Alike, look: Look) -> Frame:
     panels = [panel for row in zip(*columns, strict=True) for panel in row]
     heading = {} if look.small else {"title": alt.TitleParams(blank("headline"), subtitle=blank("told"))}
     chart = alt.concat(
-        *panels, columns=alike.columns, spacing={"row": 12, "column": _GAP}, bounds="flush",
-        resolve=alt.Resolve(scale={"color": "shared", "opacity": "shared"}), config=look.config(), **heading,
-    )  # fmt: skip
+        *panels,
+        columns=alike.columns,
+        spacing={"row": 12, "column": _GAP},
+        bounds="flush",
+        resolve=alt.Resolve(scale={"color": "shared", "opacity": "shared"}),
+        config=look.config(),
+        **heading,
+    )
     return frame(chart, {**band_values(OPEN), "lowest": 0, "highest": 0, "near": [], "far": []})
 
 
@@ -210,9 +223,7 @@ def _column(alike: _Alike, look: Look, place: int) -> list[Panel]:
     return [panel.properties(width=width) for panel in (panels[:2] if look.small else panels)]
 
 
-def _panel(
-    alike: _Alike, look: Look, place: int, fields: _Fields, what: str, *, first: bool, **heading: Any
-) -> Panel:  # fmt: skip
+def _panel(alike: _Alike, look: Look, place: int, fields: _Fields, what: str, *, first: bool, **heading: Any) -> Panel:
     """One quantity: measured as points with error bars, model as lines in their bands."""
     scale = alt.Scale(domain=blank(fields.limits), nice=True, zero=False)
     axis = alt.Axis(title=what if first else None, labels=first, tickCount=6)
@@ -223,30 +234,39 @@ def _panel(
 
     shared: dict[str, Any] = {"x": x, "color": _colour(alike, look)}
     data, lines, marks = (alt.Chart(alt.NamedData(name(place))).encode(**shared) for name in (_data, _lines, _marks))
-    opacity = alt.Opacity(
-        "c:Q", scale=alt.Scale(domain=[0.3, 0.95], range=[0.06, 0.8], clamp=True), legend=None
-    )  # fmt: skip
+    opacity = alt.Opacity("c:Q", scale=alt.Scale(domain=[0.3, 0.95], range=[0.06, 0.8], clamp=True), legend=None)
     size, run = ("height", 200 if fields is _MAGNITUDE else 170), ["r:N", "s:N"]
     layers = [
         _shade(alike, look, named=look.small and fields is _PHASE),
-        lines.transform_calculate(low=f"datum.{fields.model} - datum.{fields.error}",
-                                  high=f"datum.{fields.model} + datum.{fields.error}")
-        .mark_area(opacity=0.18, clip=True).encode(y=y("low"), y2="high:Q", detail=run),
-        data.transform_calculate(**fields.bars).mark_rule(strokeWidth=0.8, clip=True)
+        lines.transform_calculate(
+            low=f"datum.{fields.model} - datum.{fields.error}", high=f"datum.{fields.model} + datum.{fields.error}"
+        )
+        .mark_area(opacity=0.18, clip=True)
+        .encode(y=y("low"), y2="high:Q", detail=run),
+        data.transform_calculate(**fields.bars)
+        .mark_rule(strokeWidth=0.8, clip=True)
         .encode(y=y("low"), y2="high:Q", opacity=opacity),
-        data.mark_circle(size=14, clip=True).encode(y=y(fields.measured), opacity=opacity,
-                                                    tooltip=_tooltip(alike, fields.measured, f"{what}, measured")),
+        data.mark_circle(size=14, clip=True).encode(
+            y=y(fields.measured), opacity=opacity, tooltip=_tooltip(alike, fields.measured, f"{what}, measured")
+        ),
         lines.mark_line(strokeWidth=1.6, clip=True).encode(
-            y=y(fields.model), detail=run, tooltip=_tooltip(alike, fields.model, f"{what}, model")),
-    ]  # fmt: skip
+            y=y(fields.model), detail=run, tooltip=_tooltip(alike, fields.model, f"{what}, model")
+        ),
+    ]
     if alike.compared:
         colour = alt.value(look.ink if alike.single else look.faint)
-        layers.append(lines.mark_line(strokeWidth=1.6, strokeDash=[6, 4], clip=True)
-                      .encode(y=y(fields.other), detail=run, color=colour))  # fmt: skip
+        layers.append(
+            lines.mark_line(strokeWidth=1.6, strokeDash=[6, 4], clip=True).encode(
+                y=y(fields.other), detail=run, color=colour
+            )
+        )
     if not look.small:
         told = [alt.Tooltip("t:N", title="Read off"), alt.Tooltip("f:Q", title=f"At ({alike.frequency})", format=".3g")]
-        layers.append(marks.mark_point(shape="diamond", size=70, strokeWidth=1.8, filled=False, clip=True, opacity=1)
-                      .encode(y=y(fields.model), tooltip=told))  # fmt: skip
+        layers.append(
+            marks.mark_point(shape="diamond", size=70, strokeWidth=1.8, filled=False, clip=True, opacity=1).encode(
+                y=y(fields.model), tooltip=told
+            )
+        )
     return alt.layer(*layers, **{size[0]: 0.6 * size[1] if look.small else size[1]}, **heading)
 
 
@@ -308,9 +328,11 @@ def _drawn(study: Study, look: Look, options: Options) -> Filled:
     runs, other = readable(candidates), candidate_of(options)
     compared = study.compared(runs).runs
     responses = Responses(
-        compared, logarithmic, study.beside(other).compared(runs).runs if other else (),
+        compared,
+        logarithmic,
+        study.beside(other).compared(runs).runs if other else (),
         errors=[partial(response_error, study.fit, run, study.matrix.actuator) for run in runs],
-    )  # fmt: skip
+    )
     name = called(other, study.fit)
     if look.small:
         return bode(responses, _briefly(responses, name, look), study.matrix.actuator, look, band=band)
@@ -327,9 +349,11 @@ def _several(study: Study, several: Sequence[FitResult], look: Look, options: Op
     fits = [each.fit for each in studies]
     actuator = study.matrix.actuator
     responses = Responses(
-        compared, _axis(options) == "log", models=titles_of(fits, compared),
+        compared,
+        _axis(options) == "log",
+        models=titles_of(fits, compared),
         errors=[partial(response_error, fit, run, actuator) for fit in fits],
-    )  # fmt: skip
+    )
     read = [readouts(each, fit, actuator, responses.band) for each, fit in zip(compared, fits, strict=True)]
     return bode(responses, _told_of_several(responses, read), actuator, look, band=band_of(options), read=read)
 

@@ -87,8 +87,10 @@ def _band(made: ControllerDesign) -> list[Row]:
 
 def _told(made: ControllerDesign) -> list[str]:
     design, found, judged = made.design, made.margins, made.robustness
-    lines = [f"{design.controller.name}, γmin {design.stabilised.gamma_min:.3f}, "
-             f"sensitivity peak {found.sensitivity_peak:.2f}"]  # fmt: skip
+    lines = [
+        f"{design.controller.name}, γmin {design.stabilised.gamma_min:.3f}, "
+        f"sensitivity peak {found.sensitivity_peak:.2f}"
+    ]
     if judged is not None:
         lines.append(f"band: 95 % of {judged.draws} draws from the fitted covariance, {judged.stable} of them stable")
     return lines

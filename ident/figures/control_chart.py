@@ -71,8 +71,11 @@ def _lines(factor: float, centre: list[float], control: list[float], product: li
 def _panel(name: str, title: str, sets: int, height: int, look: Look) -> Panel:
     """The values of a table over their place among the sets, with its lines."""
     ticks = list(range(1, sets + 1, -(-sets // _TICKS)))
-    x = alt.X("n:Q", axis=alt.Axis(title="set, in the order in which they were made", values=ticks, format="d"),
-              scale=alt.Scale(nice=False, domain=[0.5, sets + 0.5]))  # fmt: skip
+    x = alt.X(
+        "n:Q",
+        axis=alt.Axis(title="set, in the order in which they were made", values=ticks, format="d"),
+        scale=alt.Scale(nice=False, domain=[0.5, sets + 0.5]),
+    )
     y = alt.Y("v:Q", axis=alt.Axis(title=title), scale=alt.Scale(zero=False))
     base = alt.Chart(alt.NamedData(name)).encode(x=x, y=y)
     tooltip = [

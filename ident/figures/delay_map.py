@@ -33,8 +33,9 @@ def delay_map_chart(found: DelayMap, case: str, look: Look) -> Chart:
 def _rows(found: DelayMap) -> list[Row]:
     return [
         {"a": int(a), "b": int(b), "ok": bool(found.stable[i, j])}
-        for i, a in enumerate(found.first) for j, b in enumerate(found.second)
-    ]  # fmt: skip
+        for i, a in enumerate(found.first)
+        for j, b in enumerate(found.second)
+    ]
 
 
 def _drawn(of: Coupled, look: Look, _: Options) -> Chart:

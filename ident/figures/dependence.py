@@ -38,8 +38,11 @@ def dependence(of: OverCondition, look: Look) -> Chart:
     viscous = own.law is not None and own.law.form.viscous
     scale = alt.Scale(type="log", nice=False) if viscous else alt.Scale(zero=False)
     y = alt.Y("y:Q", title=words.axis(of.quantity, unit), scale=scale)
-    tooltip = [alt.Tooltip("of:N", title="Set of"), alt.Tooltip("x:Q", title=condition.title),
-               alt.Tooltip("y:Q", title=of.quantity)]  # fmt: skip
+    tooltip = [
+        alt.Tooltip("of:N", title="Set of"),
+        alt.Tooltip("x:Q", title=condition.title),
+        alt.Tooltip("y:Q", title=of.quantity),
+    ]
     points = alt.Chart(alt.InlineData(values=rows)).mark_circle(size=36, color=look.series[0], opacity=1)
     layers: list[Any] = [*_law(of, factor, shown, x, look), points.encode(x=x, y=y, tooltip=tooltip)]
     if given:
@@ -60,8 +63,10 @@ def _law(of: OverCondition, factor: float, shown: Any, x: alt.X, look: Look) -> 
         return []
     at = np.linspace(min(of.dependence.conditions), max(of.dependence.conditions), _DRAWN).tolist()
     levels = [(shown(one), law.at(one)) for one in at]
-    rows = [{"x": place, "y": factor * level.value, "low": factor * level.lower, "high": factor * level.upper}
-            for place, level in levels]  # fmt: skip
+    rows = [
+        {"x": place, "y": factor * level.value, "low": factor * level.lower, "high": factor * level.upper}
+        for place, level in levels
+    ]
     base = alt.Chart(alt.InlineData(values=rows))
     line = base.mark_line(color=look.ink, strokeWidth=1.5, strokeDash=[1, 0] if law.holds else [6, 4])
     drawn: list[Any] = [line.encode(x=x, y="y:Q")]

@@ -210,8 +210,10 @@ def _history(look: Look, wide: bool) -> Panel:
     y_axis = alt.Axis(title="Error, eq. (17) (%)", tickCount=5, format="~r")
     y = alt.Y("e:Q", scale=alt.Scale(type="log", nice=True), axis=y_axis)
     tips = [
-        alt.Tooltip("g:Q", title="Generation"), alt.Tooltip("s:N", title="Of"), alt.Tooltip("e:Q", title="Error (%)")
-    ]  # fmt: skip
+        alt.Tooltip("g:Q", title="Generation"),
+        alt.Tooltip("s:N", title="Of"),
+        alt.Tooltip("e:Q", title="Error (%)"),
+    ]
     panel: Panel = (
         alt.Chart(alt.NamedData("history"), width=look.across(720 if wide else 640), height=190)
         .mark_line(point=alt.OverlayMarkDef(size=18), strokeWidth=1.6)
@@ -230,7 +232,10 @@ def _drawn(study: Study, look: Look, options: Options) -> Chart:
 
 
 EVOLUTION = Drawing(
-    "evolution", "Evolution", Study, _drawn,
+    "evolution",
+    "Evolution",
+    Study,
+    _drawn,
     (Option("x", "Across", str | None, _searched), Option("y", "Up", str | None, _searched), Option("generations")),
     share=0.63,
-)  # fmt: skip
+)

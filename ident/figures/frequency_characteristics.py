@@ -33,9 +33,14 @@ def frequency_characteristics(
 
 
 def frequency_panels(
-    responses: Sequence[Response], records: Sequence[Record], model: Model | None, look: Look, width: int = 420,
-    height: int = 150, beside: bool = False,
-) -> tuple[Panel, Panel]:  # fmt: skip
+    responses: Sequence[Response],
+    records: Sequence[Record],
+    model: Model | None,
+    look: Look,
+    width: int = 420,
+    height: int = 150,
+    beside: bool = False,
+) -> tuple[Panel, Panel]:
     """Measured as points, the model, put through the same procedure, as lines; one above the other, or `beside` it."""
     measured = _rows(responses)
     modelled = [] if model is None else _rows([point(_of_model(record, model)) for record in records])
@@ -58,11 +63,14 @@ def frequency_panels(
 def _rows(responses: Sequence[Response]) -> Rows:
     return [
         {
-            "f": float(f"{r.frequency:.5g}"), "g": float(f"{20 * np.log10(max(10.0 * r.gain, 1e-12)):.5g}"),
-            "p": float(f"{-np.degrees(r.phase):.5g}"), "a": f"{100 * r.amplitude:.2g} %", "o": r.amplitude,
+            "f": float(f"{r.frequency:.5g}"),
+            "g": float(f"{20 * np.log10(max(10.0 * r.gain, 1e-12)):.5g}"),
+            "p": float(f"{-np.degrees(r.phase):.5g}"),
+            "a": f"{100 * r.amplitude:.2g} %",
+            "o": r.amplitude,
         }
         for r in responses
-    ]  # fmt: skip
+    ]
 
 
 def _of_model(record: Record, model: Model) -> Record:

@@ -76,6 +76,9 @@ def _drawn(of: Simulated, look: Look, _: Options) -> Chart:
 
 
 HYBRID_RESPONSE = Drawing(
-    "response", "Reference to measured displacement", Simulated, _drawn,
+    "response",
+    "Reference to measured displacement",
+    Simulated,
+    _drawn,
     there=lambda of: any(one.scores is not None for one in of.runs.values()),
-)  # fmt: skip
+)

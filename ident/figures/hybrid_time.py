@@ -92,8 +92,14 @@ def _rows(curves: Mapping[str, Real], factor: float, part: slice, rate: float) -
 
 def legend_of(look: Look) -> alt.Legend:
     """The legend of simulations: their labels are long, so that of narrow panels has one below the other."""
-    return alt.Legend(title=None, orient="top", symbolType="stroke", symbolSize=500, labelLimit=500,
-                      columns=1 if look.share < 1 else 3)  # fmt: skip
+    return alt.Legend(
+        title=None,
+        orient="top",
+        symbolType="stroke",
+        symbolSize=500,
+        labelLimit=500,
+        columns=1 if look.share < 1 else 3,
+    )
 
 
 def _panel(table: str, colours: Any, dashes: Any, across: str, look: Look) -> Panel:

@@ -31,8 +31,12 @@ def ladder(steps: Sequence[Step], floor: float | None, actuator: Actuator, look:
         if error is not None
     ]
     uses = [use for use in ("estimation data", "validation data") if any(row["u"] == use for row in rows)]
-    colour = alt.Color("u:N", title=None, scale=alt.Scale(domain=uses, range=list(look.series[: len(uses)])),
-                       legend=alt.Legend(orient="bottom", symbolType="circle"))  # fmt: skip
+    colour = alt.Color(
+        "u:N",
+        title=None,
+        scale=alt.Scale(domain=uses, range=list(look.series[: len(uses)])),
+        legend=alt.Legend(orient="bottom", symbolType="circle"),
+    )
     lowest = min([row["e"] for row in rows] + ([100 * floor] if floor else []))
     scale = alt.Scale(type="log", domain=[0.8 * lowest, 1.5 * max(row["e"] for row in rows)], nice=False)
     x = alt.X("e:Q", scale=scale, axis=alt.Axis(title="Error, eq. 17 (%)", format="~r", tickCount=6))

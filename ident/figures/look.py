@@ -47,33 +47,52 @@ class Look:
             "concat": {"spacing": 14},
             "axis": text
             | {
-                "gridColor": self.grid, "domainColor": self.faint, "tickColor": self.faint, "titleFontWeight": "normal",
-                "labelFontSize": 11, "titleFontSize": 12, "titlePadding": 8, "labelFlush": False,
+                "gridColor": self.grid,
+                "domainColor": self.faint,
+                "tickColor": self.faint,
+                "titleFontWeight": "normal",
+                "labelFontSize": 11,
+                "titleFontSize": 12,
+                "titlePadding": 8,
+                "labelFlush": False,
             },
             "axisY": {"labelFlush": True},
-            "legend": text
-            | {"titleFontWeight": "normal", "labelFontSize": 11, "titleFontSize": 12, "labelLimit": 320},
+            "legend": text | {"titleFontWeight": "normal", "labelFontSize": 11, "titleFontSize": 12, "labelLimit": 320},
             "title": {
-                "color": self.ink, "subtitleColor": self.faint, "fontSize": 14, "subtitleFontSize": 12,
-                "anchor": "start", "offset": 12, "subtitlePadding": 5, "subtitleLineHeight": 15,
+                "color": self.ink,
+                "subtitleColor": self.faint,
+                "fontSize": 14,
+                "subtitleFontSize": 12,
+                "anchor": "start",
+                "offset": 12,
+                "subtitlePadding": 5,
+                "subtitleLineHeight": 15,
             },
-        }  # fmt: skip
+        }
 
 
 _RAMP = ("#440154", "#414487", "#2a788e", "#22a884", "#7ad151", "#d9c400")
 
 LOOKS: Mapping[str, Look] = {
     "light": Look(
-        "light", "#ffffff", "#1d2329", "#5b6570", "#e3e7eb",
+        "light",
+        "#ffffff",
+        "#1d2329",
+        "#5b6570",
+        "#e3e7eb",
         ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#7a5c00", "#000000"),
         _RAMP,
     ),
     "dark": Look(
-        "dark", "#171b20", "#e4e8ec", "#9aa5b1", "#2c333b",
+        "dark",
+        "#171b20",
+        "#e4e8ec",
+        "#9aa5b1",
+        "#2c333b",
         ("#4fb3ee", "#ff8a47", "#2cc79b", "#e79ac6", "#f2b632", "#a7d8f7", "#c9b458", "#f4f6f8"),
         ("#7a5fb0", "#6f7fd0", "#4aa3b8", "#3ec795", "#9be05f", "#f6e64a"),
     ),
-}  # fmt: skip
+}
 
 
 def look(theme: str, share: float = 1.0) -> Look:

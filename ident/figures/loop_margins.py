@@ -54,12 +54,23 @@ def _rows(one: AmplitudeMargin) -> list[dict[str, Any]]:
 
 
 def _lines(rows: list[dict[str, Any]], field: str, title: str, look: Look, axis: alt.Axis | None = None) -> Any:
-    colour = alt.Color("a:N", title=None, sort=None, scale=alt.Scale(range=list(look.series)),
-                       legend=alt.Legend(orient="bottom", labelLimit=300))  # fmt: skip
-    return alt.Chart(alt.InlineData(values=rows)).mark_line(strokeWidth=1.6).encode(
-        x=alt.X("f:Q", title="Frequency (Hz)", scale=alt.Scale(type="log", nice=False)), color=colour,
-        y=alt.Y(f"{field}:Q", title=title, axis=axis or alt.Axis()), tooltip=["a:N", "f:Q", f"{field}:Q"],
-    )  # fmt: skip
+    colour = alt.Color(
+        "a:N",
+        title=None,
+        sort=None,
+        scale=alt.Scale(range=list(look.series)),
+        legend=alt.Legend(orient="bottom", labelLimit=300),
+    )
+    return (
+        alt.Chart(alt.InlineData(values=rows))
+        .mark_line(strokeWidth=1.6)
+        .encode(
+            x=alt.X("f:Q", title="Frequency (Hz)", scale=alt.Scale(type="log", nice=False)),
+            color=colour,
+            y=alt.Y(f"{field}:Q", title=title, axis=axis or alt.Axis()),
+            tooltip=["a:N", "f:Q", f"{field}:Q"],
+        )
+    )
 
 
 def _level(value: float, look: Look) -> Any:

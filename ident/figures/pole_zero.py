@@ -41,14 +41,22 @@ def pole_zero(roots: Sequence[Root], told: Sequence[str], headline: str, look: L
     marks = base.mark_point(size=90, strokeWidth=2, filled=False).encode(
         shape=alt.Shape("s:N", title=None, scale=kinds, legend=alt.Legend(orient="bottom")),
         color=alt.Color("s:N", title=None, scale=alt.Scale(domain=["pole", "zero"], range=list(look.series[:2]))),
-        tooltip=[alt.Tooltip("s:N", title="Kind"), alt.Tooltip("n:N", title="Natural frequency"),
-                 alt.Tooltip("z:N", title="Damping ratio")],
-    )  # fmt: skip
+        tooltip=[
+            alt.Tooltip("s:N", title="Kind"),
+            alt.Tooltip("n:N", title="Natural frequency"),
+            alt.Tooltip("z:N", title="Damping ratio"),
+        ],
+    )
     edge = alt.Chart(alt.InlineData(values=[{"x": 0.0}])).mark_rule(color=look.ink, strokeDash=[5, 3]).encode(x="x:Q")
     chart: Chart = alt.layer(
-        *_rays(reach, look), edge, marks, width=look.across(520), height=400,
-        title=alt.TitleParams(headline, subtitle=words.wrapped(told, look)), datasets=datasets({"roots": rows}),
-    ).configure(**look.config())  # fmt: skip
+        *_rays(reach, look),
+        edge,
+        marks,
+        width=look.across(520),
+        height=400,
+        title=alt.TitleParams(headline, subtitle=words.wrapped(told, look)),
+        datasets=datasets({"roots": rows}),
+    ).configure(**look.config())
     return chart
 
 
@@ -58,8 +66,11 @@ def _rays(reach: float, look: Look) -> list[Any]:
     for zeta in _DAMPINGS:
         x, y = -zeta, np.sqrt(1 - zeta**2)
         end = reach / max(abs(x), y)
-        rows += [{"x": far * x, "y": sign * far * y, "d": f"{zeta}{sign}", "o": order}
-                 for sign in (1, -1) for order, far in enumerate((0.0, end))]  # fmt: skip
+        rows += [
+            {"x": far * x, "y": sign * far * y, "d": f"{zeta}{sign}", "o": order}
+            for sign in (1, -1)
+            for order, far in enumerate((0.0, end))
+        ]
         ends.append({"x": 0.93 * end * x, "y": 0.93 * end * y, "t": f"ζ {zeta}"})
     lines = alt.Chart(alt.InlineData(values=rows)).mark_line(color=look.faint, opacity=0.5, strokeWidth=0.7)
     names = alt.Chart(alt.InlineData(values=ends)).mark_text(color=look.faint, fontSize=10, dx=14)

@@ -45,9 +45,11 @@ def pressure_panel(records: Sequence[Record], model: Model, look: Look, width: i
             pairs = zip(slow.current[shown], answer.pressure[shown], strict=True)
             line = [{"i": _percent(i), "p": _mega(p), "n": n} for n, (i, p) in enumerate(pairs)]
     colour = alt.Color(
-        "g:N", title=None, scale=alt.Scale(domain=list(NAMES.values()), range=list(look.series[:3])),
+        "g:N",
+        title=None,
+        scale=alt.Scale(domain=list(NAMES.values()), range=list(look.series[:3])),
         legend=alt.Legend(orient="bottom"),
-    )  # fmt: skip
+    )
     x = alt.X("i:Q", title="Current (% of rated)", scale=alt.Scale(zero=False))
     y = alt.Y("p:Q", title="Pressure difference (MPa)")
     cloud = alt.Chart(alt.InlineData(values=points)).mark_circle(size=9, opacity=0.5).encode(x=x, y=y, color=colour)

@@ -60,8 +60,10 @@ def profile_likelihood(found: Profile, actuator: Actuator, fit: FitResult, look:
 def _line(x: alt.X, y: alt.Y, look: Look, series: int) -> tuple[Panel, Panel]:
     """A line through the values, and a point at each."""
     tip = [
-        alt.Tooltip("v:Q", title="Value"), alt.Tooltip("d:Q", title="D"), alt.Tooltip("e:Q", title="Error (%)"),
-    ]  # fmt: skip
+        alt.Tooltip("v:Q", title="Value"),
+        alt.Tooltip("d:Q", title="D"),
+        alt.Tooltip("e:Q", title="Error (%)"),
+    ]
     of = alt.Chart(alt.NamedData("profile"))
     line = of.mark_line(clip=True, color=look.series[series]).encode(x=x, y=y)
     return line, of.mark_circle(clip=True, size=40, opacity=1, color=look.series[series]).encode(x=x, y=y, tooltip=tip)

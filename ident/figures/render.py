@@ -18,9 +18,12 @@ Chart = alt.LayerChart | alt.FacetChart | alt.HConcatChart | alt.VConcatChart | 
 
 AltairChart = alt.LayerChart | alt.HConcatChart | alt.VConcatChart | alt.ConcatChart | alt.FacetChart | alt.Chart
 _KINDS: Mapping[str, type[AltairChart]] = {
-    "layer": alt.LayerChart, "hconcat": alt.HConcatChart, "vconcat": alt.VConcatChart, "concat": alt.ConcatChart,
+    "layer": alt.LayerChart,
+    "hconcat": alt.HConcatChart,
+    "vconcat": alt.VConcatChart,
+    "concat": alt.ConcatChart,
     "facet": alt.FacetChart,
-}  # fmt: skip
+}
 Row = dict[str, Any]
 
 

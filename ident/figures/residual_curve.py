@@ -163,8 +163,12 @@ def _panel(place: int, compared: bool, look: Look, *, wide: bool) -> Panel:
     title = alt.TitleParams(
         blank(f"name{place}"),
         subtitle=blank(f"hint{place}"),
-        fontSize=12, subtitleFontSize=11, subtitleLineHeight=13, offset=8, frame="group",
-    )  # fmt: skip
+        fontSize=12,
+        subtitleFontSize=11,
+        subtitleLineHeight=13,
+        offset=8,
+        frame="group",
+    )
     panel: Panel = alt.layer(*layers, width=look.across(width), height=height, title=title)
     return panel
 
@@ -188,11 +192,15 @@ def _drawn(study: Study, look: Look, options: Options) -> Filled:
     shown = chosen(matrix, asked(options)) if some else matrix.of_use("fit") or matrix.runs
     runs = words.describe(shown[0]) if len(shown) == 1 else f"{len(shown)} runs"
     return residual_curve(
-        study.curves(shown, view, band), matrix.actuator, study.fit, look,
-        candidate=study.curves(shown, view, band, other) if other else (), view=view,
+        study.curves(shown, view, band),
+        matrix.actuator,
+        study.fit,
+        look,
+        candidate=study.curves(shown, view, band, other) if other else (),
+        view=view,
         runs=f"{runs}, {band.words}" if band else runs,
         candidate_name=called(other, study.fit),
-    )  # fmt: skip
+    )
 
 
 RESIDUAL_CURVE = Drawing(

@@ -35,9 +35,15 @@ _PERCENT = "colour: error, for the noise of a run is not known"
 
 
 def residual_map(
-    compared: Comparison, actuator: Actuator, fit: FitResult, look: Look, *, floors: Mapping[str, float | None],
-    run: str = "", band: Band = OPEN,
-) -> Chart:  # fmt: skip
+    compared: Comparison,
+    actuator: Actuator,
+    fit: FitResult,
+    look: Look,
+    *,
+    floors: Mapping[str, float | None],
+    run: str = "",
+    band: Band = OPEN,
+) -> Chart:
     """Runs by amplitude, gain and specimen, over frequency; colour is the residual in the band over the noise there.
 
     The noise of a run is its floor, of those in `floors`, spread evenly over frequency; where that of a run is not
@@ -128,9 +134,14 @@ def _rows(order: Sequence[str], labels: bool, size: int) -> alt.Y:
 
 
 def _bands(
-    order: Sequence[str], ends: Sequence[tuple[float, float]], unit: str, look: Look, height: int, size: int,
+    order: Sequence[str],
+    ends: Sequence[tuple[float, float]],
+    unit: str,
+    look: Look,
+    height: int,
+    size: int,
     top: float | None,
-) -> Panel:  # fmt: skip
+) -> Panel:
     in_noise = top is not None  # up to which multiple of it colours reach
     lower, upper = ends[0][0], ends[-1][1]
     axis = alt.Axis(
@@ -204,9 +215,14 @@ def _drawn(study: Study, look: Look, options: Options) -> Chart:
     shown = chosen(study.matrix, asked(options, CONDITIONS)) if any(map(options.get, CONDITIONS)) else study.matrix.runs
     run = str(options.get("run") or "")
     return residual_map(
-        study.compared(shown), study.matrix.actuator, study.fit, look, floors=study.floors.by_run, run=run,
+        study.compared(shown),
+        study.matrix.actuator,
+        study.fit,
+        look,
+        floors=study.floors.by_run,
+        run=run,
         band=band_of(options),
-    )  # fmt: skip
+    )
 
 
 RESIDUAL_MAP = Drawing("residual-map", "By run and frequency", Study, _drawn, (*MANY, *BAND), share=0.66)

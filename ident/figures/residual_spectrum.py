@@ -43,7 +43,8 @@ def residual_spectrum(
     dash = alt.StrokeDash("s:N", scale=dashes, legend=legend, title=None)
     unit = "Hz" if run.time_unit == "s" else "cycles/sample"
     x = alt.X(
-        "f:Q", scale=alt.Scale(type="log", domain=[shown[0], shown[-1]], nice=False),
+        "f:Q",
+        scale=alt.Scale(type="log", domain=[shown[0], shown[-1]], nice=False),
         axis=alt.Axis(title=f"Frequency ({unit})", values=decade_ticks(shown[0], shown[-1]), format="~r"),
     )  # fmt: skip
     lines = alt.Chart(alt.NamedData("bands")).mark_line(strokeWidth=1.7, interpolate="step-after").encode(
@@ -55,9 +56,12 @@ def residual_spectrum(
     )  # fmt: skip
     subtitle = words.wrapped([*told, f"last band: all above {edges[-2]:.3g} {unit}"], look)
     chart: Chart = alt.layer(
-        lines, width=look.across(640), height=300, title=alt.TitleParams(headline, subtitle=subtitle),
+        lines,
+        width=look.across(640),
+        height=300,
+        title=alt.TitleParams(headline, subtitle=subtitle),
         datasets=datasets({"bands": rows}),
-    ).configure(**look.config())  # fmt: skip
+    ).configure(**look.config())
     return chart
 
 

@@ -97,10 +97,12 @@ class Responses:
             frequency, measured = entry.frequency[places], entry.measured[places]
             near = np.interp(frequency, self.frequency, np.unwrap(np.angle(own)))
             columns = {
-                "f": frequency, "a": _decibel(measured),
+                "f": frequency,
+                "a": _decibel(measured),
                 "p": np.degrees(near + np.angle(measured * np.exp(-1j * near))),  # the branch next to the model's
-                "c": entry.coherence[places], "e": _SURE * entry.random_error[places],
-            }  # fmt: skip
+                "c": entry.coherence[places],
+                "e": _SURE * entry.random_error[places],
+            }
             rows.setdefault(entry.run.gain, []).extend(_rows(columns, label, entry.run.id))
         return rows
 
@@ -130,8 +132,9 @@ class Responses:
             curves = zip("AP", _bode(self._own[place]), ("−3 dB", "−90°"), (found.bandwidth, found.lag_90), strict=True)
             rows.setdefault(entry.run.gain, []).extend(
                 {"f": at, name: float(np.interp(at, self.frequency, curve)), "t": text, "s": label, "r": entry.run.id}
-                for name, curve, text, at in curves if at is not None and at >= self.frequency[0]
-            )  # fmt: skip
+                for name, curve, text, at in curves
+                if at is not None and at >= self.frequency[0]
+            )
         return rows
 
     @cached_property

@@ -31,9 +31,11 @@ def root_locus(result: WhatIf, look: Look) -> Chart:
     x = alt.X("x:Q", title="Real part (Hz)")
     y = alt.Y("y:Q", title="Imaginary part (Hz)")
     colour = alt.Color(
-        "k:Q", title="Kp", scale=alt.Scale(type="log", range=list(look.ramp), domain=[lowest, highest]),
+        "k:Q",
+        title="Kp",
+        scale=alt.Scale(type="log", range=list(look.ramp), domain=[lowest, highest]),
         legend=alt.Legend(orient="right"),
-    )  # fmt: skip
+    )
     dots = alt.Chart(alt.InlineData(values=rows)).mark_circle(size=16).encode(x=x, y=y, color=colour)
     edge = alt.Chart(alt.InlineData(values=[{"x": 0.0}])).mark_rule(color=look.ink, strokeDash=[5, 3]).encode(x="x:Q")
     layers: list[Any] = [
@@ -44,8 +46,10 @@ def root_locus(result: WhatIf, look: Look) -> Chart:
     ]
     told = f"Kp from {trimmed(lowest)} (crosses) to {trimmed(highest)} (rings); stable to the left of the dashed line"
     lost = result.critical_gain
-    named = (f"{mark.meaning} at Kp = {trimmed(mark.gain)} ({shape})"
-             for mark, shape in zip(result.locus.marks, ("diamonds", "squares"), strict=False))  # fmt: skip
+    named = (
+        f"{mark.meaning} at Kp = {trimmed(mark.gain)} ({shape})"
+        for mark, shape in zip(result.locus.marks, ("diamonds", "squares"), strict=False)
+    )
     kept = "stability is kept" if lost is None else f"stability is lost at Kp = {trimmed(lost)}, beyond these gains"
     more = ", ".join(named) or kept
     title = alt.TitleParams("Poles of the closed loop over the gain", subtitle=[told, more])

@@ -31,8 +31,11 @@ def side_by_side(of: SideBySide, actuator: Actuator, look: Look) -> Chart:
         for column, title in zip(of.columns, titles, strict=True)
         for run, error in column.runs.items()
     ]
-    x = alt.X("e:Q", axis=alt.Axis(title="Error, eq. 17 (%)", format="~r", tickCount=6),
-              scale=alt.Scale(type="log", nice=False, padding=10))  # fmt: skip
+    x = alt.X(
+        "e:Q",
+        axis=alt.Axis(title="Error, eq. 17 (%)", format="~r", tickCount=6),
+        scale=alt.Scale(type="log", nice=False, padding=10),
+    )
     y = alt.Y("r:N", sort=order, axis=alt.Axis(title=None, grid=True, ticks=False, labelLimit=200))
     legend = alt.Legend(orient="bottom", columns=1, labelLimit=560, symbolType="circle")
     colours = alt.Scale(domain=titles, range=list(look.series[: len(titles)]))
@@ -46,9 +49,11 @@ def side_by_side(of: SideBySide, actuator: Actuator, look: Look) -> Chart:
     title = alt.TitleParams(_headline(of, actuator), subtitle=[f"error on estimation data: {errors}"])
     chart: Chart = alt.layer(
         dots.encode(x=x, y=y, color=colour, shape=shape, tooltip=tip),
-        width=look.across(480), height=_STEP * len(order), datasets=datasets({"errors": rows}),
+        width=look.across(480),
+        height=_STEP * len(order),
+        datasets=datasets({"errors": rows}),
         title=title,
-    ).configure(**look.config())  # fmt: skip
+    ).configure(**look.config())
     return chart
 
 

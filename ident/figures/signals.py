@@ -123,6 +123,10 @@ def _drawn(of: Recorded, look: Look, options: Options) -> Filled:
 
 
 SIGNALS = Drawing(
-    "signals", "Signals", Recorded, _drawn,
-    (RUN, Option("start", "Start (s)"), Option("seconds", "Length (s)")), share=1.0,
-)  # fmt: skip
+    "signals",
+    "Signals",
+    Recorded,
+    _drawn,
+    (RUN, Option("start", "Start (s)"), Option("seconds", "Length (s)")),
+    share=1.0,
+)

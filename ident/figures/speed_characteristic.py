@@ -34,9 +34,14 @@ def speed_characteristic(
 
 
 def speed_panel(
-    records: Sequence[Record], levels: Sequence[Level], model: Model, look: Look, method: str = "iir",
-    width: int = 420, height: int = 330,
-) -> Panel:  # fmt: skip
+    records: Sequence[Record],
+    levels: Sequence[Level],
+    model: Model,
+    look: Look,
+    method: str = "iir",
+    width: int = 420,
+    height: int = 330,
+) -> Panel:
     """Lines for the records under changing current, given and corrected, points for levels, a line for the table."""
     rows: list[dict[str, Any]] = []
     for record in records:
@@ -55,14 +60,18 @@ def speed_panel(
     ]
     points = [_row(level.current, level.speed, NAMES[2], level.id, 0) for level in levels]
     colour = alt.Color(
-        "n:N", title=None, scale=alt.Scale(domain=list(NAMES), range=[look.faint, *look.series[:2], look.ink]),
+        "n:N",
+        title=None,
+        scale=alt.Scale(domain=list(NAMES), range=[look.faint, *look.series[:2], look.ink]),
         legend=alt.Legend(orient="bottom", columns=2),
-    )  # fmt: skip
+    )
     x = alt.X("i:Q", title="Current (% of rated)")
     y = alt.Y("v:Q", title="Speed (mm/s)")
-    lines = alt.Chart(alt.InlineData(values=rows)).mark_line(strokeWidth=1.2).encode(
-        x=x, y=y, color=colour, detail="r:N", order="o:Q"
-    )  # fmt: skip
+    lines = (
+        alt.Chart(alt.InlineData(values=rows))
+        .mark_line(strokeWidth=1.2)
+        .encode(x=x, y=y, color=colour, detail="r:N", order="o:Q")
+    )
     dots = alt.Chart(alt.InlineData(values=points)).mark_point(size=40).encode(x=x, y=y, color=colour)
     panel: Panel = alt.layer(lines, dots).properties(width=width, height=height, title="Speed characteristic")
     return panel

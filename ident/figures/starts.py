@@ -23,8 +23,12 @@ def starts(actuator: Actuator, fit: FitResult, look: Look) -> Chart:
     """Ends in the order of their errors, the best first. Raises Unusable where the fit did not keep them."""
     found = fit.starts
     if found is None or not found.errors:
-        raise Unusable("no-starts", "this fit has stored no starts", "figure starts",
-                       "fit again by a search, with --option starts=30 for thirty of them")  # fmt: skip
+        raise Unusable(
+            "no-starts",
+            "this fit has stored no starts",
+            "figure starts",
+            "fit again by a search, with --option starts=30 for thirty of them",
+        )
     shown = [name for name in fit.searched if name in found.values][:_LIMIT]
     tables = {"ends": _errors(found), "values": _values(found, shown)}
     x = alt.X(

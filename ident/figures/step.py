@@ -46,19 +46,27 @@ def step(run: Run, found: Mapping[str, StepResponse], told: Sequence[str], headl
     colour = alt.Color("s:N", title=None, scale=alt.Scale(domain=names, range=[*colours, look.faint]), legend=legend)
     dashes = alt.Scale(domain=names, range=[*([[1, 0]] * len(found)), [2, 2]])
     dash = alt.StrokeDash("s:N", title=None, scale=dashes, legend=legend)
-    lines = alt.Chart(alt.NamedData("step")).mark_line(strokeWidth=1.7, interpolate="linear").encode(
-        x=alt.X("t:Q", axis=alt.Axis(title="Time (ms)"), scale=alt.Scale(nice=False)),
-        y=alt.Y("y:Q", axis=alt.Axis(title=words.axis(title(run.output).capitalize(), printed))),
-        color=colour, strokeDash=dash, tooltip=[alt.Tooltip("s:N", title="Model"), "t:Q", "y:Q"],
-    )  # fmt: skip
+    lines = (
+        alt.Chart(alt.NamedData("step"))
+        .mark_line(strokeWidth=1.7, interpolate="linear")
+        .encode(
+            x=alt.X("t:Q", axis=alt.Axis(title="Time (ms)"), scale=alt.Scale(nice=False)),
+            y=alt.Y("y:Q", axis=alt.Axis(title=words.axis(title(run.output).capitalize(), printed))),
+            color=colour,
+            strokeDash=dash,
+            tooltip=[alt.Tooltip("s:N", title="Model"), "t:Q", "y:Q"],
+        )
+    )
     ends = [{"y": float(f"{factor * first.final * share:.6g}")} for share in (0.98, 1.02)]
-    band = alt.Chart(alt.InlineData(values=[{"low": ends[0]["y"], "high": ends[1]["y"]}])).mark_rect(
-        color=look.faint, opacity=0.15
-    ).encode(y="low:Q", y2="high:Q")  # fmt: skip
+    band = (
+        alt.Chart(alt.InlineData(values=[{"low": ends[0]["y"], "high": ends[1]["y"]}]))
+        .mark_rect(color=look.faint, opacity=0.15)
+        .encode(y="low:Q", y2="high:Q")
+    )
     heading = alt.TitleParams(headline, subtitle=words.wrapped([*told, *_read(found)], look))
     chart: Chart = alt.layer(
         band, lines, width=look.across(640), height=300, title=heading, datasets=datasets({"step": rows})
-    ).configure(**look.config())  # fmt: skip
+    ).configure(**look.config())
     return chart
 
 

@@ -84,9 +84,12 @@ class Study:
         return self._curves[key]
 
     def _found(
-        self, runs: tuple[Run, ...], view: str | None, ends: tuple[float | None, float | None] | None,
+        self,
+        runs: tuple[Run, ...],
+        view: str | None,
+        ends: tuple[float | None, float | None] | None,
         other: FitResult | None,
-    ) -> tuple[Curve, ...]:  # fmt: skip
+    ) -> tuple[Curve, ...]:
         if other is not None:
             return curves(self.compared(runs), self.beside(other).compared(runs), view=view, band=ends)
         names, kept = tuple(run.id for run in runs), self._settled

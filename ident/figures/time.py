@@ -140,9 +140,15 @@ def _traces(shown: Sequence[str], models: Sequence[str], clock: str, look: Look)
     colours = _colours(models, look)
     several = len(models) > 1
     legend = alt.Legend(
-        title=None, orient="top", symbolType="stroke", symbolStrokeWidth=2, symbolSize=500, offset=4,
-        columns=1 if several else alt.Undefined, labelLimit=560,
-    )  # fmt: skip
+        title=None,
+        orient="top",
+        symbolType="stroke",
+        symbolStrokeWidth=2,
+        symbolSize=500,
+        offset=4,
+        columns=1 if several else alt.Undefined,
+        labelLimit=560,
+    )
     colour = alt.Color(
         "s:N",
         scale=alt.Scale(domain=list(shown), range=[colours[name] for name in shown]),
@@ -188,9 +194,15 @@ def _drawn(study: Study, look: Look, options: Options) -> Filled:
     else:
         names, told = ("model",), [words.verdict(study.fit), f"{words.describe(run)}: {words.left(compared[0])}"]
     return time(
-        compared, told, study.matrix.actuator, look, names=names, start=number(options, "start"),
-        seconds=number(options, "seconds"), band=band_of(options),
-    )  # fmt: skip
+        compared,
+        told,
+        study.matrix.actuator,
+        look,
+        names=names,
+        start=number(options, "start"),
+        seconds=number(options, "seconds"),
+        band=band_of(options),
+    )
 
 
 TIME = Drawing(

@@ -60,14 +60,23 @@ def _rows(each: Response, kind: str, end: float) -> list[dict[str, Any]]:
 def _lines(rows: list[dict[str, Any]], field: str, title: str, look: Look) -> Any:
     kinds = list(dict.fromkeys(row["k"] for row in rows))
     dash = alt.StrokeDash(
-        "k:N", title=None, scale=alt.Scale(domain=kinds, range=[[1, 0], [6, 4]][: len(kinds)]),
+        "k:N",
+        title=None,
+        scale=alt.Scale(domain=kinds, range=[[1, 0], [6, 4]][: len(kinds)]),
         legend=alt.Legend(orient="bottom", labelLimit=400) if len(kinds) > 1 else None,
-    )  # fmt: skip
+    )
     colour = alt.Color("g:N", title=None, scale=alt.Scale(range=list(look.series)), legend=alt.Legend(orient="bottom"))
-    return alt.Chart(alt.InlineData(values=rows)).mark_line(strokeWidth=1.6).encode(
-        x=alt.X("f:Q", title="Frequency (Hz)", scale=alt.Scale(nice=False)), color=colour, strokeDash=dash,
-        y=alt.Y(f"{field}:Q", title=title), tooltip=["g:N", "k:N", "f:Q", f"{field}:Q"],
-    )  # fmt: skip
+    return (
+        alt.Chart(alt.InlineData(values=rows))
+        .mark_line(strokeWidth=1.6)
+        .encode(
+            x=alt.X("f:Q", title="Frequency (Hz)", scale=alt.Scale(nice=False)),
+            color=colour,
+            strokeDash=dash,
+            y=alt.Y(f"{field}:Q", title=title),
+            tooltip=["g:N", "k:N", "f:Q", f"{field}:Q"],
+        )
+    )
 
 
 def _marks(rows: list[dict[str, Any]], look: Look) -> list[Any]:

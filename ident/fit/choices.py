@@ -41,8 +41,12 @@ def settings_of(choices: Choices, usual: Settings | None = None, candidates: boo
     given = cast(dict[str, Any], choices)
     unknown = [name for name in given if name not in Choices.__annotations__]
     if unknown:
-        raise Unusable("unknown-option", f"no choice {unknown[0]!r} about a fit", "settings",
-                       did_you_mean(unknown[0], Choices.__annotations__))  # fmt: skip
+        raise Unusable(
+            "unknown-option",
+            f"no choice {unknown[0]!r} about a fit",
+            "settings",
+            did_you_mean(unknown[0], Choices.__annotations__),
+        )
     chosen = {**vars(usual or Settings()), **given}
     custom = tuple(definition_of(one) for one in chosen["custom"])
     named = extended(Settings(model=chosen["model"]), chosen["effects"], custom)
@@ -51,7 +55,11 @@ def settings_of(choices: Choices, usual: Settings | None = None, candidates: boo
         model = with_candidates(model, (*chosen["bounds"], *chosen["fixed"]), named.custom)
     bounds, fixed = bounds_in_si(chosen["bounds"], model), values_in_si(chosen["fixed"], model)
     settings: dict[str, Any] = {
-        **chosen, "effects": named.effects, "custom": named.custom, "bounds": bounds, "fixed": fixed,
+        **chosen,
+        "effects": named.effects,
+        "custom": named.custom,
+        "bounds": bounds,
+        "fixed": fixed,
         "preprocessing": off_steps(chosen["preprocessing"]),
-    }  # fmt: skip
+    }
     return Settings(**settings)

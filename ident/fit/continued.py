@@ -64,8 +64,12 @@ class ContinuedIdentification(Identification):
         self._left_out = tuple(run for run in self._start.left_out if run in left_out)
         fitted = tuple(run for run in self._runs if run.id not in left_out)
         if not fitted:
-            raise Unusable("no-fit-runs", "the start leaves out every estimation run", "start",
-                           "fit without a start, or mark further runs use: fit")  # fmt: skip
+            raise Unusable(
+                "no-fit-runs",
+                "the start leaves out every estimation run",
+                "start",
+                "fit without a start, or mark further runs use: fit",
+            )
         self.objective = self.searched = self._over(fitted)
         if isinstance(self.objective, SimulatedFitness):
             few = trial_runs(fitted, self.objective.band, FIT_CRITERIA.search.samples)
@@ -87,9 +91,15 @@ class ContinuedIdentification(Identification):
         start, known, band = self._start, self.objective, excited_band(self._runs)
         if start.of == "diagnosis":
             return SimulatedFitness(
-                self.preset, self.matrix, runs, band, known.space, horizon=start.horizon, memory=start.memory,
+                self.preset,
+                self.matrix,
+                runs,
+                band,
+                known.space,
+                horizon=start.horizon,
+                memory=start.memory,
                 trusting=True,
-            )  # fmt: skip
+            )
         if isinstance(known, SimulatedFitness):
             return replace(known, runs=runs, starts={}, horizon=start.horizon, memory=start.memory)
         return LinearFitness(self.preset, self.matrix, runs, known.space, Basis(band))
@@ -125,8 +135,12 @@ class ContinuedIdentification(Identification):
         members = np.array([state["best"], *state["population"]]) if len(state["best"]) else np.empty((0, len(begun)))
         tried = [self._tried(begun, refine=False)]
         if not np.isfinite(tried[0].error):
-            raise Unusable("bad-start", "the model is unstable where the start ended", "start",
-                           "give what was fitted to this matrix, or fit without a start")  # fmt: skip
+            raise Unusable(
+                "bad-start",
+                "the model is unstable where the start ended",
+                "start",
+                "give what was fitted to this matrix, or fit without a start",
+            )
         if len(begun):
             tried += [self._tried(point) for point in (begun, *distinct(members, CANDIDATES))]
         best = min((one for one in tried if one.error <= tried[0].error), key=lambda one: (one.error, one.here.error))
@@ -190,7 +204,13 @@ def settings_from(found: FitResult, search: bool = False) -> Settings:
     before = Settings.from_json(dict(found.settings)) if found.settings else Settings()
     window = found.window
     start = Start(
-        "fit", found.values, window.horizon if window else None, window.memory if window else None, found.left_out,
-        (window.error if window else found.error).get("fit"), found.data_hash, search=search,
-    )  # fmt: skip
+        "fit",
+        found.values,
+        window.horizon if window else None,
+        window.memory if window else None,
+        found.left_out,
+        (window.error if window else found.error).get("fit"),
+        found.data_hash,
+        search=search,
+    )
     return replace(before, model=found.model, effects=found.effects, seed=found.seed, budget=None, start=start)

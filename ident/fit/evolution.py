@@ -30,9 +30,16 @@ def differential_evolution(axes: int, seed: int, errors: Errors) -> list[tuple[A
         return cost
 
     scipy.optimize.differential_evolution(
-        vectorised, [(0.0, 1.0)] * axes, maxiter=_OF.generations, popsize=max(1, _OF.differential_evolution // axes),
-        tol=_OF.tolerance, rng=np.random.default_rng(seed), polish=False, vectorized=True, updating="deferred",
-    )  # fmt: skip
+        vectorised,
+        [(0.0, 1.0)] * axes,
+        maxiter=_OF.generations,
+        popsize=max(1, _OF.differential_evolution // axes),
+        tol=_OF.tolerance,
+        rng=np.random.default_rng(seed),
+        polish=False,
+        vectorized=True,
+        updating="deferred",
+    )
     return history
 
 
@@ -45,9 +52,13 @@ def cma_es(axes: int, seed: int, errors: Errors) -> list[tuple[Array, Array]]:
     # One axis is beyond pycma, so a second one without effect is put beside it.
     width = max(axes, 2)
     options = {
-        "bounds": [0, 1], "popsize": _OF.cma_es, "seed": seed + 1, "verbose": _SILENT, "maxiter": _OF.generations,
+        "bounds": [0, 1],
+        "popsize": _OF.cma_es,
+        "seed": seed + 1,
+        "verbose": _SILENT,
+        "maxiter": _OF.generations,
         "tolfun": _OF.change,
-    }  # fmt: skip
+    }
     strategy = cma.CMAEvolutionStrategy(width * [0.5], _OF.deviation, options)
     history: list[tuple[Array, Array]] = []
     while not strategy.stop():

@@ -22,8 +22,12 @@ def extended(settings: Settings, effects: Sequence[str], custom: Sequence[Defini
     """
     wanted = tuple(dict.fromkeys((*effects, *(str(definition["name"]) for definition in custom))))
     if there := [name for name in wanted if name in settings.effects]:
-        raise Unusable(EFFECT_THERE, f"the fit has {', '.join(there)} already", "effect",
-                       "add another one, or start from the fit before it")  # fmt: skip
+        raise Unusable(
+            EFFECT_THERE,
+            f"the fit has {', '.join(there)} already",
+            "effect",
+            "add another one, or start from the fit before it",
+        )
     known = together(settings.custom, custom)
     preset_with(settings.model or Settings().model, (*settings.effects, *wanted), known)
     return replace(settings, effects=(*settings.effects, *wanted), custom=known)

@@ -28,12 +28,18 @@ RANGES = {**vars(FIT_CRITERIA.search_options), "mutation": (0.0, 1.0), "over_bou
 """What a user may choose of either search."""
 _OF = FIT_CRITERIA.search
 DEFAULT = {
-    "population": _OF.population, "generations": _OF.generations, "elite": _OF.elite, "mutation": _OF.mutation,
+    "population": _OF.population,
+    "generations": _OF.generations,
+    "elite": _OF.elite,
+    "mutation": _OF.mutation,
     "starts": 0.0,
-}  # fmt: skip
+}
 WITH_EFFECTS = {
-    **DEFAULT, "population": _OF.population_nearby, "generations": _OF.generations_nearby, "elite": _OF.elite_nearby,
-}  # fmt: skip
+    **DEFAULT,
+    "population": _OF.population_nearby,
+    "generations": _OF.generations_nearby,
+    "elite": _OF.elite_nearby,
+}
 
 
 def around(state: State, centre: Array, of_effects: Array) -> State:
@@ -60,9 +66,13 @@ def begin(axes: int, seed: int, options: dict[str, float]) -> State:
     rng = np.random.default_rng(seed)
     population = rng.random((int(options["population"]), axes))
     return {
-        "population": population.tolist(), "rng": rng.bit_generator.state, "history": [], "best": None,
-        "evaluations": 0, "done": False,
-    }  # fmt: skip
+        "population": population.tolist(),
+        "rng": rng.bit_generator.state,
+        "history": [],
+        "best": None,
+        "evaluations": 0,
+        "done": False,
+    }
 
 
 def paper_step(state: State, errors: Errors, options: dict[str, float]) -> State:
@@ -118,11 +128,20 @@ def _evaluated(state: State, errors: Errors) -> tuple[Array, Array, np.random.Ge
 
 
 def _next(
-    state: State, population: Array, cost: Array, children: Array, rng: np.random.Generator, best: Array,
+    state: State,
+    population: Array,
+    cost: Array,
+    children: Array,
+    rng: np.random.Generator,
+    best: Array,
     done: bool = False,
-) -> State:  # fmt: skip
+) -> State:
     entry = {"population": population.tolist(), "errors": cost.tolist()}
     return {
-        "population": children.tolist(), "rng": rng.bit_generator.state, "history": [*state["history"], entry],
-        "best": best.tolist(), "evaluations": state["evaluations"] + len(population), "done": done,
-    }  # fmt: skip
+        "population": children.tolist(),
+        "rng": rng.bit_generator.state,
+        "history": [*state["history"], entry],
+        "best": best.tolist(),
+        "evaluations": state["evaluations"] + len(population),
+        "done": done,
+    }

@@ -91,8 +91,12 @@ def with_candidates_given(
     wider = with_candidates(model, (*bounds, *values), before.custom, own)
     for name in (*bounds, *values):
         if wider.parameter(name) in model.parameters:
-            raise Unusable("bad-option", f"the fit has {name}, which was searched already", "bounds or values",
-                           "make the fit again with them, or give parameters of effects that may be added")  # fmt: skip
+            raise Unusable(
+                "bad-option",
+                f"the fit has {name}, which was searched already",
+                "bounds or values",
+                "make the fit again with them, or give parameters of effects that may be added",
+            )
     given = replace(
         before,
         bounds={**before.bounds, **bounds_in_si(bounds, wider)},

@@ -124,8 +124,9 @@ class Identification:
     def _linear_fit(self) -> FitResult:
         """What the model without effects finds."""
         linear = preset_with(self.settings.model)
-        settings = replace(of_model(self.settings, linear), effects=(), custom=(), method="ga", load="none",
-                           options={}, budget=None)  # fmt: skip
+        settings = replace(
+            of_model(self.settings, linear), effects=(), custom=(), method="ga", load="none", options={}, budget=None
+        )
         return completed(
             Identification(undone(self.matrix, undoable(self.matrix, self.preset.effects)), settings, self.report)
         )
@@ -315,10 +316,12 @@ def _fed_back(preset: Preset, runs: Sequence[Run]) -> tuple[str, ...]:
 def _biased(runs: Sequence[str]) -> Unusable:
     """What is said of a fit by plain output error of records in closed loop."""
     return Unusable(
-        "closed-loop", "a controller computed this command from the output, so an output-error fit is biased",
-        f"run {', '.join(runs)}", "give the controller's reference as command, with gain or controller; or say "
+        "closed-loop",
+        "a controller computed this command from the output, so an output-error fit is biased",
+        f"run {', '.join(runs)}",
+        "give the controller's reference as command, with gain or controller; or say "
         "closed_loop: false where there is no feedback",
-    )  # fmt: skip
+    )
 
 
 class StepwiseFit(Protocol):

@@ -74,11 +74,19 @@ def regress(matrix: Matrix, cutoff: float = _OF.cutoff) -> InverseDynamics:
     """Fit the runs to fit; `cutoff` in Hz. Raises Unusable where no such run has drive_force and displacement."""
     runs = [run for run in matrix.runs if _has_channels(run)]
     if not any(run.use == "fit" for run in runs):
-        raise Unusable("missing-channel", "no run to fit has drive_force and displacement in known units", "runs",
-                       "name the column and unit of the drive's force and of its position")  # fmt: skip
+        raise Unusable(
+            "missing-channel",
+            "no run to fit has drive_force and displacement in known units",
+            "runs",
+            "name the column and unit of the drive's force and of its position",
+        )
     if not 0 < cutoff <= min(run.sample_rate for run in runs) / _OF.samples_of_a_period:
-        raise Unusable("bad-value", f"cut-off {cutoff:g} Hz", "inverse dynamics",
-                       "give a positive one, a quarter of the sample rate at most")  # fmt: skip
+        raise Unusable(
+            "bad-value",
+            f"cut-off {cutoff:g} Hz",
+            "inverse dynamics",
+            "give a positive one, a quarter of the sample rate at most",
+        )
     records = {run.id: _record(run, cutoff) for run in runs}
     fitted = [records[run.id] for run in runs if run.use == "fit"]
     every = range(len(UNITS))
@@ -99,8 +107,12 @@ def _has_channels(run: Run) -> bool:
 
 def _record(run: Run, cutoff: float) -> _Record:
     rate, ends = run.sample_rate, int(run.sample_rate / cutoff)
-    too_short = Unusable("too-short", f"fewer than {_OF.fewest} samples in motion at a cut-off of {cutoff:g} Hz",
-                         run_name(run.id), "give a longer record of motion or leave the run out")  # fmt: skip
+    too_short = Unusable(
+        "too-short",
+        f"fewer than {_OF.fewest} samples in motion at a cut-off of {cutoff:g} Hz",
+        run_name(run.id),
+        "give a longer record of motion or leave the run out",
+    )
     if len(run.channels["displacement"]) <= 2 * ends + _OF.fewest:
         raise too_short
     low_pass = scipy.signal.butter(_OF.order, cutoff, fs=rate, output="sos")
@@ -134,8 +146,12 @@ def _solved(records: Sequence[_Record], columns: Sequence[int], weights: Array) 
     force = np.concatenate([weight * record.force for weight, record in pairs])
     scale = np.linalg.norm(design, axis=0)
     if not scale.all() or np.linalg.matrix_rank(design / scale, tol=_OF.separated * np.sqrt(len(scale))) < len(scale):
-        raise Unusable("not-determined", "this motion does not separate mass, friction and offset", "inverse dynamics",
-                       "record motion both ways with speeds that change")  # fmt: skip
+        raise Unusable(
+            "not-determined",
+            "this motion does not separate mass, friction and offset",
+            "inverse dynamics",
+            "record motion both ways with speeds that change",
+        )
     solution, *_ = np.linalg.lstsq(design / scale, force, rcond=None)
     return np.asarray(solution / scale)
 

@@ -78,11 +78,14 @@ class Way:
 
 
 def levenberg_marquardt(
-    evaluate: Callable[[Array], S], start: Array, way: Way | None = None,
+    evaluate: Callable[[Array], S],
+    start: Array,
+    way: Way | None = None,
     report: Callable[[int, float], None] = lambda _count, _error: None,
-    accept: Callable[[S], None] = lambda _here: None, better: Callable[[Array, float], S | None] | None = None,
+    accept: Callable[[S], None] = lambda _here: None,
+    better: Callable[[Array, float], S | None] | None = None,
     spans: Array | None = None,
-) -> tuple[Array, S]:  # fmt: skip
+) -> tuple[Array, S]:
     """The point with the least error near `start`, and the objective there.
 
     A step solves (H + λ diag H) δ = −g on the axes that are free: those at a bound with a gradient that points

@@ -30,9 +30,12 @@ def extreme(runs: Iterable[Run]) -> tuple[Run, ...]:
 
 
 def fastest(
-    chain: Chain, runs: Iterable[Run], actuator: Actuator, values: Mapping[str, Array],
+    chain: Chain,
+    runs: Iterable[Run],
+    actuator: Actuator,
+    values: Mapping[str, Array],
     motion: Mapping[str, float] | None = None,
-) -> Modes:  # fmt: skip
+) -> Modes:
     """Each vector's fastest mode at small signals on any of the runs, its eigenvalue in radians a sample, (v,).
 
     At rest, and about the `motion` of states as far as it goes: see :func:`ident.simulation.steps.fastest_mode`.

@@ -53,9 +53,13 @@ class Optimum:
 
 
 def multistart(
-    searched: Fitness, objective: Fitness, starts: Sequence[Array], report: Report, further: Iterable[Array] = (),
+    searched: Fitness,
+    objective: Fitness,
+    starts: Sequence[Array],
+    report: Report,
+    further: Iterable[Array] = (),
     count: int = 0,
-) -> Optimum:  # fmt: skip
+) -> Optimum:
     """The optimum of `objective` near starts that the fitness `searched` chose.
 
     Where those do not end together, or end at a bound, `further` starts are tried until three of them agree with the

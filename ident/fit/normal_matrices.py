@@ -247,13 +247,22 @@ def normal_matrices_of(runs: Sequence[Run], blocks: Array, p: int) -> list[Norma
         escaped(p, blocks.shape[1])
         if not sound[i]
         else NormalMatrices(
-            projected[i], scores[i], float(totals[i]), float(release[i, -1, -1] / np.sqrt(totals[i] / run.length)),
-            release[i, :-1, -1], release[i, -1], run.length, blocks[i], remove[i], run.share,
-            "" if run.zeroed.get(run.output) else run.output, run.mean_counts,
+            projected[i],
+            scores[i],
+            float(totals[i]),
+            float(release[i, -1, -1] / np.sqrt(totals[i] / run.length)),
+            release[i, :-1, -1],
+            release[i, -1],
+            run.length,
+            blocks[i],
+            remove[i],
+            run.share,
+            "" if run.zeroed.get(run.output) else run.output,
+            run.mean_counts,
             rest=run.zero_at_rest if run.mean_counts else None,
         )
         for i, run in enumerate(runs)
-    ]  # fmt: skip
+    ]
     return [_separated(run, one) for run, one in zip(runs, found, strict=True)]
 
 

@@ -32,8 +32,12 @@ class RegressedIdentification(Identification):
 
     def __init__(self, matrix: Matrix, settings: Settings, report: Report = silent) -> None:
         if set(settings.effects) - set(EFFECTS):
-            raise Unusable("method-does-not-fit", f"{NAME} finds mass, friction and a constant force", "method",
-                           f"use it with no effect but {' and '.join(EFFECTS)}")  # fmt: skip
+            raise Unusable(
+                "method-does-not-fit",
+                f"{NAME} finds mass, friction and a constant force",
+                "method",
+                f"use it with no effect but {' and '.join(EFFECTS)}",
+            )
         self.asked, self.regression = settings, regress(matrix)
         fixed = {**_values(self.regression), "k0": FIT_CRITERIA.inverse_dynamics.slack, **settings.fixed}
         super().__init__(matrix, replace(settings, method="ga", effects=EFFECTS, fixed=fixed), report)
@@ -50,8 +54,13 @@ class RegressedIdentification(Identification):
             f"{run_name(run)}: force residual {error_said(with_[run])}, without dry friction {error_said(without[run])}"
             for run in with_
         )
-        return replace(found, method=NAME, parameters=parameters, notes=(*found.notes, *said),
-                       settings={**found.settings, "method": NAME})  # fmt: skip
+        return replace(
+            found,
+            method=NAME,
+            parameters=parameters,
+            notes=(*found.notes, *said),
+            settings={**found.settings, "method": NAME},
+        )
 
 
 _SOURCES = {"m0": "mass", "c0": "viscous", "coulomb_friction.force": "coulomb", "static_load.force": "offset"}
@@ -61,6 +70,7 @@ def _values(regression: InverseDynamics) -> dict[str, float]:
     values = {name: regression.coefficients[source].value for name, source in _SOURCES.items()}
     for name in ("m0", "c0", "coulomb_friction.force"):
         if values[name] <= 0:
-            raise Unusable("not-a-drive", f"{name} would be {values[name]:.3g}", NAME,
-                           "check the signs of force and position")  # fmt: skip
+            raise Unusable(
+                "not-a-drive", f"{name} would be {values[name]:.3g}", NAME, "check the signs of force and position"
+            )
     return values | {"static_load.force": -values["static_load.force"]}

@@ -266,5 +266,9 @@ class FitResult(Shown):
                     raise Misfit("is not finite", f"parameters.{name}.value")
             return found
         except Misfit as error:
-            raise Unusable("bad-fit", f"not the JSON of a fit: {error}", "fit",
-                           "give the file that `servoident fit --json FILE` wrote") from None  # fmt: skip
+            raise Unusable(
+                "bad-fit",
+                f"not the JSON of a fit: {error}",
+                "fit",
+                "give the file that `servoident fit --json FILE` wrote",
+            ) from None

@@ -71,5 +71,6 @@ def fit_percent(errors: Sequence[RunError], with_mean: Mapping[str, float | None
     None where there are none, or the model is unstable on one.
     """
     unstable = {one.use for one in errors if one.unstable}
-    return {use: None if error is None or use in unstable else PER_CENT * (1.0 - error)
-            for use, error in with_mean.items()}  # fmt: skip
+    return {
+        use: None if error is None or use in unstable else PER_CENT * (1.0 - error) for use, error in with_mean.items()
+    }

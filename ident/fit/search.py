@@ -85,9 +85,12 @@ class Search:
         order = np.argsort(cost, kind="stable")
         evaluated = sum(len(points) for points, _ in history)
         return state | {
-            "population": population[order].tolist(), "best": population[order[0]].tolist(), "history": entries,
-            "evaluations": evaluated, "done": True,
-        }  # fmt: skip
+            "population": population[order].tolist(),
+            "best": population[order[0]].tolist(),
+            "history": entries,
+            "evaluations": evaluated,
+            "done": True,
+        }
 
     def _tell(self, done: int, best: float) -> None:
         self.report(Progress("search", done, self.generations, best))

@@ -54,5 +54,9 @@ class Settings:
         try:
             return read(cls, data)
         except Misfit as error:
-            raise Unusable("bad-fit", f"not the settings of a fit: {error}", "fit",
-                           "give the file that `servoident fit --json FILE` wrote") from None  # fmt: skip
+            raise Unusable(
+                "bad-fit",
+                f"not the settings of a fit: {error}",
+                "fit",
+                "give the file that `servoident fit --json FILE` wrote",
+            ) from None

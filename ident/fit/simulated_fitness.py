@@ -83,9 +83,12 @@ class SimulatedFitness(SimulatedRuns):
         return np.minimum(errors, UNSTABLE)
 
     def optimum(
-        self, start: Array, way: Way | None = None, report: Steps = lambda _count, _error: None,
+        self,
+        start: Array,
+        way: Way | None = None,
+        report: Steps = lambda _count, _error: None,
         roughly: bool = False,  # noqa: ARG002  a chain with effects has no rougher one
-    ) -> tuple[Array, Local]:  # fmt: skip
+    ) -> tuple[Array, Local]:
         """The optimum near a start, from first states that are followed."""
         spans = self.space.spans
         return levenberg_marquardt(self.exact, start, way, report, self._accept, self._better, spans)

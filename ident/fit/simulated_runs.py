@@ -114,9 +114,13 @@ class SimulatedRuns:
         return vector, steps
 
     def settled(
-        self, values: Mapping[str, Array], strides: Array, steps: int, runs: tuple[Run, ...] | None = None,
+        self,
+        values: Mapping[str, Array],
+        strides: Array,
+        steps: int,
+        runs: tuple[Run, ...] | None = None,
         known: Mapping[str, NormalMatrices] | None = None,
-    ) -> dict[str, NormalMatrices]:  # fmt: skip
+    ) -> dict[str, NormalMatrices]:
         """The matrices of every run by its id; without sensitivities the first states are followed until they hold.
 
         `strides` (p,) are those of the vectors behind the first; `runs` some of all; `known` the matrices from the
@@ -152,8 +156,10 @@ class SimulatedRuns:
 
         `strides` (p,) are those of the vectors behind the first of each.
         """
-        return [self._as_seen(runs, normal_matrices_of(runs, products, len(strides)))
-                for products in self._products(runs, simulations, strides)]  # fmt: skip
+        return [
+            self._as_seen(runs, normal_matrices_of(runs, products, len(strides)))
+            for products in self._products(runs, simulations, strides)
+        ]
 
     def _as_seen(self, runs: tuple[Run, ...], found: list[NormalMatrices]) -> list[NormalMatrices]:
         """The moments of runs as the objective counts their means."""

@@ -20,9 +20,7 @@ _FARTHEST = 600.0
 """ln of the factor by which a parameter may rise in a step: beyond 709 it is no number. No answer depends on it."""
 
 
-def led(
-    point: Array, step: Array, lower: Array | float, upper: Array | float, spans: Array
-) -> tuple[Array, Array]:  # fmt: skip
+def led(point: Array, step: Array, lower: Array | float, upper: Array | float, spans: Array) -> tuple[Array, Array]:
     """The part of a step from a point (p,) that stays within the bounds of each axis, and where it leads: (p,), (p,).
 
     `spans` (p,) are s of each axis, 0 of a linear one.

@@ -178,10 +178,16 @@ def _run_errors(
     runs: Sequence[Run], found: Sequence[NormalMatrices], offsets: Mapping[str, Offset]
 ) -> tuple[RunError, ...]:
     return tuple(
-        run_error(run, m.error, m.offset, float(np.sqrt(run.power / run.length)), run.units.get(run.output, "1"),
-                  offset_at(run, offsets))
+        run_error(
+            run,
+            m.error,
+            m.offset,
+            float(np.sqrt(run.power / run.length)),
+            run.units.get(run.output, "1"),
+            offset_at(run, offsets),
+        )
         for run, m in zip(runs, found, strict=True)
-    )  # fmt: skip
+    )
 
 
 def _mean(runs: Sequence[Run], found: Sequence[RunError], what: str) -> float | None:
@@ -309,7 +315,7 @@ def _felt(objective: Fitness, name: str, point: Array) -> bool:
 
 def _notes(
     settings: Settings, objective: Fitness, floors: Floors, found: Sequence[RunError], against: Sequence[str]
-) -> list[str]:  # fmt: skip
+) -> list[str]:
     """What is said of a fit, first of all why it is not to be trusted; `against` is what validation data say."""
     error = float(over_runs([run.error for run in found], objective.matrix.of_use("fit")))
     hardly = tuple(_hardly_explained(settings, objective, error))  # of the data that were fitted, and so of all others
@@ -348,8 +354,10 @@ def noticed(fit: FitResult, notice: str) -> FitResult:
 
 def told_offsets(offsets: Mapping[str, Offset], matrix: Matrix) -> dict[str, TransducerOffset]:
     """The offsets of transducers as a result keeps them."""
-    return {name: TransducerOffset(one.value, _unit_of(name, matrix), one.std_error, one.large)
-            for name, one in offsets.items()}  # fmt: skip
+    return {
+        name: TransducerOffset(one.value, _unit_of(name, matrix), one.std_error, one.large)
+        for name, one in offsets.items()
+    }
 
 
 def _unit_of(channel: str, matrix: Matrix) -> str:

@@ -185,10 +185,12 @@ def _offset(here: Optimal, own: frozenset[int]) -> Offset:
     p = len(here.curvature)
     slope = sum((c * run.means[:p] for c, run in zip(counts, here.runs, strict=True) if c), np.zeros(p))
     through = _solved(here.curvature, slope)
-    influence = np.concatenate([
-        count / max(run.informing, 1.0) * run.sums_about(b) - weight * run.scores @ through
-        for run, weight, count in zip(here.runs, here.weights[: len(here.runs)], counts, strict=True)
-    ])  # fmt: skip
+    influence = np.concatenate(
+        [
+            count / max(run.informing, 1.0) * run.sums_about(b) - weight * run.scores @ through
+            for run, weight, count in zip(here.runs, here.weights[: len(here.runs)], counts, strict=True)
+        ]
+    )
     freedom = len(influence) - p - 1
     scatter = float(influence @ influence) * (len(influence) / freedom if freedom > 0 else 1.0)
     scatter += (told * prior.std_error) ** 2 if told else 0.0

@@ -28,9 +28,13 @@ WIDENED = ("kg", "s")
 
 
 def beyond_bounds(
-    found: Optimum, searched: Fitness, objective: Fitness, given: Collection[str], report: Report,
+    found: Optimum,
+    searched: Fitness,
+    objective: Fitness,
+    given: Collection[str],
+    report: Report,
     drawn: Iterable[Array] = (),
-) -> Optimum:  # fmt: skip
+) -> Optimum:
     """The optimum of an objective, or the one beyond the bounds that it ended at, where its error is smaller.
 
     `given` are parameters whose bounds somebody set, by the equations' names. Those of the machine that a paper's

@@ -136,10 +136,14 @@ def of_signals(held: list[dict[str, Any]]) -> Iterator[tuple[str, str, Any]]:
 def is_table(rows: list[Any]) -> bool:
     """Whether a list holds rows, of as many numbers each."""
     first = rows[0] if rows else None
-    return isinstance(first, list) and len(first) > 1 and all(
-        isinstance(row, list) and len(row) == len(first) and all(type(value) in (int, float) for value in row)
-        for row in rows
-    )  # fmt: skip
+    return (
+        isinstance(first, list)
+        and len(first) > 1
+        and all(
+            isinstance(row, list) and len(row) == len(first) and all(type(value) in (int, float) for value in row)
+            for row in rows
+        )
+    )
 
 
 def of_tables(tables: dict[str, list[list[Any]]]) -> Iterator[tuple[str, str, Any]]:

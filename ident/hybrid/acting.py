@@ -48,8 +48,10 @@ def _feedforward(fit: FitResult, case: Case, wanted: Array | None) -> Controller
 
 
 NAMED: Mapping[str, Callable[[FitResult, Case, Array | None], Controller]] = {
-    "none": _none, "kalman": _kalman, FEEDFORWARD: _feedforward,
-}  # fmt: skip
+    "none": _none,
+    "kalman": _kalman,
+    FEEDFORWARD: _feedforward,
+}
 """Controllers by name, each made for one simulation."""
 
 
@@ -63,9 +65,12 @@ def controller_called(given: str, fit: FitResult, case: Case, wanted: Array | No
         return NAMED[given](fit, case, wanted)
     path = Path(given)
     if not path.is_file() or path.stat().st_size > _LARGEST:
-        raise Unusable("unknown-controller", f"{shown(given)!r} is not a controller", "controller",
-                       did_you_mean(given, NAMED, f"give {', '.join(NAMED)}, or the controller.json of "
-                                    "`servoident control`"))  # fmt: skip
+        raise Unusable(
+            "unknown-controller",
+            f"{shown(given)!r} is not a controller",
+            "controller",
+            did_you_mean(given, NAMED, f"give {', '.join(NAMED)}, or the controller.json of `servoident control`"),
+        )
     try:
         data = json.loads(path.read_bytes())
     except (ValueError, RecursionError):
@@ -84,6 +89,10 @@ def for_rate(controller: SampledController, case: Case) -> SampledController:
     """The controller, where it was made for the sample rate of the case. Raises Unusable."""
     if abs(controller.sample_rate / case.sample_rate - 1) > 1e-9:
         made, asked = f"{controller.sample_rate:g} Hz", f"{case.sample_rate:g} Hz"
-        raise Unusable("bad-controller", f"it was made for {made}, the case samples at {asked}", "controller",
-                       "design it for this case")  # fmt: skip
+        raise Unusable(
+            "bad-controller",
+            f"it was made for {made}, the case samples at {asked}",
+            "controller",
+            "design it for this case",
+        )
     return controller

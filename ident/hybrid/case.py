@@ -100,10 +100,20 @@ class Case:
         for what in _STRUCTURE:
             given: Array = getattr(self, what)
             if given.shape != (n, n) or not 1 <= n <= _STOREYS or not np.allclose(given, given.T, rtol=1e-6):
-                raise Unusable("bad-case", f"{what} is not a symmetric matrix of {n} rows", "structure",
-                               f"give three symmetric matrices of one size, at most {_STOREYS}")  # fmt: skip
-        parts = (self.mass, self.stiffness, self.damping, *vars(self.physical).values(), self.gain,
-                 self.piston_area or 0.0)  # fmt: skip
+                raise Unusable(
+                    "bad-case",
+                    f"{what} is not a symmetric matrix of {n} rows",
+                    "structure",
+                    f"give three symmetric matrices of one size, at most {_STOREYS}",
+                )
+        parts = (
+            self.mass,
+            self.stiffness,
+            self.damping,
+            *vars(self.physical).values(),
+            self.gain,
+            self.piston_area or 0.0,
+        )
         if not all(np.all(np.abs(part) <= _HUGE) for part in parts):
             raise Unusable("bad-case", f"a number is larger than {_HUGE:g}", "case", "correct it")
         if self.piston_area is not None and not self.piston_area * _HUGE >= 1:
@@ -118,8 +128,12 @@ class Case:
                 "correct its stiffness",
             )
         if not 1 <= self.delay <= _LATEST:
-            raise Unusable("bad-case", f"a delay of {self.delay:.6g} samples", "delay",
-                           f"give 1, with which the command is computed before it acts, to {_LATEST}")  # fmt: skip
+            raise Unusable(
+                "bad-case",
+                f"a delay of {self.delay:.6g} samples",
+                "delay",
+                f"give 1, with which the command is computed before it acts, to {_LATEST}",
+            )
         if self.sample_rate <= 0 or self.gain <= 0:
             raise Unusable("bad-case", "sample rate and gain are above 0", "case", "correct them")
 
@@ -318,9 +332,14 @@ def _case_of(data: Any, base: Path | None, name: str) -> Case:
     stiffness = matrix(structure, "stiffness", "stiffness")
     physical, place = _physical(top, mass, stiffness)
     return Case(
-        mass=mass, stiffness=stiffness, damping=_damping(structure, mass, stiffness), physical=physical, place=place,
-        direction=_direction(structure, len(mass)), **_loop(top, base, name, Ground()),
-    )  # fmt: skip
+        mass=mass,
+        stiffness=stiffness,
+        damping=_damping(structure, mass, stiffness),
+        physical=physical,
+        place=place,
+        direction=_direction(structure, len(mass)),
+        **_loop(top, base, name, Ground()),
+    )
 
 
 def _loop(top: Fields, base: Path | None, name: str, motion: Ground) -> dict[str, Any]:
@@ -350,8 +369,12 @@ def _table_of(top: Fields, base: Path | None, name: str) -> Case:
     lowest, highest = both.positive("from", "frequency") or 0.0, both.positive("to", "frequency") or 0.0
     found = _loop(top, base, name, Ground(rest=_RESTS / lowest))
     if not 4 * lowest <= highest <= found["sample_rate"] / 5:
-        raise Unusable("bad-case", f"a band of {lowest:g} to {highest:g} Hz", "band",
-                       f"give two octaves at least, up to {found['sample_rate'] / 5:g} Hz")  # fmt: skip
+        raise Unusable(
+            "bad-case",
+            f"a band of {lowest:g} to {highest:g} Hz",
+            "band",
+            f"give two octaves at least, up to {found['sample_rate'] / 5:g} Hz",
+        )
     one = np.ones((1, 1))
     return Case(mass=one, stiffness=0 * one, damping=0 * one, physical=payload, table=(lowest, highest), **found)
 
@@ -363,8 +386,9 @@ def _direction(structure: Fields, count: int) -> Array | None:
     given = structure.data["direction"]
     numbers = [one for one in given if isinstance(one, int | float)] if isinstance(given, list) else []
     if len(numbers) != count or not np.isfinite(numbers).all():
-        raise Unusable("bad-case", "not one number for each degree of freedom", "structure direction",
-                       f"give {count} numbers")  # fmt: skip
+        raise Unusable(
+            "bad-case", "not one number for each degree of freedom", "structure direction", f"give {count} numbers"
+        )
     return np.array(numbers, dtype=float)
 
 
@@ -403,8 +427,11 @@ def _damping(structure: Fields, mass: Array, stiffness: Array) -> Array:
 
 
 def _physical(top: Fields, mass: Array, stiffness: Array) -> tuple[Specimen, int]:
-    fields = Fields(top.need("physical", "give the part that stands in the laboratory"), "physical",
-                    ("mass", "stiffness", "damping", "storey"))  # fmt: skip
+    fields = Fields(
+        top.need("physical", "give the part that stands in the laboratory"),
+        "physical",
+        ("mass", "stiffness", "damping", "storey"),
+    )
     place = fields.whole("storey", 1) - 1
     if not 0 <= place < len(mass):
         raise Unusable("bad-case", f"storey {place + 1} of {len(mass)}", "physical storey", "count from 1, the lowest")

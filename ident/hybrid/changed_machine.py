@@ -122,8 +122,12 @@ class ChangedMachine:
         with np.errstate(all="ignore"):
             model = self.chain.linearise({name: np.broadcast_to(v, shape) for name, v in values.items()}, self.output)
         if not all(np.isfinite(matrix).all() for matrix in (model.A, model.B, model.C, model.D)):
-            raise Unusable("out-of-range", "the equations of the changed machine leave the range of a computer", "set",
-                           "correct the values")  # fmt: skip
+            raise Unusable(
+                "out-of-range",
+                "the equations of the changed machine leave the range of a computer",
+                "set",
+                "correct the values",
+            )
         return model
 
 
@@ -137,8 +141,12 @@ def changed_machine(fit: FitResult, change: Change) -> ChangedMachine:
     effects = tuple(dict.fromkeys((*fit.effects, *_added(change.values))))
     whole = preset_with(fit.model, effects, custom)
     if whole.kind != "chain":
-        raise Unusable("no-what-if", f"{fit.model} is fitted to records of a bench", "fit",
-                       "give a regulator, for the margins of its position loop, or a fit of test runs")  # fmt: skip
+        raise Unusable(
+            "no-what-if",
+            f"{fit.model} is fitted to records of a bench",
+            "fit",
+            "give a regulator, for the margins of its position loop, or a fit of test runs",
+        )
     kept = tuple(name for name in effects if _is_linear(preset_with(fit.model, (name,), custom)))
     before = _known(fit, change.known)
     after = _resized(before, change.sizes)
@@ -171,11 +179,19 @@ def _known(fit: FitResult, stated: Mapping[str, float]) -> Actuator:
     for name, value in stated.items():
         there = getattr(actuator, _FIELDS[name])
         if there is not None and not np.isclose(there, value, rtol=1e-6):
-            raise Unusable("two-sizes", f"the fit was made with {name} {there:.6g}, not {value:.6g}", f"fitted {name}",
-                           "change it instead, or fit again")  # fmt: skip
+            raise Unusable(
+                "two-sizes",
+                f"the fit was made with {name} {there:.6g}, not {value:.6g}",
+                f"fitted {name}",
+                "change it instead, or fit again",
+            )
     if "area" in stated and any("A^" in name for name in fit.parameters):
-        raise Unusable("missing-area", "the fit knows only ratios to the piston area", "fitted area",
-                       "state piston_area in matrix.yaml and fit again")  # fmt: skip
+        raise Unusable(
+            "missing-area",
+            "the fit knows only ratios to the piston area",
+            "fitted area",
+            "state piston_area in matrix.yaml and fit again",
+        )
     return _with_sizes(actuator, stated)
 
 
@@ -206,8 +222,12 @@ def _ratio(before: Actuator, after: Actuator, names: tuple[str, ...], sizes: Map
         if name in sizes:
             old = getattr(before, _FIELDS[name])
             if old is None:
-                raise Unusable("missing-size", f"{name} is to change, but the fit does not hold what it was",
-                               f"set {name}", f"state it of the fitted machine (--fitted {name}=…)")  # fmt: skip
+                raise Unusable(
+                    "missing-size",
+                    f"{name} is to change, but the fit does not hold what it was",
+                    f"set {name}",
+                    f"state it of the fitted machine (--fitted {name}=…)",
+                )
             ratio *= getattr(after, _FIELDS[name]) / old
     return ratio
 
@@ -218,8 +238,12 @@ def _scaled(fit: FitResult, preset: Preset, before: Actuator, after: Actuator, c
     fitted = {preset.parameter(name).in_equations for name in fit.parameters}
     added = {p.in_equations: p for effect in preset.effects if effect.name not in fit.effects for p in effect.added}
     if strange := [name for name in change.values if preset.parameter(name).in_equations not in fitted | added.keys()]:
-        raise Unusable("unknown-parameter", f"the fit has no parameter {strange[0]!r}", "set",
-                       did_you_mean(strange[0], (*SIZES, *fit.parameters)))  # fmt: skip
+        raise Unusable(
+            "unknown-parameter",
+            f"the fit has no parameter {strange[0]!r}",
+            "set",
+            did_you_mean(strange[0], (*SIZES, *fit.parameters)),
+        )
     found = {}
     for name, entry in fit.parameters.items():
         symbol = preset.parameter(name).in_equations

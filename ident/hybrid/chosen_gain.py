@@ -37,8 +37,12 @@ class GainTarget:
 
     def __post_init__(self) -> None:
         if self.quantity not in QUANTITIES:
-            raise Unusable("unknown-quantity", f"no gain is chosen for {self.quantity!r}", "choose",
-                           did_you_mean(self.quantity, QUANTITIES))  # fmt: skip
+            raise Unusable(
+                "unknown-quantity",
+                f"no gain is chosen for {self.quantity!r}",
+                "choose",
+                did_you_mean(self.quantity, QUANTITIES),
+            )
         if not 0 < self.value < np.inf:
             raise Unusable("bad-number", f"{self.quantity} is {self.value:g}", "choose", "give a value above 0")
 
@@ -78,8 +82,12 @@ def choose_gain(
     gains = np.geomspace(_LOWEST, _HIGHEST, _GAINS)
     values = _of(machine, target.quantity, gains)
     if not np.isfinite(values).any():
-        raise Unusable("out-of-reach", f"at no gain is there a {target.quantity.replace('_', ' ')}", "choose",
-                       "choose another quantity, or correct the machine")  # fmt: skip
+        raise Unusable(
+            "out-of-reach",
+            f"at no gain is there a {target.quantity.replace('_', ' ')}",
+            "choose",
+            "choose another quantity, or correct the machine",
+        )
     gain, reached = _sought(machine, target, gains, values)
     loops = drawn_loops(fit, machine, gain, spread, seed)
     text = _text(target, gain, reached, loops.quantities)
@@ -105,8 +113,9 @@ def _sought(machine: ChangedMachine, target: GainTarget, gains: Array, values: A
         return float(np.exp(scipy.optimize.brentq(off, *ends, xtol=1e-6))), True
     nearest = int(np.nanargmin(np.abs(left)))
     bounds = np.log(gains[[max(nearest - 1, 0), min(nearest + 1, len(gains) - 1)]])
-    best = scipy.optimize.minimize_scalar(lambda log: np.nan_to_num(abs(off(log)), nan=np.inf), bounds=bounds,
-                                          method="bounded", options={"xatol": 1e-6})  # fmt: skip
+    best = scipy.optimize.minimize_scalar(
+        lambda log: np.nan_to_num(abs(off(log)), nan=np.inf), bounds=bounds, method="bounded", options={"xatol": 1e-6}
+    )
     gain = float(np.exp(best.x)) if np.isfinite(best.fun) else float(gains[nearest])
     return gain, abs(off(float(np.log(gain)))) < 1e-3 * target.value
 

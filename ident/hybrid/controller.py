@@ -32,11 +32,19 @@ class SampledController(StateSpace):
         got = {name: np.shape(getattr(self, name)) for name in expected}
         if wrong := [name for name in expected if got[name] != expected[name]]:
             first = wrong[0]
-            raise Unusable("bad-controller", f"{first} is {got[first]}, not {expected[first]}", "controller",
-                           "give A (n, n), B (n, 2), C (1, n), D (1, 2)")  # fmt: skip
+            raise Unusable(
+                "bad-controller",
+                f"{first} is {got[first]}, not {expected[first]}",
+                "controller",
+                "give A (n, n), B (n, 2), C (1, n), D (1, 2)",
+            )
         if not all(np.isfinite(getattr(self, name)).all() for name in expected) or not self.sample_rate > 0:
-            raise Unusable("bad-controller", "a number is not finite, or the sample rate not positive", "controller",
-                           "design it again")  # fmt: skip
+            raise Unusable(
+                "bad-controller",
+                "a number is not finite, or the sample rate not positive",
+                "controller",
+                "design it again",
+            )
 
     def to_json(self) -> dict[str, Any]:
         """As plain JSON data."""
@@ -53,8 +61,12 @@ class SampledController(StateSpace):
             matrices = {name: np.array(given[name], dtype=float).reshape(shapes[name]) for name in shapes}
             return cls(**matrices, sample_rate=float(given["sample_rate"]), name=str(given.get("name", "")))
         except (KeyError, TypeError, ValueError, AttributeError) as error:
-            raise Unusable("bad-controller", f"not the JSON of a controller: {error}", "controller",
-                           "give the controller.json that `servoident control` wrote") from None  # fmt: skip
+            raise Unusable(
+                "bad-controller",
+                f"not the JSON of a controller: {error}",
+                "controller",
+                "give the controller.json that `servoident control` wrote",
+            ) from None
 
 
 class Compensator(Protocol):

@@ -75,8 +75,12 @@ class ControllerDesign(Shown):
         }
         if self.robustness is not None:
             counts = {name: getattr(self.robustness, name) for name in ("draws", "stable", "within")}
-            found["robustness"] = {**counts, "held": list(self.robustness.held), "spread": self.robustness.spread,
-                                   "margins": written(self.robustness.margins)}  # fmt: skip
+            found["robustness"] = {
+                **counts,
+                "held": list(self.robustness.held),
+                "spread": self.robustness.spread,
+                "margins": written(self.robustness.margins),
+            }
         return {**made.controller.to_json(), "design": found}
 
     def listings(self) -> Iterator[Listing | str]:
@@ -125,11 +129,20 @@ def _or_none(value: float | None, factor: float) -> str:
 
 
 def design_controller(
-    fit: FitResult, specimen: Specimen, *, sample_rate: float, gain: float | None = None,
-    piston_area: float | None = None, delay: float = 1.0, target: Target = QIAN2014_TARGET,
-    structure: str = "feedback", draws: int = DRAWS, seed: int = 0, before: EarlierCase | None = None,
+    fit: FitResult,
+    specimen: Specimen,
+    *,
+    sample_rate: float,
+    gain: float | None = None,
+    piston_area: float | None = None,
+    delay: float = 1.0,
+    target: Target = QIAN2014_TARGET,
+    structure: str = "feedback",
+    draws: int = DRAWS,
+    seed: int = 0,
+    before: EarlierCase | None = None,
     spread: Spread | None = None,
-) -> ControllerDesign:  # fmt: skip
+) -> ControllerDesign:
     """A controller for the actuator of a fit with this specimen, gain Kp and piston area (m²).
 
     `sample_rate` in Hz, `delay` in samples; `draws` plants are drawn with `seed` from a `spread`, without one from the
@@ -159,8 +172,12 @@ def _refuse_unstable(plant: LinearPlant, before: EarlierCase | None) -> None:
         known = values_before(earlier.known, loop)
     found = judge(loop, known, f"at Kp = {trimmed(plant.known['Kp'])}")
     if not found.stable:
-        raise Unusable("unstable-plant", f"the identified servo loop is {found.what}", "case",
-                       found.remedy or "lower the gain, or correct the specimen")  # fmt: skip
+        raise Unusable(
+            "unstable-plant",
+            f"the identified servo loop is {found.what}",
+            "case",
+            found.remedy or "lower the gain, or correct the specimen",
+        )
 
 
 def on_case(made: ControllerDesign, fit: FitResult, case: Case, before: EarlierCase | None = None) -> ControllerDesign:

@@ -56,8 +56,12 @@ class CoupledCase:
     def __post_init__(self) -> None:
         names = [part.name for part in self.parts]
         if not 1 <= len(names) <= MOST or len(set(names)) < len(names):
-            raise Unusable("bad-case", f"{len(names)} parts, {len(set(names))} names", "physical",
-                           f"give 1 to {MOST} parts, each its own name")  # fmt: skip
+            raise Unusable(
+                "bad-case",
+                f"{len(names)} parts, {len(set(names))} names",
+                "physical",
+                f"give 1 to {MOST} parts, each its own name",
+            )
         if len(set(self.places)) < len(names):
             raise Unusable("bad-case", "two parts have the same place", "physical", "give each its own")
         if not np.allclose(self.specimen, np.swapaxes(self.specimen, 1, 2)):
@@ -135,8 +139,12 @@ class CoupledCase:
         for one in self.parts:
             if one.name == name:
                 return one
-        raise Unusable("unknown-part", f"the case has no part {name!r}", "part",
-                       did_you_mean(name, [one.name for one in self.parts]))  # fmt: skip
+        raise Unusable(
+            "unknown-part",
+            f"the case has no part {name!r}",
+            "part",
+            did_you_mean(name, [one.name for one in self.parts]),
+        )
 
     def changed(self, **fields: Any) -> CoupledCase:
         """The case whose parts all have these fields instead of their own: ground, delay."""
@@ -193,8 +201,12 @@ def in_coordinates_of(rows: Array) -> Array:
     """
     count, n = rows.shape
     if count > n or np.linalg.matrix_rank(rows) < count:
-        raise Unusable("bad-case", "the places of the parts are not independent", "physical place",
-                       "give each part a place that does not follow from the others")  # fmt: skip
+        raise Unusable(
+            "bad-case",
+            "the places of the parts are not independent",
+            "physical place",
+            "give each part a place that does not follow from the others",
+        )
     return np.vstack([rows, scipy.linalg.null_space(rows).T])
 
 

@@ -40,9 +40,13 @@ class EarlierParts:
 
     @classmethod
     def stated(
-        cls, fits: Sequence[FitResult], case: CoupledCase, then: System | None, fit: FitResult | None,
+        cls,
+        fits: Sequence[FitResult],
+        case: CoupledCase,
+        then: System | None,
+        fit: FitResult | None,
         find: Callable[[str], FitResult],
-    ) -> EarlierParts:  # fmt: skip
+    ) -> EarlierParts:
         """The case `then` and the `fit` of its machines; what is left out is that of the `case` and its `fits` now.
 
         A part that names a fit has that one, which `find` finds. Raises Unusable where the parts are others.

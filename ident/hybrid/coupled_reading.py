@@ -62,11 +62,14 @@ def coupled_of(data: Mapping[str, Any], base: Path | None, name: str) -> Coupled
         called = entry.text("name", f"part {number + 1}")
         case = replace(alone, name=f"{alone.name}, {called}")
         mass, damping, stiffness = (float(of[number, number]) for of in specimen)
-        found.append(Part(
-            called,
-            _placed(case, number, turn, inverse, rows, Specimen(mass, stiffness, damping)),
-            entry.text("fit"), _controller(entry),
-        ))  # fmt: skip
+        found.append(
+            Part(
+                called,
+                _placed(case, number, turn, inverse, rows, Specimen(mass, stiffness, damping)),
+                entry.text("fit"),
+                _controller(entry),
+            )
+        )
     return CoupledCase(cases[0].name, tuple(found), specimen)
 
 
@@ -92,8 +95,12 @@ def _row(entry: Fields, case: Case) -> list[float]:
     given = entry.data["place"]
     numbers = [one for one in given if isinstance(one, int | float)] if isinstance(given, list) else []
     if "storey" in entry or len(numbers) != case.storeys or not np.isfinite(numbers).all() or not any(numbers):
-        raise Unusable("bad-case", "not one number for each degree of freedom", entry.place("place"),
-                       f"give {case.storeys} numbers, or a storey instead")  # fmt: skip
+        raise Unusable(
+            "bad-case",
+            "not one number for each degree of freedom",
+            entry.place("place"),
+            f"give {case.storeys} numbers, or a storey instead",
+        )
     return [float(one) for one in numbers]
 
 
@@ -116,14 +123,22 @@ def _joint(data: Any, cases: list[Case], inverse: Array) -> Array:
             continue
         given = matrix(fields, name, _UNITS[name])
         if given.shape != (n, n):
-            raise Unusable("bad-case", f"{name} is {len(given)} rows, the structure {n}", "specimen",
-                           "give it in the coordinates of the structure")  # fmt: skip
+            raise Unusable(
+                "bad-case",
+                f"{name} is {len(given)} rows, the structure {n}",
+                "specimen",
+                "give it in the coordinates of the structure",
+            )
         by_parts = transformed(given, inverse)
         outside = np.abs(by_parts).copy()
         outside[:parts, :parts] = 0.0
         if outside.max() > _OUTSIDE * np.abs(by_parts).max():
-            raise Unusable("bad-case", f"its {name} is where no part moves it", "specimen",
-                           "give what the parts move, or another place for one of them")  # fmt: skip
+            raise Unusable(
+                "bad-case",
+                f"its {name} is where no part moves it",
+                "specimen",
+                "give what the parts move, or another place for one of them",
+            )
         found[number] = by_parts[:parts, :parts]
     return found
 
@@ -133,5 +148,12 @@ def _placed(case: Case, number: int, turn: Array, inverse: Array, rows: Array, s
     if np.isin(rows, (0.0, 1.0)).all() and (rows.sum(axis=1) == 1).all():
         return replace(case, physical=specimen)  # a storey each: the structure's own coordinates have them
     mass, damping, stiffness = (transformed(getattr(case, name), inverse) for name in QUANTITIES)
-    return replace(case, mass=mass, damping=damping, stiffness=stiffness, physical=specimen, place=number,
-                   direction=turn @ case.influence)  # fmt: skip
+    return replace(
+        case,
+        mass=mass,
+        damping=damping,
+        stiffness=stiffness,
+        physical=specimen,
+        place=number,
+        direction=turn @ case.influence,
+    )

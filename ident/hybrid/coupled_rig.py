@@ -123,9 +123,13 @@ class CoupledResult(Shown):
 
 
 def simulate_coupled(
-    fits: Sequence[FitResult], case: CoupledCase, controllers: Sequence[Controller],
-    effects: Mapping[str, float] | None = None, report: Report = silent, before: EarlierParts | None = None,
-) -> CoupledResult:  # fmt: skip
+    fits: Sequence[FitResult],
+    case: CoupledCase,
+    controllers: Sequence[Controller],
+    effects: Mapping[str, float] | None = None,
+    report: Report = silent,
+    before: EarlierParts | None = None,
+) -> CoupledResult:
     """Simulate a case of several actuators, each the machine of its fit under its controller, at rest in the beginning.
 
     `effects` are further effects of every machine: values by name, SI. Each motion is held against the limits of its
@@ -144,10 +148,16 @@ def simulate_coupled(
 
 
 def simulate_compared(
-    fits: Sequence[FitResult], case: CoupledCase, controllers: Sequence[Controller],
-    effects: Mapping[str, float] | None = None, *, without: bool, mapped: bool, report: Report = silent,
+    fits: Sequence[FitResult],
+    case: CoupledCase,
+    controllers: Sequence[Controller],
+    effects: Mapping[str, float] | None = None,
+    *,
+    without: bool,
+    mapped: bool,
+    report: Report = silent,
     before: EarlierParts | None = None,
-) -> tuple[CoupledResult, CoupledResult | None]:  # fmt: skip
+) -> tuple[CoupledResult, CoupledResult | None]:
     """The simulation, `mapped` with its map over delays; and the same `without` controllers, None if not wanted.
 
     Raises Unusable before anything is simulated, also where there can be no map.
@@ -170,16 +180,24 @@ def machines_of(
     found = tuple(machine(fit, part.case, effects) for fit, part in zip(fits, case.parts, strict=True))
     for one, part, coupling in zip(found, case.parts, case.coupling[0], strict=True):
         if coupling.any() and not one.has_inertia:
-            raise Unusable("no-inertia", f"part {part.name}: its model has no force that would move a mass",
-                           "specimen mass", "leave the mass to the numerical part")  # fmt: skip
+            raise Unusable(
+                "no-inertia",
+                f"part {part.name}: its model has no force that would move a mass",
+                "specimen mass",
+                "leave the mass to the numerical part",
+            )
     return found
 
 
 @one_thread()  # small matrices, for which more threads wait longer than they work
 def simulate_machines(
-    machines: Sequence[Machine], case: CoupledCase, controllers: Sequence[Controller],
-    effects: Mapping[str, float] | None = None, report: Report = silent, before: EarlierParts | None = None,
-) -> CoupledResult:  # fmt: skip
+    machines: Sequence[Machine],
+    case: CoupledCase,
+    controllers: Sequence[Controller],
+    effects: Mapping[str, float] | None = None,
+    report: Report = silent,
+    before: EarlierParts | None = None,
+) -> CoupledResult:
     """As :func:`simulate_coupled`, of machines that are at hand."""
     begun = perf_counter()
     ground = case.ground.samples(case.sample_rate)
@@ -192,35 +210,54 @@ def simulate_machines(
     kept = whole["ended"] is None
     parts = {
         part.name: HybridResult(
-            case=part.case, controller=name_of(controllers[p]), effects=dict(effects or {}),
+            case=part.case,
+            controller=name_of(controllers[p]),
+            effects=dict(effects or {}),
             scores=scores(rig.y[:, p], rig.d[:, p], wanted[p], case.sample_rate) if kept else None,
             command_rms=float(np.std(rig.held[part.case.delay : len(ground), p])) if kept else None,
-            seconds=perf_counter() - begun, ground=ground, numerical=rig.d[:, p], measured=rig.y[:, p],
-            reference=wanted[p], command=rig.held[part.case.delay : part.case.delay + len(ground), p],
-            force=rig.f[:, p], notes=_notes(machines), **whole,
+            seconds=perf_counter() - begun,
+            ground=ground,
+            numerical=rig.d[:, p],
+            measured=rig.y[:, p],
+            reference=wanted[p],
+            command=rig.held[part.case.delay : part.case.delay + len(ground), p],
+            force=rig.f[:, p],
+            notes=_notes(machines),
+            **whole,
         )
         for p, part in enumerate(case.parts)
-    }  # fmt: skip
+    }
     return CoupledResult(case=case, parts=parts, seconds=perf_counter() - begun)
 
 
 def _whole(
-    machines: Sequence[Machine], case: CoupledCase, controllers: Sequence[Controller], ended: int, samples: int,
+    machines: Sequence[Machine],
+    case: CoupledCase,
+    controllers: Sequence[Controller],
+    ended: int,
+    samples: int,
     before: EarlierParts | None,
-) -> dict[str, Any]:  # fmt: skip
+) -> dict[str, Any]:
     """What holds for the whole loop: whether it is stable, by its poles where it has them."""
     kept, radius, judged = ended >= samples, None, None
     sampled = [one for one in controllers if isinstance(one, SampledController)]
     if len(sampled) == len(controllers) and not any(one.nonlinear for one in machines):
         radius = float(np.abs(coupled_poles(machines, case, sampled)).max())
-        judged = None if radius < 1.0 else judge_coupled(
-            CoupledLoop(machines, case, sampled),
-            None if before is None else CoupledLoop(machines_of(before.fits, before.case), before.case, sampled),
-        )  # fmt: skip
+        judged = (
+            None
+            if radius < 1.0
+            else judge_coupled(
+                CoupledLoop(machines, case, sampled),
+                None if before is None else CoupledLoop(machines_of(before.fits, before.case), before.case, sampled),
+            )
+        )
     return {
-        "stable": kept and (radius is None or radius < 1.0), "radius": radius, "stability": judged,
-        "critical_delay": coupled_critical_delay(case), "ended": None if kept else ended / case.sample_rate,
-    }  # fmt: skip
+        "stable": kept and (radius is None or radius < 1.0),
+        "radius": radius,
+        "stability": judged,
+        "critical_delay": coupled_critical_delay(case),
+        "ended": None if kept else ended / case.sample_rate,
+    }
 
 
 def _notes(machines: Sequence[Machine]) -> tuple[str, ...]:

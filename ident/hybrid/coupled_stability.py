@@ -78,8 +78,9 @@ def _frequencies(of: CoupledCase) -> Array:
     """Where crossings are looked for, rad/s, in rising order: evenly, and closely about each mode."""
     case, modes = of.parts[0].case, []
     for mass, damping, stiffness in (
-        (of.numerical_mass, of.numerical_damping, of.numerical_stiffness), (case.mass, case.damping, case.stiffness),
-    ):  # fmt: skip
+        (of.numerical_mass, of.numerical_damping, of.numerical_stiffness),
+        (case.mass, case.damping, case.stiffness),
+    ):
         n, inverse = len(mass), np.linalg.inv(mass)
         A = np.block([[np.zeros((n, n)), np.eye(n)], [-inverse @ stiffness, -inverse @ damping]])
         modes += [pole for pole in np.linalg.eigvals(A) if pole.imag > 0]
@@ -120,8 +121,13 @@ class DelayMap(Shown):
 
     def to_json(self) -> dict[str, Any]:
         """As plain JSON data."""
-        return {"parts": list(self.names), "first": self.first.tolist(), "second": self.second.tolist(),
-                "stable": self.stable.tolist(), "radius": self.radius.tolist()}  # fmt: skip
+        return {
+            "parts": list(self.names),
+            "first": self.first.tolist(),
+            "second": self.second.tolist(),
+            "stable": self.stable.tolist(),
+            "radius": self.radius.tolist(),
+        }
 
     @classmethod
     def from_json(cls, data: dict[str, Any]) -> DelayMap:
@@ -131,9 +137,12 @@ class DelayMap(Shown):
 
 
 def delay_map(
-    machines: Sequence[Machine], of: CoupledCase, controllers: Sequence[Controller],
-    delays: Sequence[int] | None = None, report: Report = silent,
-) -> DelayMap:  # fmt: skip
+    machines: Sequence[Machine],
+    of: CoupledCase,
+    controllers: Sequence[Controller],
+    delays: Sequence[int] | None = None,
+    report: Report = silent,
+) -> DelayMap:
     """The map over the delays of the first two parts; without `delays` to twice that at which all of them are too late.
 
     Raises Unusable where there is but one part, or the loop has no poles.

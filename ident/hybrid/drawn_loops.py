@@ -43,9 +43,13 @@ class DrawnLoops:
 
 
 def drawn_loops(
-    fit: FitResult, machine: ChangedMachine, gain: float | None, spread: Spread | None = None, seed: int = 0,
+    fit: FitResult,
+    machine: ChangedMachine,
+    gain: float | None,
+    spread: Spread | None = None,
+    seed: int = 0,
     draws: int = DRAWS,
-) -> DrawnLoops:  # fmt: skip
+) -> DrawnLoops:
     """The loop of a machine at a gain over a `spread` of its parameters, without one over the covariance of its fit.
 
     A parameter that a change has set spreads by as large a share as the fitted one, but not by the covariance.

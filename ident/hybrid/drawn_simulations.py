@@ -93,10 +93,15 @@ def _said(one: Interval) -> str:
 
 
 def drawn_simulations(
-    fit: FitResult, case: Case, controller: SampledController | None = None,
-    effects: Mapping[str, float] | None = None, spread: Spread | None = None, draws: int = DRAWS, seed: int = 0,
+    fit: FitResult,
+    case: Case,
+    controller: SampledController | None = None,
+    effects: Mapping[str, float] | None = None,
+    spread: Spread | None = None,
+    draws: int = DRAWS,
+    seed: int = 0,
     report: Report = silent,
-) -> DrawnSimulations:  # fmt: skip
+) -> DrawnSimulations:
     """A case on machines drawn from a `spread` of a fit, without one from its covariance; sixteen side by side.
 
     The controller is the same for all of them. Raises Unusable as :func:`ident.hybrid.rig.simulate_hybrid`.
@@ -113,10 +118,15 @@ def drawn_simulations(
 
 
 def drawn_coupled(
-    fits: Sequence[FitResult], case: CoupledCase, controllers: Sequence[SampledController],
-    effects: Mapping[str, float] | None = None, spreads: Sequence[Spread] | None = None, draws: int = DRAWS,
-    seed: int = 0, report: Report = silent,
-) -> DrawnSimulations:  # fmt: skip
+    fits: Sequence[FitResult],
+    case: CoupledCase,
+    controllers: Sequence[SampledController],
+    effects: Mapping[str, float] | None = None,
+    spreads: Sequence[Spread] | None = None,
+    draws: int = DRAWS,
+    seed: int = 0,
+    report: Report = silent,
+) -> DrawnSimulations:
     """As :func:`drawn_simulations`, of a case of several actuators: the machine of each is drawn by itself.
 
     `spreads` are those of each part, without them the covariance of its fit.
@@ -152,8 +162,9 @@ def _summary(spread: str, table: Array, names: Sequence[str]) -> DrawnSimulation
         name: {score: _interval("1", scores[:, p, i]) for i, score in enumerate(SCORES)} for p, name in enumerate(names)
     }
     rows = table[1:] if len(table) > 1 else table
-    return DrawnSimulations(spread, len(table) - 1, float(rows[:, 0].mean()),
-                            {**quantities, MARGIN: _interval("dB", table[:, 1])}, parts)  # fmt: skip
+    return DrawnSimulations(
+        spread, len(table) - 1, float(rows[:, 0].mean()), {**quantities, MARGIN: _interval("dB", table[:, 1])}, parts
+    )
 
 
 def _interval(unit: str, values: Array) -> Interval:
@@ -161,9 +172,13 @@ def _interval(unit: str, values: Array) -> Interval:
 
 
 def _simulated(
-    machines: Sequence[Machines], system: System, acting: Sequence[SampledController], driven: Array,
-    wanted: Sequence[tuple[Array, ...]], report: Report,
-) -> Array:  # fmt: skip
+    machines: Sequence[Machines],
+    system: System,
+    acting: Sequence[SampledController],
+    driven: Array,
+    wanted: Sequence[tuple[Array, ...]],
+    report: Report,
+) -> Array:
     """A row for each draw of the machines of a system, as many side by side as fill the lanes of a kernel."""
     lock, count, beside = Lock(), [0], LANES // len(acting)
 
@@ -180,26 +195,43 @@ def _simulated(
 
 
 def _group(
-    machines: Sequence[Machines], system: System, acting: Sequence[SampledController], driven: Array,
+    machines: Sequence[Machines],
+    system: System,
+    acting: Sequence[SampledController],
+    driven: Array,
     wanted: Sequence[tuple[Array, ...]],
-) -> Array:  # fmt: skip
+) -> Array:
     """The rows of draws that run side by side."""
     parts = len(acting)
     limits = np.repeat([max(float(np.abs(one).max()) for one in of) for of in wanted], parts)
     side_by_side = [one for of in machines for one in of]
     _kept, rig = rig_of(side_by_side, (system,) * len(machines), acting, driven, RUNAWAY * limits)
     run(rig, acting)
-    return np.array([
-        _row(of, system, acting, rig.ended[i] >= len(driven), rig.d[:, i * parts : (i + 1) * parts],
-             rig.y[:, i * parts : (i + 1) * parts], wanted[i])
-        for i, of in enumerate(machines)
-    ])  # fmt: skip
+    return np.array(
+        [
+            _row(
+                of,
+                system,
+                acting,
+                rig.ended[i] >= len(driven),
+                rig.d[:, i * parts : (i + 1) * parts],
+                rig.y[:, i * parts : (i + 1) * parts],
+                wanted[i],
+            )
+            for i, of in enumerate(machines)
+        ]
+    )
 
 
 def _row(
-    machines: Machines, system: System, acting: Sequence[SampledController], kept: bool, d: Array, y: Array,
+    machines: Machines,
+    system: System,
+    acting: Sequence[SampledController],
+    kept: bool,
+    d: Array,
+    y: Array,
     wanted: Sequence[Array],
-) -> Array:  # fmt: skip
+) -> Array:
     """Stable, the gain margin, and the scores of each machine of a draw; NaN where there is none."""
     linear, scores = not any(one.nonlinear for one in machines), np.full((len(machines), len(SCORES)), np.nan)
     margin, stable = np.nan, kept

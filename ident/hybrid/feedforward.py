@@ -146,9 +146,13 @@ class Tracked:
 
 
 def tracked(
-    model: Plant, machine: Plant, reference: Array, sample_rate: float, draws: Mapping[str, Array] | None = None,
+    model: Plant,
+    machine: Plant,
+    reference: Array,
+    sample_rate: float,
+    draws: Mapping[str, Array] | None = None,
     width: float = 0.0,
-) -> Tracked:  # fmt: skip
+) -> Tracked:
     """A `machine` that follows a reference by the feedforward of a `model` of it, and so do machines drawn around it.
 
     `draws` holds values (v,) by name, in place of those of the machine.

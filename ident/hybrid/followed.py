@@ -93,8 +93,13 @@ class Followed(Shown):
         """Of what was tracked: at most 600 points of each curve."""
         places = np.unique(np.linspace(0, len(found.reference) - 1, _SHOWN).astype(np.intp))
         low, high = found.band()
-        curves = {"reference": found.reference, "feedback": found.feedback, "both": found.both, "low": low,
-                  "high": high}  # fmt: skip
+        curves = {
+            "reference": found.reference,
+            "feedback": found.feedback,
+            "both": found.both,
+            "low": low,
+            "high": high,
+        }
         rms = found.rms()
         told = {name: float(np.median(rms[name])) if draws else None for name in ("drawn_feedback", "drawn_both")}
         return cls(

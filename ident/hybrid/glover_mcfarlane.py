@@ -42,8 +42,12 @@ def robust_stabilisation(shaped: StateSpace, factor: float) -> Stabilised:
         X = scipy.linalg.solve_continuous_are(A, B, C.T @ C, np.eye(B.shape[1]))
         Z = scipy.linalg.solve_continuous_are(A.T, C.T, B @ B.T, np.eye(len(C)))
     except (np.linalg.LinAlgError, ValueError) as error:
-        raise Unusable("no-controller", f"the Riccati equation has no solution: {error}", "target",
-                       "choose a target of other frequencies") from None  # fmt: skip
+        raise Unusable(
+            "no-controller",
+            f"the Riccati equation has no solution: {error}",
+            "target",
+            "choose a target of other frequencies",
+        ) from None
     gamma_min = float(np.sqrt(1.0 + np.abs(np.linalg.eigvals(X @ Z)).max()))
     gamma = factor * gamma_min
     L = (1.0 - gamma**2) * np.eye(len(A)) + X @ Z

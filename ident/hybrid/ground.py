@@ -75,8 +75,12 @@ class Ground:
         count = _count(30.0 if self.duration is None else self.duration, sample_rate)
         fastest = self.frequency if self.kind == "sine" else self.band[1]
         if fastest > sample_rate / 2:
-            raise Unusable("bad-ground", f"{fastest:g} Hz cannot be sampled at {sample_rate:g} Hz", "ground",
-                           f"let it have at most {sample_rate / 2:g} Hz")  # fmt: skip
+            raise Unusable(
+                "bad-ground",
+                f"{fastest:g} Hz cannot be sampled at {sample_rate:g} Hz",
+                "ground",
+                f"let it have at most {sample_rate / 2:g} Hz",
+            )
         if self.kind == "sine":
             wave = np.sin(2 * np.pi * self.frequency * np.arange(count) / sample_rate)
             return np.asarray(self.amplitude * self.scale * wave)
@@ -92,8 +96,12 @@ class Ground:
 def _count(seconds: float, sample_rate: float) -> int:
     count = round(seconds * sample_rate) + 1
     if not 16 <= count <= _LONGEST:
-        raise Unusable("bad-ground", f"{seconds:g} s at {sample_rate:g} Hz are {count} samples", "ground",
-                       f"let it have 16 to {_LONGEST} samples")  # fmt: skip
+        raise Unusable(
+            "bad-ground",
+            f"{seconds:g} s at {sample_rate:g} Hz are {count} samples",
+            "ground",
+            f"let it have 16 to {_LONGEST} samples",
+        )
     return count
 
 
@@ -102,8 +110,12 @@ def _white(count: int, of: Ground, sample_rate: float) -> Array:
     frequency = np.fft.rfftfreq(count, 1 / sample_rate)
     used = (frequency > 0) & (frequency >= of.band[0]) & (frequency <= of.band[1])
     if not used.any():
-        raise Unusable("bad-ground", f"no frequency of the motion is in {of.band[0]:g} to {of.band[1]:g} Hz",
-                       "ground band", "give a wider band or a longer duration")  # fmt: skip
+        raise Unusable(
+            "bad-ground",
+            f"no frequency of the motion is in {of.band[0]:g} to {of.band[1]:g} Hz",
+            "ground band",
+            "give a wider band or a longer duration",
+        )
     rng = np.random.default_rng(of.seed)
     lines = np.zeros(len(frequency), dtype=complex)
     lines[used] = rng.standard_normal(used.sum()) + 1j * rng.standard_normal(used.sum())
@@ -133,8 +145,12 @@ def record_of(text: str, where: str, column: int | None = None) -> Array:
         if all(_NUMBER.fullmatch(word) for word in words):
             rows.append([float(re.sub("[dD]", "e", word)) for word in words])
         elif rows:
-            raise Unusable("bad-ground", f"{shown(line)!r} is not a row of numbers", f"{where} line {number}",
-                           "leave numbers alone in the file")  # fmt: skip
+            raise Unusable(
+                "bad-ground",
+                f"{shown(line)!r} is not a row of numbers",
+                f"{where} line {number}",
+                "leave numbers alone in the file",
+            )
     if column is not None:
         if any(len(row) <= column for row in rows):
             raise Unusable("bad-ground", f"no column {column} in every row", where, "count columns from 0")

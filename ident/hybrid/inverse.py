@@ -67,9 +67,11 @@ class Inverse:
         needed = float(np.max(np.sign(flow) * P, initial=0.0))
         if needed > _HIGHEST * of["Ps"]:
             raise Unusable(
-                "too-fast", f"the reference needs a load pressure of {1e-5 * needed:.3g} bar of {1e-5 * of['Ps']:.3g}",
-                "reference", "take a slower or a smaller motion",
-            )  # fmt: skip
+                "too-fast",
+                f"the reference needs a load pressure of {1e-5 * needed:.3g} bar of {1e-5 * of['Ps']:.3g}",
+                "reference",
+                "take a slower or a smaller motion",
+            )
         opening = flow / (np.where(forward, of["kqp"], of["kqn"]) * np.sqrt(of["Ps"] - np.sign(flow) * P))
         moving = np.abs(flow) > _STILL * np.abs(flow).max(initial=1e-300)
         return np.where(moving, opening + np.where(forward, of["vep"], of["ven"]), of["ve0"])

@@ -79,11 +79,14 @@ class KalmanIdentification(Identification):
         }
         said = tuple(f"{run_name(passed.run.id)}: {passed.verdict.reason}" for passed in self.found.tracks)
         return replace(
-            found, method=NAME, parameters={**found.parameters, **parameters}, notes=(*found.notes, *said),
+            found,
+            method=NAME,
+            parameters={**found.parameters, **parameters},
+            notes=(*found.notes, *said),
             correlation={a: {b: 1.0 if a == b else linked for b in _NAMES} for a in _NAMES} if holds else {},
             undetermined=found.undetermined if holds else tuple(Undetermined(name, _DOES_NOT_HOLD) for name in _NAMES),
             settings={**found.settings, "method": NAME, "fixed": {}},
-        )  # fmt: skip
+        )
 
 
 def filtered(runs: Sequence[Run], report: Report = silent) -> Found:

@@ -60,9 +60,12 @@ class LinearPlant:
 
 
 def linear_plant(
-    fit: FitResult, specimen: Specimen, gain: float | None = None, piston_area: float | None = None,
+    fit: FitResult,
+    specimen: Specimen,
+    gain: float | None = None,
+    piston_area: float | None = None,
     supply_pressure: float | None = None,
-) -> LinearPlant:  # fmt: skip
+) -> LinearPlant:
     """The linear part of a fit with this specimen, gain Kp and piston area (m²).
 
     Effects that are linear stay, their lags and delays as states; a linear design knows nothing of the others, which
@@ -71,8 +74,12 @@ def linear_plant(
     """
     preset = preset_with(fit.model, fit.effects, fit.settings.get("custom", ()))
     if preset.kind != "chain" or preset.data.driven_by != "command" or OUTPUT not in preset.chain.outputs:
-        raise Unusable("no-answer", f"the model {fit.model} has no command that moves a displacement", "fit",
-                       "give the fit of an actuator")  # fmt: skip
+        raise Unusable(
+            "no-answer",
+            f"the model {fit.model} has no command that moves a displacement",
+            "fit",
+            "give the fit of an actuator",
+        )
     names = {name: preset.parameter(name).in_equations for name in fit.parameters}
     values = {names[name]: value for name, value in fit.values.items()}
     written = {effect.name: with_states(effect) for effect in preset.effects}
@@ -84,9 +91,13 @@ def linear_plant(
     chain = preset.core.with_effects(kept)
     known = {
         "Kp": preset.data.gains.get("Kp", 1.0) if gain is None else gain,
-        "mL": specimen.mass, "k": specimen.stiffness, "cL": specimen.damping,
-        "A": _area(preset, fit, piston_area), "Ir": 1.0, "Ps": supply_pressure or NEVER,
-    }  # fmt: skip
+        "mL": specimen.mass,
+        "k": specimen.stiffness,
+        "cL": specimen.damping,
+        "A": _area(preset, fit, piston_area),
+        "Ir": 1.0,
+        "Ps": supply_pressure or NEVER,
+    }
     if missing := sorted(set(chain.symbols) - values.keys() - known.keys()):
         raise Unusable("bad-fit", f"no value of {', '.join(missing)}", "fit", f"give a fit of model {fit.model}")
     left_out = tuple(name for name, effect in written.items() if effect not in kept)
@@ -99,8 +110,12 @@ def _area(preset: Preset, fit: FitResult, stated: float | None) -> float:
     if not any(name in fit.parameters for name in ratios):
         return 1.0
     if stated is None:
-        raise Unusable("missing-area", "the fit was made with a piston area, which the case does not state",
-                       "case piston_area", "state it, for example piston_area: 497 mm^2")  # fmt: skip
+        raise Unusable(
+            "missing-area",
+            "the fit was made with a piston area, which the case does not state",
+            "case piston_area",
+            "state it, for example piston_area: 497 mm^2",
+        )
     return stated
 
 

@@ -154,9 +154,20 @@ def _advance_machines(k: int, rig: Any) -> None:
 @inlined
 def _advance(g: int, first: int, last: int, rig: Any) -> None:
     advance_from(
-        rig.code[g], rig.buffer, rig.begin[g], rig.window, rig.pushes, rig.places, rig.pushed_at, g * LANES, first,
-        last, _NEVER, rig.spare, LANES,
-    )  # fmt: skip
+        rig.code[g],
+        rig.buffer,
+        rig.begin[g],
+        rig.window,
+        rig.pushes,
+        rig.places,
+        rig.pushed_at,
+        g * LANES,
+        first,
+        last,
+        _NEVER,
+        rig.spare,
+        LANES,
+    )
 
 
 @inlined

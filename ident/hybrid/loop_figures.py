@@ -115,6 +115,7 @@ def _overshoot(model: LinearModel, slowest: Array) -> Array:
 
 
 _OF_LOOP: Mapping[str, Callable[[NDArray[np.complex128]], Array]] = {
-    "phase_margin": phase_margins, "gain_margin": gain_margins,
-}  # fmt: skip
+    "phase_margin": phase_margins,
+    "gain_margin": gain_margins,
+}
 _OF_RESPONSE: Mapping[str, Callable[[LinearModel, Array], Array]] = {"bandwidth": _bandwidth, "peak": _peak}

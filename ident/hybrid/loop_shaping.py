@@ -66,9 +66,12 @@ class Design:
 
 
 def design(
-    plant: LinearModel, sample_rate: float, delay: float = 1.0, target: Target = QIAN2014_TARGET,
+    plant: LinearModel,
+    sample_rate: float,
+    delay: float = 1.0,
+    target: Target = QIAN2014_TARGET,
     structure: str = "feedback",
-) -> Design:  # fmt: skip
+) -> Design:
     """A controller for a stable plant command → displacement (a linear model without a batch, SI).
 
     `sample_rate` is in Hz; the command acts `delay` samples after the displacement was measured, and is held. Raises
@@ -78,8 +81,12 @@ def design(
         remedy = did_you_mean(structure, STRUCTURES)
         raise Unusable("unknown-structure", f"no structure {structure!r}", "structure", remedy)
     if delay > LATEST:
-        raise Unusable("too-late", f"the command acts {delay:g} samples after the measurement", "delay",
-                       f"design for at most {LATEST} samples, at a lower rate")  # fmt: skip
+        raise Unusable(
+            "too-late",
+            f"the command acts {delay:g} samples after the measurement",
+            "delay",
+            f"design for at most {LATEST} samples, at a lower rate",
+        )
     outer, through = factored(Rational.of_model(plant))
     rolled = target.rational.times(_roll_off(target, outer))
     stabilised = robust_stabilisation(rolled.times(through).realised(), FACTOR)
@@ -95,8 +102,12 @@ def design(
         full = SampledController(*_two_degree(forward, model, feedback), sample_rate, name)
     whole = SampledLoop(plant, full, delay)
     if not whole.stable:
-        raise Unusable("no-controller", f"the sampled loop is not stable with it: {whole.mode}", "target",
-                       "choose a slower target, or a shorter delay")  # fmt: skip
+        raise Unusable(
+            "no-controller",
+            f"the sampled loop is not stable with it: {whole.mode}",
+            "target",
+            "choose a slower target, or a shorter delay",
+        )
     gamma_target = robust_stabilisation(target.rational.realised(), FACTOR).gamma_min
     return Design(reduced(whole), full, plant, delay, target, structure, gamma_target, stabilised)
 
@@ -107,12 +118,20 @@ def factored(plant: Rational) -> tuple[Rational, Rational]:
     Raises Unusable where G is unstable, does not fall at high frequency, or does not hold a displacement.
     """
     if plant.poles.real.max(initial=-1.0) >= 0:
-        raise Unusable("unstable-plant", "the identified servo loop is not stable with this specimen and gain", "case",
-                       "lower the gain, or correct the specimen")  # fmt: skip
+        raise Unusable(
+            "unstable-plant",
+            "the identified servo loop is not stable with this specimen and gain",
+            "case",
+            "lower the gain, or correct the specimen",
+        )
     near_nothing = 1e-9 * np.abs(plant.poles).min(initial=np.inf)
     if not plant.relative_degree or np.abs(plant.zeros).min(initial=np.inf) < near_nothing:
-        raise Unusable("no-answer", "the plant does not follow a displacement as an actuator does", "fit",
-                       "give the fit of an actuator whose command is a displacement")  # fmt: skip
+        raise Unusable(
+            "no-answer",
+            "the plant does not follow a displacement as an actuator does",
+            "fit",
+            "give the fit of an actuator whose command is a displacement",
+        )
     right = plant.zeros.real > 0
     bad = plant.zeros[right]
     mirrored = np.where(right, -plant.zeros.conj(), plant.zeros)

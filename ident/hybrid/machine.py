@@ -153,8 +153,12 @@ def machine(fit: FitResult, case: Case, effects: Mapping[str, float] | None = No
         fit.model, tuple({**dict.fromkeys(fit.effects), **dict.fromkeys(added)}), fit.settings.get("custom", ())
     )
     if preset.kind != "chain" or preset.data.driven_by != "command" or DISPLACEMENT not in preset.chain.outputs:
-        raise Unusable("no-answer", f"the model {fit.model} has no command that moves a displacement", "fit",
-                       "give the fit of an actuator")  # fmt: skip
+        raise Unusable(
+            "no-answer",
+            f"the model {fit.model} has no command that moves a displacement",
+            "fit",
+            "give the fit of an actuator",
+        )
     if "Ps" in preset.core.symbols and case.supply_pressure is None:
         raise Unusable(
             "not-stated", "this model depends on the supply pressure", "case supply_pressure", "state it, with its unit"
@@ -197,8 +201,12 @@ def _with_specimen(preset: Preset, case: Case) -> Preset:
     if "F" in chain.units:
         return replace(preset, chain=replace(chain, outputs={**chain.outputs, FORCE: "F"}))
     if case.physical.mass:
-        raise Unusable("no-inertia", f"the model {preset.name} has no force that would move a mass", "physical mass",
-                       "leave the mass to the numerical part, or take a model with a load")  # fmt: skip
+        raise Unusable(
+            "no-inertia",
+            f"the model {preset.name} has no force that would move a mass",
+            "physical mass",
+            "leave the mass to the numerical part, or take a model with a load",
+        )
     stages = tuple(_beside(one) if one.place == MASS_SPRING_DAMPER.place else one for one in chain.stages)
     return replace(preset, chain=replace(chain, stages=stages, outputs={**chain.outputs, FORCE: "F"}))
 

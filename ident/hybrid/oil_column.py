@@ -137,9 +137,14 @@ def _solved(problem: PeakProblem, x: Array, cost: Any, further: Sequence[Mapping
     ]
     with np.errstate(all="ignore"):
         ended = scipy.optimize.minimize(
-            cost, x, jac=True, method="SLSQP", bounds=problem.bounds(WIDEST), constraints=conditions,
+            cost,
+            x,
+            jac=True,
+            method="SLSQP",
+            bounds=problem.bounds(WIDEST),
+            constraints=conditions,
             options={"maxiter": 120, "ftol": 1e-8},
-        )  # fmt: skip
+        )
     x = np.asarray(ended.x)
     if not np.all(np.isfinite(x)) or problem.judged(x[: len(problem.names)]) is None:
         return None
@@ -161,8 +166,11 @@ def _ranges(problem: PeakProblem, found: Sequence[Array], report: Report) -> Ite
     n = len(problem.names)
     most = AS_GOOD * float(np.linalg.norm(found[0][:n]))
     near = [x for x in found if np.linalg.norm(x[:n]) <= most]
-    room = {"type": "ineq", "fun": lambda x: np.array([most**2 - x[:n] @ x[:n]]),
-            "jac": lambda x: -2 * (x * (np.arange(len(x)) < n))[None]}  # fmt: skip
+    room = {
+        "type": "ineq",
+        "fun": lambda x: np.array([most**2 - x[:n] @ x[:n]]),
+        "jac": lambda x: -2 * (x * (np.arange(len(x)) < n))[None],
+    }
     for i in range(n):
         report(Progress("other changes", i, n))
         ends = []
@@ -199,9 +207,13 @@ def _named(problem: PeakProblem, x: Array) -> JointChange:
 
 
 def _words(
-    target: PeakTarget, already: bool, singles: Mapping[str, float | None], smallest: JointChange | None,
-    others: Mapping[str, FactorRange], starts: Starts | None,
-) -> Iterator[str]:  # fmt: skip
+    target: PeakTarget,
+    already: bool,
+    singles: Mapping[str, float | None],
+    smallest: JointChange | None,
+    others: Mapping[str, FactorRange],
+    starts: Starts | None,
+) -> Iterator[str]:
     """What was found, in sentences."""
     where = message(
         "peak.inside" if target.axes else "peak",

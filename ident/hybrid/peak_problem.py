@@ -60,12 +60,20 @@ class PeakTarget:
 
     def __post_init__(self) -> None:
         if not (0 < self.tolerance < self.frequency < np.inf and min(self.gains, default=1.0) > 0):
-            raise Unusable("bad-peak", f"no peak at {self.frequency:g} ± {self.tolerance:g} Hz", "peak",
-                           "give a frequency and a smaller tolerance above 0")  # fmt: skip
+            raise Unusable(
+                "bad-peak",
+                f"no peak at {self.frequency:g} ± {self.tolerance:g} Hz",
+                "peak",
+                "give a frequency and a smaller tolerance above 0",
+            )
         for axes in self.axes:
             if (self.gains and axes.gain not in self.gains) or not 0 < axes.lower < axes.upper:
-                raise Unusable("bad-axes", f"{axes.lower:g} to {axes.upper:g} at Kp = {axes.gain:g}", "axes",
-                               "give a range above 0 at one of the gains")  # fmt: skip
+                raise Unusable(
+                    "bad-axes",
+                    f"{axes.lower:g} to {axes.upper:g} at Kp = {axes.gain:g}",
+                    "axes",
+                    "give a range above 0 at one of the gains",
+                )
         if not self.up_to:
             object.__setattr__(self, "up_to", self.frequency + self.tolerance)
 

@@ -50,5 +50,9 @@ def prefilter(plant: Rational, sampled: StateSpace, sample_rate: float, late: fl
         if 20 * np.log10(np.abs(behind * found.response(z)).max()) <= PEAK:
             return found
         pole *= 0.93
-    raise Unusable("no-controller", f"{1e3 * late:.3g} ms cannot be compensated", "delay",
-                   "use the structure feedback, or a shorter delay")  # fmt: skip
+    raise Unusable(
+        "no-controller",
+        f"{1e3 * late:.3g} ms cannot be compensated",
+        "delay",
+        "use the structure feedback, or a shorter delay",
+    )

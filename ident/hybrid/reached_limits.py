@@ -26,8 +26,15 @@ def reached(machine: ChangedMachine, gains: tuple[float | None, ...], rig: RigLi
     of = UncertainMachine(machine.preset, values, {}, machine.actuator)
     command = excitation("blwn", 1.0, SAMPLES, RATE, BAND)
     for gain in gains:
-        run = Run("what if", "", RATE, {"command": command, "displacement": np.zeros(SAMPLES)},
-                  {"command": "m", "displacement": "m"}, specimen=machine.specimen, gain=gain)  # fmt: skip
+        run = Run(
+            "what if",
+            "",
+            RATE,
+            {"command": command, "displacement": np.zeros(SAMPLES)},
+            {"command": "m", "displacement": "m"},
+            specimen=machine.specimen,
+            gain=gain,
+        )
         found = of.linear_peaks(run)
         worst = rig.utilisation(found.sizes)
         if found.stable and worst:

@@ -123,18 +123,29 @@ class HybridResult(Shown):
             "sample_rate": self.sample_rate,
             "delay": self.case.delay,
             "samples": len(self.ground),
-            "units": {"scores": "1, delay s", "command_rms": "m", "critical_delay": "s", "ended": "s",
-                      "sample_rate": "Hz", "delay": "samples", "seconds": "s"},
+            "units": {
+                "scores": "1, delay s",
+                "command_rms": "m",
+                "critical_delay": "s",
+                "ended": "s",
+                "sample_rate": "Hz",
+                "delay": "samples",
+                "seconds": "s",
+            },
             "notes": [*self.beyond, *self.notes],
             "seconds": self.seconds,
             "acceleration": None if self.acceleration is None else written(self.acceleration),
-        }  # fmt: skip
+        }
 
 
 def simulate_hybrid(
-    fit: FitResult, case: Case, controller: Controller | None = None, effects: Mapping[str, float] | None = None,
-    report: Report = silent, before: EarlierCase | None = None,
-) -> HybridResult:  # fmt: skip
+    fit: FitResult,
+    case: Case,
+    controller: Controller | None = None,
+    effects: Mapping[str, float] | None = None,
+    report: Report = silent,
+    before: EarlierCase | None = None,
+) -> HybridResult:
     """Simulate a case on the identified machine of a fit, at rest in the beginning.
 
     Without a `controller` the command is what is wanted. `effects` are further effects of the machine: values by name,
@@ -153,9 +164,12 @@ def simulate_hybrid(
 
 @one_thread()  # small matrices, for which more threads wait longer than they work
 def simulate_machine(
-    of: Machine, case: Case, controller: Controller | None = None, effects: Mapping[str, float] | None = None,
+    of: Machine,
+    case: Case,
+    controller: Controller | None = None,
+    effects: Mapping[str, float] | None = None,
     report: Report = silent,
-) -> HybridResult:  # fmt: skip
+) -> HybridResult:
     """As :func:`simulate_hybrid`, of a machine that is at hand."""
     begun = perf_counter()
     acting = controller or no_controller(case.sample_rate)

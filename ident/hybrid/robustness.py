@@ -54,9 +54,12 @@ def held_in(fit: FitResult, drawn: Mapping[str, Array]) -> tuple[str, ...]:
 
 
 def robustness(
-    own: SampledLoop, plants: Sequence[LinearModel], wanted: NDArray[np.complex128] | None,
-    held: tuple[str, ...] = (), spread: str = "",
-) -> Robustness:  # fmt: skip
+    own: SampledLoop,
+    plants: Sequence[LinearModel],
+    wanted: NDArray[np.complex128] | None,
+    held: tuple[str, ...] = (),
+    spread: str = "",
+) -> Robustness:
     """The controller of its `own` loop in a loop with each of the plants.
 
     `wanted` is the response (f,) at :func:`frequencies`, or 1.

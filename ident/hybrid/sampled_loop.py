@@ -36,10 +36,12 @@ class SampledLoop:
         P, K = self.sampled, self.controller
         b, d = K.B[:, 1:], K.D[:, 1:]
         loop = 1.0 / (1.0 - d @ P.D)  # both pass something on at once only where there is no delay
-        system = np.block([
-            [P.A + P.B @ loop @ d @ P.C, P.B @ loop @ K.C],
-            [b @ (P.C + P.D @ loop @ d @ P.C), K.A + b @ P.D @ loop @ K.C],
-        ])  # fmt: skip
+        system = np.block(
+            [
+                [P.A + P.B @ loop @ d @ P.C, P.B @ loop @ K.C],
+                [b @ (P.C + P.D @ loop @ d @ P.C), K.A + b @ P.D @ loop @ K.C],
+            ]
+        )
         return np.asarray(np.linalg.eigvals(system), complex)
 
     @property

@@ -71,8 +71,12 @@ class ShareMap(Shown):
     def to_json(self) -> dict[str, Any]:
         """As plain JSON data; null where there is no number."""
         tables = {name: _listed(getattr(self, name)) for name in ("reference_rms", "tracking_rms", "critical_delay")}
-        return {"mass": self.masses.tolist(), "stiffness": self.stiffnesses.tolist(), "stable": self.stable.tolist(),
-                **tables}  # fmt: skip
+        return {
+            "mass": self.masses.tolist(),
+            "stiffness": self.stiffnesses.tolist(),
+            "stable": self.stable.tolist(),
+            **tables,
+        }
 
 
 def _listed(table: Array) -> list[list[float | None]]:
@@ -80,10 +84,14 @@ def _listed(table: Array) -> list[list[float | None]]:
 
 
 def share_map(
-    fit: FitResult, case: Case, controller: SampledController | None = None,
-    effects: Mapping[str, float] | None = None, masses: Sequence[float] | None = None,
-    stiffnesses: Sequence[float] | None = None, report: Report = silent,
-) -> ShareMap:  # fmt: skip
+    fit: FitResult,
+    case: Case,
+    controller: SampledController | None = None,
+    effects: Mapping[str, float] | None = None,
+    masses: Sequence[float] | None = None,
+    stiffnesses: Sequence[float] | None = None,
+    report: Report = silent,
+) -> ShareMap:
     """The map of a case on the machine of a fit; sixteen pairs side by side, on every core.
 
     Where the loop is linear it is stable if its poles are; else if its record stayed bounded. Raises Unusable for

@@ -35,9 +35,10 @@ def of_specimen(of: Machine) -> tuple[Effect, ...]:
     """The effects of a machine that are on and change the reaction of the specimen alone."""
     core = {equation.target for one in of.chain.stages for equation in one.equations}
     return tuple(
-        effect for effect in of.chain.effects
+        effect
+        for effect in of.chain.effects
         if of.values[effect.added[0].in_equations] and {e.target for e in effect.equations} & core <= _REACTION
-    )  # fmt: skip
+    )
 
 
 def reference_of(of: Machine, case: Case, ground: Array) -> Array:
@@ -54,8 +55,14 @@ def reference_of(of: Machine, case: Case, ground: Array) -> Array:
     values = {name: known[name] for name in chain.symbols}
     fastest = fastest_mode(chain, values, DISPLACEMENT) / case.sample_rate
     steps = int(steps_needed(chain, fastest, "linear", effects, 2 * np.pi * _BAND / case.sample_rate).max())
-    run = Run("whole", "", case.sample_rate, {"command": ground, DISPLACEMENT: np.zeros(len(ground))},
-              {"command": "m/s^2", DISPLACEMENT: "m"}, hold="linear")  # fmt: skip
+    run = Run(
+        "whole",
+        "",
+        case.sample_rate,
+        {"command": ground, DISPLACEMENT: np.zeros(len(ground))},
+        {"command": "m/s^2", DISPLACEMENT: "m"},
+        hold="linear",
+    )
     return np.asarray(responses(chain, [run], {name: value[:, None] for name, value in values.items()}, steps)[:, 0, 0])
 
 
@@ -74,17 +81,26 @@ def references(of: Machine, cases: Sequence[Case], ground: Array) -> list[Array]
 def _structure(case: Case) -> Stage:
     """The structure as a load that the acceleration u of the ground moves, and the specimen at its place."""
     n, p = case.storeys, case.place + 1
-    states = [Quantity(f"{name}{i}", unit, "motion of the structure") for name, unit in (("v", "m/s"), ("x", "m"))
-              for i in range(1, n + 1)]  # fmt: skip
+    states = [
+        Quantity(f"{name}{i}", unit, "motion of the structure")
+        for name, unit in (("v", "m/s"), ("x", "m"))
+        for i in range(1, n + 1)
+    ]
     specimen = (
-        Quantity("xL", "m", "position of the specimen"), Quantity("vL", "m/s", "speed of the specimen"),
-        Quantity("xk", "m", "stretch of the specimen's spring"), Quantity("S", "N", "reaction of the specimen"),
-    )  # fmt: skip
+        Quantity("xL", "m", "position of the specimen"),
+        Quantity("vL", "m/s", "speed of the specimen"),
+        Quantity("xk", "m", "stretch of the specimen's spring"),
+        Quantity("S", "N", "reaction of the specimen"),
+    )
     return stage(
-        "load", (*states, *specimen), (f"xL = x{p}", "the specimen stands at its storey"),
-        (f"vL = v{p}", "it has the speed of its storey"), ("xk = xL", "the spring has no play"),
-        ("S = k * xk + cL * vL", "spring and damper of the specimen"), *_motion(case),
-    )  # fmt: skip
+        "load",
+        (*states, *specimen),
+        (f"xL = x{p}", "the specimen stands at its storey"),
+        (f"vL = v{p}", "it has the speed of its storey"),
+        ("xk = xL", "the spring has no play"),
+        ("S = k * xk + cL * vL", "spring and damper of the specimen"),
+        *_motion(case),
+    )
 
 
 def _motion(case: Case) -> Iterator[tuple[str, str]]:

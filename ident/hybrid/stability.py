@@ -102,9 +102,12 @@ def closed_loop(
 
 
 def coupled_loop(
-    machines: Sequence[Machine], system: System, controllers: Sequence[SampledController], force: Array = _ONE,
+    machines: Sequence[Machine],
+    system: System,
+    controllers: Sequence[SampledController],
+    force: Array = _ONE,
     gain: Array = _ONE,
-) -> Array:  # fmt: skip
+) -> Array:
     """As :func:`closed_loop`, of as many machines, each under its controller, as the system has parts.
 
     `force` and `gain` are (b,) for all parts, or (P, b) for each.

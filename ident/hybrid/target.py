@@ -35,14 +35,26 @@ class Target:
         for what in ("numerator", "denominator"):
             values = getattr(self, what)
             if not 0 < len(values) <= _MOST or not np.isfinite(values).all() or not values[0]:
-                raise Unusable("bad-target", "not 1 to 20 numbers of which the first is not 0", f"target {what}",
-                               "give the coefficients in falling powers of s")  # fmt: skip
+                raise Unusable(
+                    "bad-target",
+                    "not 1 to 20 numbers of which the first is not 0",
+                    f"target {what}",
+                    "give the coefficients in falling powers of s",
+                )
         if len(self.numerator) >= len(self.denominator):
-            raise Unusable("bad-target", "it does not fall at high frequency", "target",
-                           "give a denominator of higher degree than the numerator")  # fmt: skip
+            raise Unusable(
+                "bad-target",
+                "it does not fall at high frequency",
+                "target",
+                "give a denominator of higher degree than the numerator",
+            )
         if np.roots(self.denominator).real.max(initial=-1.0) >= 0:
-            raise Unusable("bad-target", "a pole is not in the left half-plane", "target denominator",
-                           "put an integrator at a small negative number")  # fmt: skip
+            raise Unusable(
+                "bad-target",
+                "a pole is not in the left half-plane",
+                "target denominator",
+                "put an integrator at a small negative number",
+            )
         if not np.isfinite(self.roll_off) or self.roll_off <= 0:
             raise Unusable("bad-target", f"{self.roll_off:g} rad/s", "target roll_off", "give a positive frequency")
 

@@ -70,9 +70,15 @@ class Track(Shown):
         }
         said = self.verdict
         return {
-            "run": self.run.id, "nis_mean": said.nis_mean, "holds": said.holds, "reason": said.reason,
-            "outliers": said.outliers, "changes": said.changes, "noise": vars(self.noise), **columns,
-        }  # fmt: skip
+            "run": self.run.id,
+            "nis_mean": said.nis_mean,
+            "holds": said.holds,
+            "reason": said.reason,
+            "outliers": said.outliers,
+            "changes": said.changes,
+            "noise": vars(self.noise),
+            **columns,
+        }
 
 
 def track(run: Run, measurement: float | None = None) -> Track:
@@ -134,5 +140,7 @@ def _ranges(tau: Array, gain: Array, clock: str) -> str:
     settled = slice(int(_SETTLED * len(tau)), None)
     factor, unit = (1e3, "ms") if clock == "s" else (1.0, "samples")
     (low, high), (least, most) = (np.percentile(part[settled], (10, 90)) for part in (factor * tau, gain))
-    return (f"τyr runs from {low:.3g} to {high:.3g} {unit}, "
-            f"kyr from {trimmed(round(least, 2))} to {trimmed(round(most, 2))}")  # fmt: skip
+    return (
+        f"τyr runs from {low:.3g} to {high:.3g} {unit}, "
+        f"kyr from {trimmed(round(least, 2))} to {trimmed(round(most, 2))}"
+    )

@@ -52,8 +52,12 @@ class Noise:
     def __post_init__(self) -> None:
         for name, value in vars(self).items():
             if not (math.isfinite(value) and (value > 0 or (value == 0 and name != "measurement"))):
-                raise Unusable("bad-noise", f"{value:g} is not a size of a noise", f"noise {name}",
-                               "give a standard deviation above 0, of what is fictitious also 0")  # fmt: skip
+                raise Unusable(
+                    "bad-noise",
+                    f"{value:g} is not a size of a noise",
+                    f"noise {name}",
+                    "give a standard deviation above 0, of what is fictitious also 0",
+                )
 
     @classmethod
     def of_sensor(
@@ -80,17 +84,33 @@ class Tracker:
     below a tenth of their value. Raises Unusable for numbers that no filter can work with.
     """
 
-    def __init__(self, sample_rate: float, hold: str = "linear", tau0: float = TAU, gain0: float = GAIN,
-                 noise: Noise | None = None, *, reopens: bool = True) -> None:  # fmt: skip
+    def __init__(
+        self,
+        sample_rate: float,
+        hold: str = "linear",
+        tau0: float = TAU,
+        gain0: float = GAIN,
+        noise: Noise | None = None,
+        *,
+        reopens: bool = True,
+    ) -> None:
         _check(sample_rate, hold, tau0, gain0)
         self.sample_rate, self.hold = sample_rate, hold
         self.noise = noise or Noise.of_sensor(sample_rate)
         self.state, self.constants = np.zeros(kalman.STATE), np.zeros(kalman.CONSTANTS)
         p0 = 1.0 / tau0
         self.constants[:] = (
-            1.0 / sample_rate, self.noise.measurement**2, self.noise.tau**2, self.noise.gain**2, _SPREAD_P**2,
-            _SPREAD_G**2, p0 / _FURTHEST, max(2.0 * sample_rate, 2.0 * p0), _FURTHEST * abs(gain0), float(reopens),
-        )  # fmt: skip
+            1.0 / sample_rate,
+            self.noise.measurement**2,
+            self.noise.tau**2,
+            self.noise.gain**2,
+            _SPREAD_P**2,
+            _SPREAD_G**2,
+            p0 / _FURTHEST,
+            max(2.0 * sample_rate, 2.0 * p0),
+            _FURTHEST * abs(gain0),
+            float(reopens),
+        )
         self.state[[kalman.P, kalman.G]] = p0, gain0 * p0
         self.state[[kalman.DP, kalman.DG]] = (_SPREAD_P * p0) ** 2, (_SPREAD_G * gain0 * p0) ** 2
         self._held, self._sample = hold == "zoh", kalman.sample
@@ -106,8 +126,12 @@ class Tracker:
         """
         given, measured = (np.ascontiguousarray(samples, dtype=np.float64) for samples in (r, y))
         if given.ndim != 1 or given.shape != measured.shape:
-            raise Unusable("bad-samples", f"{given.size} samples of r and {measured.size} of y", "samples",
-                           "give as many of one as of the other")  # fmt: skip
+            raise Unusable(
+                "bad-samples",
+                f"{given.size} samples of r and {measured.size} of y",
+                "samples",
+                "give as many of one as of the other",
+            )
         if not np.isfinite(given).all():
             raise Unusable("bad-samples", "a sample of the reference is not finite", "samples r", "give every one")
         rows = np.empty((len(given), len(COLUMNS)))

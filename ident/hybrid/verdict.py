@@ -40,12 +40,18 @@ def verdict(state: Any) -> Verdict:
     if not windows or mean is None:
         return judged(False, f"too few samples for a verdict: at least {2 * kalman.WINDOW} are needed")
     if failed > _FEW_WINDOWS * windows:
-        return judged(False, f"a first-order loop is not valid: in {percent(failed / windows)} of the windows of "
-                      f"{kalman.WINDOW} samples the innovations are too large or not white. Identify a model of "
-                      f"higher order")  # fmt: skip
+        return judged(
+            False,
+            f"a first-order loop is not valid: in {percent(failed / windows)} of the windows of "
+            f"{kalman.WINDOW} samples the innovations are too large or not white. Identify a model of "
+            f"higher order",
+        )
     if changes > _FEW_WINDOWS * windows:
-        return judged(False, f"the parameters jumped {changes} times in {windows} windows of {kalman.WINDOW} samples: "
-                      f"no first-order loop is valid over the whole run")  # fmt: skip
+        return judged(
+            False,
+            f"the parameters jumped {changes} times in {windows} windows of {kalman.WINDOW} samples: "
+            f"no first-order loop is valid over the whole run",
+        )
     if outliers > _FEW_SAMPLES * (used + outliers):
         share = percent(outliers / (used + outliers))
         return judged(False, f"{share} of the samples are outliers, beyond the noise of the sensor")

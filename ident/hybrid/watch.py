@@ -82,8 +82,9 @@ class Watch:
         outliers = sum(self._gated) > OUTLIERS * _PIECE * _PIECES
         full = len(self._windows) == IN_A_ROW
         if outliers or (full and all(self._windows)):
-            yield from self._turned(NOT_FIRST_ORDER, True, "the loop is not of first order: its innovations are too "
-                                    "large or not white")  # fmt: skip
+            yield from self._turned(
+                NOT_FIRST_ORDER, True, "the loop is not of first order: its innovations are too large or not white"
+            )
         elif full and not any(self._windows):
             yield from self._turned(NOT_FIRST_ORDER, False, "the loop is of first order again")
 

@@ -139,10 +139,17 @@ def _in_words(of: Response, after: str = "") -> str:
 
 
 def what_if(
-    fit: FitResult, change: Change, gains: tuple[float, float] | None = None, peak: PeakTarget | None = None,
-    seed: int = 0, report: Report = silent, rig: RigLimits | None = None, before: Before | None = None,
-    choose: GainTarget | None = None, spread: Spread | None = None,
-) -> WhatIf:  # fmt: skip
+    fit: FitResult,
+    change: Change,
+    gains: tuple[float, float] | None = None,
+    peak: PeakTarget | None = None,
+    seed: int = 0,
+    report: Report = silent,
+    rig: RigLimits | None = None,
+    before: Before | None = None,
+    choose: GainTarget | None = None,
+    spread: Spread | None = None,
+) -> WhatIf:
     """The machine of a fit after a change, at the two ends of a range of gains Kp; what would put a `peak` there.
 
     `before` is the loop when it was stable, by which the cause is found where it no longer is. Without it that is the
@@ -169,14 +176,23 @@ def what_if(
     judged = tuple(_judged(machine, gain, fit, change, before) for gain in ends)
     critical = _critical_gain(machine, ends)
     return WhatIf(
-        model=fit.model, output=machine.output, actuator=machine.actuator, specimen=machine.specimen,
-        parameters=dict(machine.parameters), responses=responses, locus=_locus(machine, ends, judged, critical),
-        critical_gain=critical, bulk_modulus=oil,
-        peak=found, with_peak=with_peak, chosen=chosen,
+        model=fit.model,
+        output=machine.output,
+        actuator=machine.actuator,
+        specimen=machine.specimen,
+        parameters=dict(machine.parameters),
+        responses=responses,
+        locus=_locus(machine, ends, judged, critical),
+        critical_gain=critical,
+        bulk_modulus=oil,
+        peak=found,
+        with_peak=with_peak,
+        chosen=chosen,
         spread=tuple(drawn_loops(fit, machine, gain, spread, seed) for gain in ends) if spread else (),
-        state=UNSTABLE if any(not one.stable for one in judged) else STABLE, stability=judged,
+        state=UNSTABLE if any(not one.stable for one in judged) else STABLE,
+        stability=judged,
         notes=(*reached(machine, ends, limits), *_notes(machine, responses, oil), *(found.text if found else ())),
-    )  # fmt: skip
+    )
 
 
 def _judged(
@@ -224,9 +240,14 @@ def response(machine: ChangedMachine, gain: float | None, frequency: Array) -> R
     roots = np.linalg.eigvals(model.A[0]).astype(complex) / (2 * np.pi)
     magnitude = np.abs(G)
     return Response(
-        gain, bool(roots.real.max(initial=-np.inf) < 0), poles(roots), peaks(frequency, magnitude),
-        tuple(frequency.tolist()), tuple(magnitude.tolist()), tuple(np.degrees(np.unwrap(np.angle(G))).tolist()),
-    )  # fmt: skip
+        gain,
+        bool(roots.real.max(initial=-np.inf) < 0),
+        poles(roots),
+        peaks(frequency, magnitude),
+        tuple(frequency.tolist()),
+        tuple(magnitude.tolist()),
+        tuple(np.degrees(np.unwrap(np.angle(G))).tolist()),
+    )
 
 
 def _band(machine: ChangedMachine, gains: tuple[float | None, ...]) -> Array:

@@ -97,7 +97,7 @@ Counted = Callable[[Run, Array], Array]
 
 def noise_floors(
     runs: Sequence[Run], band: float, left_out: Collection[str] = (), counted: Counted = lambda _, signal: signal
-) -> Floors:  # fmt: skip
+) -> Floors:
     """The noise floors of runs whose command ends at `band` (rad/s); `left_out` are ids that are not trusted.
 
     What differs between repeats is `counted` as the residual of a model is: a disturbance that is there where a window

@@ -62,8 +62,12 @@ def uncertain_bench(fit: FitResult, spread: Spread, actuator: Actuator, limits: 
     """The actuator of a fit of bench records. Raises Unusable where the fit is of another model."""
     preset = preset_with(fit.model, fit.effects, fit.settings.get("custom", ()))
     if preset.kind != "bench":
-        raise Unusable("no-answer", f"the model {fit.model} is fitted to test runs", "fit",
-                       "give the fit of a bench's records, or none")  # fmt: skip
+        raise Unusable(
+            "no-answer",
+            f"the model {fit.model} is fitted to test runs",
+            "fit",
+            "give the fit of a bench's records, or none",
+        )
     values = {preset.parameter(name).in_equations: value for name, value in fit.values.items()}
     middle = model_of(values, limits.supply_pressure or np.inf, preset)
     widths = spread.half_widths(fit, preset)

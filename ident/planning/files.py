@@ -122,8 +122,11 @@ def entry(run: PlannedRun) -> dict[str, Any]:
     found |= {"sample_rate": f"{run.signal.sample_rate:g} Hz"}
     if run.specimen is not None:
         s = run.specimen
-        found["specimen"] = {"mass": f"{s.mass:g} kg", "stiffness": f"{s.stiffness / 1e3:g} kN/m",
-                             "damping": f"{s.damping:g} N*s/m"}  # fmt: skip
+        found["specimen"] = {
+            "mass": f"{s.mass:g} kg",
+            "stiffness": f"{s.stiffness / 1e3:g} kN/m",
+            "damping": f"{s.damping:g} N*s/m",
+        }
     if run.gain is not None:
         found["gain"] = run.gain
     found |= {"amplitude": f"{scale * run.signal.amplitude:.9g} {unit}", "kind": run.kind, "use": run.use}

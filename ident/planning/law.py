@@ -95,8 +95,10 @@ class Law:
         if self.number == CONTINUOUS:
             way = np.linspace(0.0, settings["travel"], _POINTS)
             share = 1.0 - np.abs(2.0 * way / settings["travel"] - 1.0)
-            return {"way": way, "current": settings["offset"] + settings["lowest"]
-                    + (settings["highest"] - settings["lowest"]) * share}  # fmt: skip
+            return {
+                "way": way,
+                "current": settings["offset"] + settings["lowest"] + (settings["highest"] - settings["lowest"]) * share,
+            }
         if self.number == STATIC:
             way = (time * settings["rate"] / settings["width"]) % 4.0
             tooth = np.where(way < 1.0, way, np.where(way < 3.0, 2.0 - way, way - 4.0))

@@ -120,10 +120,16 @@ class Plan(Shown):
 
 
 def plan(
-    program: str | Path | Mapping[str, Any], fit: FitResult | None = None, rig: RigLimits | None = None,
-    seconds: float | None = None, ramp: float | None = None, seed: int = 0, spread: Spread | None = None,
-    least: float = LEAST, report: Report = silent,
-) -> Plan:  # fmt: skip
+    program: str | Path | Mapping[str, Any],
+    fit: FitResult | None = None,
+    rig: RigLimits | None = None,
+    seconds: float | None = None,
+    ramp: float | None = None,
+    seed: int = 0,
+    spread: Spread | None = None,
+    least: float = LEAST,
+    report: Report = silent,
+) -> Plan:
     """Plan a program of runs for a rig: `qian`, `kononykhin`, the path of a YAML file, or its content.
 
     `rig` are the limits; without them those of the fit's matrix. `seconds` is the length of a run, `ramp` (s) that in
@@ -201,9 +207,13 @@ class Inside:
 
 
 def _loop_runs(
-    asked: tuple[AskedRun, ...], fit: FitResult | None, spread: Spread, actuator: Actuator, within: Inside,
+    asked: tuple[AskedRun, ...],
+    fit: FitResult | None,
+    spread: Spread,
+    actuator: Actuator,
+    within: Inside,
     report: Report,
-) -> Iterator[PlannedRun | RefusedRun]:  # fmt: skip
+) -> Iterator[PlannedRun | RefusedRun]:
     """Each run of a position loop, scaled or refused."""
     machine: UncertainMachine | None = None
     for number, one in enumerate(asked):
@@ -225,8 +235,17 @@ def _run(asked: AskedRun) -> Run:
     signal = asked.signal
     command = signal.command()
     units = {"command": signal.unit, "displacement": "m"}
-    return Run(asked.id, "", signal.sample_rate, {"command": command, "displacement": np.zeros(len(command))}, units,
-               specimen=asked.specimen, gain=asked.gain, kind=asked.kind, use=asked.use)  # fmt: skip
+    return Run(
+        asked.id,
+        "",
+        signal.sample_rate,
+        {"command": command, "displacement": np.zeros(len(command))},
+        units,
+        specimen=asked.specimen,
+        gain=asked.gain,
+        kind=asked.kind,
+        use=asked.use,
+    )
 
 
 def _scaled(asked: AskedRun, peaks: Any, within: Inside) -> PlannedRun | RefusedRun:

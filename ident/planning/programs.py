@@ -70,10 +70,13 @@ def qian_program(settings: Settings) -> Program:
         AskedRun(
             plan.id,
             Signal("blwn", plan.inches * INCH, "m", BAND, seconds, SAMPLE_RATE, 1000 * settings.seed + number, ramp),
-            "blwn", plan.specimen, plan.gain, plan.use,
+            "blwn",
+            plan.specimen,
+            plan.gain,
+            plan.use,
         )
         for number, plan in enumerate(plans())
-    )  # fmt: skip
+    )
     return Program(QIAN, runs)
 
 

@@ -18,9 +18,14 @@ CHOICES: Mapping[str, tuple[str, ...]] = {
     "flow": ("none", "linear", "square_root", "to_speed"),
     "pressure": ("none", "compressible"),
     "load": (
-        "none", "mass_spring_damper", "two_masses", "two_masses_at_load", "prescribed_motion", "measured_force",
+        "none",
+        "mass_spring_damper",
+        "two_masses",
+        "two_masses_at_load",
+        "prescribed_motion",
+        "measured_force",
     ),
-}  # fmt: skip
+}
 """What a place may be; the first is what it is where nothing is said."""
 SHOWN = ("displacement", "velocity", "acceleration", "force", "load_pressure")
 GAINS = {"P": "Kp", "I": "KI", "D": "KD"}
@@ -102,8 +107,11 @@ def _gains(data: Any, places: Mapping[str, str], where: str) -> dict[str, float]
     found = {}
     for name, value in data.items():
         if name not in has:
-            raise _bad(f"a controller {places['controller']!r} has no gain {name!r}", where,
-                       f"give {', '.join(has)}" if has else "leave it out")  # fmt: skip
+            raise _bad(
+                f"a controller {places['controller']!r} has no gain {name!r}",
+                where,
+                f"give {', '.join(has)}" if has else "leave it out",
+            )
         if isinstance(value, bool) or not isinstance(value, int | float) or not 0 < value < float("inf"):
             raise _bad(f"{name} = {value!r}", where, "give a positive number, in the unit of the dial")
         found[str(name)] = float(value)

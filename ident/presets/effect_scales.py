@@ -11,12 +11,25 @@ from ident.stages import Scale
 
 _OWN = ("1", None)
 _SCALES = {
-    "1": _OWN, "Pa": _OWN, "m/s": _OWN, "s": ("T", 3.0), "1/s": ("W", 1.0), "m": ("Z", 1.0), "1/m": ("1/D", 3.0),
-    "s/m": ("T/D", 5.0), "N": ("F", 1.0), "N/m^3": ("F/L**3", 0.3),
-    "m/Pa": ("D*A/F", 1.0), "1/Pa": ("A/F", 1.0), "s/m^3": ("1/(A*V)", 1.0), "1/m^2": ("1/L**2", 1.0),
-    "m^3/(s*Pa^0.5)": ("A*V/sqrt(F/A)", 1.0), "m/N": ("L/F", 1.0), "m^3/(s*Pa)": ("A*V/(F/A)", 1.0),
+    "1": _OWN,
+    "Pa": _OWN,
+    "m/s": _OWN,
+    "s": ("T", 3.0),
+    "1/s": ("W", 1.0),
+    "m": ("Z", 1.0),
+    "1/m": ("1/D", 3.0),
+    "s/m": ("T/D", 5.0),
+    "N": ("F", 1.0),
+    "N/m^3": ("F/L**3", 0.3),
+    "m/Pa": ("D*A/F", 1.0),
+    "1/Pa": ("A/F", 1.0),
+    "s/m^3": ("1/(A*V)", 1.0),
+    "1/m^2": ("1/L**2", 1.0),
+    "m^3/(s*Pa^0.5)": ("A*V/sqrt(F/A)", 1.0),
+    "m/N": ("L/F", 1.0),
+    "m^3/(s*Pa)": ("A*V/(F/A)", 1.0),
     "N/m": ("F/L", 1e2),
-}  # fmt: skip
+}
 """For a machine of unknown size: what a strength of each unit is measured by, and how much of it is searched.
 
 D and F stand for the sizes of its drive signal and its forces, Z for the widest zone that lets some of the drive signal

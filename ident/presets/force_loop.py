@@ -8,10 +8,17 @@ from ident.presets.preset import Combined
 
 FORCE_LOOP = replace(
     composed(
-        described({
-            "controller": "pi", "of": "force", "valve": "first", "flow": "linear", "pressure": "compressible",
-            "load": "mass_spring_damper", "sensor": ["force"],
-        }),
+        described(
+            {
+                "controller": "pi",
+                "of": "force",
+                "valve": "first",
+                "flow": "linear",
+                "pressure": "compressible",
+                "load": "mass_spring_damper",
+                "sensor": ["force"],
+            }
+        ),
         "force_loop",
         "Cylinder under a force controller",
     ),
@@ -21,4 +28,4 @@ FORCE_LOOP = replace(
         Combined("kS / m0", "1/s^2", "stiffness of the specimen over the moving mass"),
         Combined("(c0 + cS) / m0", "1/s", "damping over the moving mass"),
     ),
-)  # fmt: skip
+)

@@ -78,15 +78,27 @@ class Model:
         where, brought = f"preset {self.name}", {p for stage in self.chain.stages for p in stage.parameters}
         own = [parameter.name for parameter in brought]
         if twice := {name for name in own if own.count(name) > 1}:
-            raise Unusable("bad-preset", f"its stages mean different parameters by {', '.join(sorted(twice))}", where,
-                           "rename one of them")  # fmt: skip
+            raise Unusable(
+                "bad-preset",
+                f"its stages mean different parameters by {', '.join(sorted(twice))}",
+                where,
+                "rename one of them",
+            )
         if idle := {*self.listed, *(p.name for p in self.stated), *self._stated_otherwise} - set(own):
-            raise Unusable("bad-preset", f"no stage brings {', '.join(sorted(idle))}, which it states", where,
-                           "leave it out, or let a stage bring it")  # fmt: skip
+            raise Unusable(
+                "bad-preset",
+                f"no stage brings {', '.join(sorted(idle))}, which it states",
+                where,
+                "leave it out, or let a stage bring it",
+            )
         if unknown := set(self.chain.symbols) - self.known:
             readers = ", ".join(stage.place for stage in self.chain.stages if stage.reads & unknown)
-            raise Unusable("bad-preset", f"no stage brings {', '.join(sorted(unknown))}, read at {readers}",
-                           where, "let a stage bring it as a parameter or publish it")  # fmt: skip
+            raise Unusable(
+                "bad-preset",
+                f"no stage brings {', '.join(sorted(unknown))}, read at {readers}",
+                where,
+                "let a stage bring it as a parameter or publish it",
+            )
 
     @property
     def _stated_otherwise(self) -> frozenset[str]:

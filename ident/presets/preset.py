@@ -46,8 +46,12 @@ class Preset(Model):
         for scale in (*self.scales, *self.search.by_outputs):
             if strange := scale.equation.names - self.known - OF_THE_RUNS:
                 where = f"preset {self.name}, scale of {scale.name}"
-                raise Unusable("bad-preset", f"no stage brings {', '.join(sorted(strange))}, read by a scale", where,
-                               "measure it by something else")  # fmt: skip
+                raise Unusable(
+                    "bad-preset",
+                    f"no stage brings {', '.join(sorted(strange))}, read by a scale",
+                    where,
+                    "measure it by something else",
+                )
 
     @property
     def _stated_otherwise(self) -> frozenset[str]:
@@ -122,8 +126,12 @@ class Preset(Model):
         if self.opened is None or loops <= {True}:
             return self
         if len(loops) > 1:
-            raise Unusable("bad-command", "runs with a command in m and others in V", "command",
-                           "fit the open and the closed loop one after the other")  # fmt: skip
+            raise Unusable(
+                "bad-command",
+                "runs with a command in m and others in V",
+                "command",
+                "fit the open and the closed loop one after the other",
+            )
         return self.opened.with_effects(self.effects)
 
     def _of_area(self, matrix: Matrix) -> Preset:

@@ -52,9 +52,12 @@ class RecordUnits:
         clock = SAMPLE if listed and all(run.time_unit == SAMPLE for run in listed) else "s"
         outputs = {run.units.get(run.output, "m") for run in listed}
         return cls(
-            any(run.units.get(run.output) in _TURNING for run in listed), unknown, clock,
-            output=outputs.pop() if len(outputs) == 1 else "m", command=units.get("command", "m"),
-        )  # fmt: skip
+            any(run.units.get(run.output) in _TURNING for run in listed),
+            unknown,
+            clock,
+            output=outputs.pop() if len(outputs) == 1 else "m",
+            command=units.get("command", "m"),
+        )
 
     def shown(self, unit: str, drive: str | None = None) -> str:
         """A unit of the chain as it is shown; with a `drive` a metre is one of the drive signal, in that unit."""

@@ -27,9 +27,14 @@ class RigTest:
 
 TESTS: Mapping[str, RigTest] = {
     "strano": RigTest(
-        1000.0, 5.0, (10e-3, 30e-3), "m", (100.0, 200.0), ("displacement", "load_pressure", "spool"),
+        1000.0,
+        5.0,
+        (10e-3, 30e-3),
+        "m",
+        (100.0, 200.0),
+        ("displacement", "load_pressure", "spool"),
         Actuator("", piston_area=9.05e-3, supply_pressure=210e5),
     ),
     "first_order": RigTest(1000.0, 20.0, (5e-3, 20e-3), "m", (), ("displacement",), Actuator("")),
-}  # fmt: skip
+}
 """Of the presets that have values of their own: the rig of Strano, Terzo et al. (190 kN, ± 0.2 m), and a single lag."""

@@ -64,8 +64,12 @@ def suited(runs: Sequence[Described], oil: bool = False) -> tuple[Preset, ...]:
     found = [known for known in found if not known.data.rings or _ring(runs)]
     if not found:
         channels = ", ".join(sorted({name for run in runs for name in run.channels}))
-        raise Unusable("no-model", f"no model is driven by and shows what the runs have: {channels}", "channels",
-                       "name command and output, or choose a model")  # fmt: skip
+        raise Unusable(
+            "no-model",
+            f"no model is driven by and shows what the runs have: {channels}",
+            "channels",
+            "name command and output, or choose a model",
+        )
     return tuple(sorted(found, key=lambda known: (_rank(known, runs, oil), len(known.parameters))))
 
 

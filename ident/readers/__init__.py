@@ -104,9 +104,17 @@ def read_source(source: Source, limits: Limits = LIMITS) -> Matrix:
         actuator = replace(actuator, rig=rig_in(profile, described.profile))
         digest = hashlib.sha256(digest.encode() + profile).hexdigest()
     return Matrix(
-        actuator, runs, digest, described.controller, described.limits, stated, notices, described.machine,
-        test=described.test, regulator=described.regulator,
-    )  # fmt: skip
+        actuator,
+        runs,
+        digest,
+        described.controller,
+        described.limits,
+        stated,
+        notices,
+        described.machine,
+        test=described.test,
+        regulator=described.regulator,
+    )
 
 
 def limits_text(source: Source, name: str, limits: Limits) -> str:

@@ -71,9 +71,15 @@ def _output(format_: str, data: bytes, where: str, limits: Limits) -> bytes:
         kept = {name: os.environ[name] for name in ("PATH", "SYSTEMROOT", "LD_LIBRARY_PATH") if name in os.environ}
         try:
             done = subprocess.run(
-                command, cwd=folder, env=kept | few, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
-                stderr=subprocess.DEVNULL, timeout=limits.parser_seconds, check=False,
-            )  # fmt: skip
+                command,
+                cwd=folder,
+                env=kept | few,
+                stdin=subprocess.DEVNULL,
+                stdout=subprocess.PIPE,
+                stderr=subprocess.DEVNULL,
+                timeout=limits.parser_seconds,
+                check=False,
+            )
         except subprocess.TimeoutExpired:
             what = f"reading it takes longer than {limits.parser_seconds:g} s"
             raise Unusable("too-slow", what, where, "split the record, or save it as .parquet or .csv") from None

@@ -56,9 +56,11 @@ def read_controldesk(data: bytes, where: str, limits: Limits) -> Table | None:
         return columns(text, begin.start(), behind, delimiter, comma, where, limits)
 
     stated = filled(units, len(names))
-    return Table(called, load, units=tuple(
-        unit or (_SECOND if name == TIME else "") for name, unit in zip(called, stated, strict=True)
-    ))  # fmt: skip
+    return Table(
+        called,
+        load,
+        units=tuple(unit or (_SECOND if name == TIME else "") for name, unit in zip(called, stated, strict=True)),
+    )
 
 
 def _fields(head: bytes, key: str, delimiter: str, where: str) -> list[str]:
@@ -69,8 +71,12 @@ def _fields(head: bytes, key: str, delimiter: str, where: str) -> list[str]:
     try:
         return [one.strip() for one in next(csv.reader([found[1].decode("utf-8", "replace")], delimiter=delimiter))]
     except csv.Error:
-        raise Unusable("broken-controldesk", f"its line of {key} cannot be read", where,
-                       "export it again from ControlDesk, or save it as a plain table") from None  # fmt: skip
+        raise Unusable(
+            "broken-controldesk",
+            f"its line of {key} cannot be read",
+            where,
+            "export it again from ControlDesk, or save it as a plain table",
+        ) from None
 
 
 def _called(name: str, path: str) -> str:

@@ -22,8 +22,14 @@ from ident.readers.text import as_utf8, by_line, is_number
 HEADS = (b"DIAEXTENDED", b"#BEGINGLOBALHEADER")
 _LONGEST, _MOST = 1 << 24, 10_000  # bytes of a head, channels
 _TYPES = {
-    "INT16": "i2", "INT32": "i4", "WORD8": "u1", "WORD16": "u2", "WORD32": "u4", "REAL32": "f4", "REAL64": "f8",
-}  # fmt: skip
+    "INT16": "i2",
+    "INT32": "i4",
+    "WORD8": "u1",
+    "WORD16": "u2",
+    "WORD32": "u4",
+    "REAL32": "f4",
+    "REAL64": "f8",
+}
 _ASCII, _BLOCK = "ASCII", "BLOCK"
 _NUMBER = 8  # bytes
 _Head = Mapping[int, str]
@@ -76,8 +82,10 @@ def read_diadem(data: bytes, where: str, limits: Limits, beside: Beside) -> Tabl
             raw = np.frombuffer(files[channel.file], order + _TYPES[channel.type], _whole(channel, files))
             raw = raw[channel.first :: channel.stride]
         if len(raw) < channel.values:
-            raise broken(f"{channel.file} holds {len(raw)} values of channel {channel.name!r}, the head says "
-                         f"{channel.values}", where)  # fmt: skip
+            raise broken(
+                f"{channel.file} holds {len(raw)} values of channel {channel.name!r}, the head says {channel.values}",
+                where,
+            )
         return channel.offset + channel.factor * raw[: channel.values].astype(np.float64)
 
     return Table(tuple(one.name for one in channels), load, units=tuple(one.unit for one in channels))

@@ -17,10 +17,18 @@ DELIMITERS: Mapping[str, str | None] = {"tab": "\t", "semicolon": ";", "comma": 
 DECIMALS: Mapping[str, bool] = {"point": False, "comma": True}
 """Decimal signs by name, and whether each is the comma."""
 ENCODINGS: Mapping[str, str] = {
-    "utf-8": "utf-8", "windows-1252": "cp1252", "utf-16-le": "utf-16-le", "utf-16-be": "utf-16-be",
-    "windows-1250": "cp1250", "windows-1251": "cp1251", "iso-8859-15": "iso8859-15", "dos-850": "cp850",
-    "mac-roman": "mac-roman", "shift-jis": "cp932", "gb18030": "gb18030",
-}  # fmt: skip
+    "utf-8": "utf-8",
+    "windows-1252": "cp1252",
+    "utf-16-le": "utf-16-le",
+    "utf-16-be": "utf-16-be",
+    "windows-1250": "cp1250",
+    "windows-1251": "cp1251",
+    "iso-8859-15": "iso8859-15",
+    "dos-850": "cp850",
+    "mac-roman": "mac-roman",
+    "shift-jis": "cp932",
+    "gb18030": "gb18030",
+}
 """Encodings of text by name, with Python's name of each."""
 MOST_ROWS = 10_000
 """Header rows that may be stated."""

@@ -315,9 +315,11 @@ def _first_row(lines: Sequence[str], cut: Sequence[Sequence[str]], shape: _Shape
 def _numbers_columns(above: Sequence[Sequence[str]]) -> bool:
     """Whether the line above is one of column numbers behind a blank: ``,0,1,2``, as tables with an index have it."""
     blank, *others = above[-1]
-    return len(above) == 1 and not blank.strip() and [field.strip() for field in others] == list(
-        map(str, range(len(others)))
-    )  # fmt: skip
+    return (
+        len(above) == 1
+        and not blank.strip()
+        and [field.strip() for field in others] == list(map(str, range(len(others))))
+    )
 
 
 def _on_thousands(form: Form, rows: Sequence[Sequence[str]], where: str) -> tuple[str, ...]:

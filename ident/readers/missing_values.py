@@ -43,9 +43,14 @@ class OnOneClock:
 
 
 def on_one_clock(
-    channels: Mapping[str, Samples], time: Samples, numbers: Numbers, outputs: Sequence[str], held: str,
-    resample: float | None, where: str,
-) -> OnOneClock:  # fmt: skip
+    channels: Mapping[str, Samples],
+    time: Samples,
+    numbers: Numbers,
+    outputs: Sequence[str],
+    held: str,
+    resample: float | None,
+    where: str,
+) -> OnOneClock:
     """Channels x (n,) with NaN where there is no value, at times t (n,) in s, on the clock of the outputs.
 
     `numbers` (n,) are their rows in the file. `held` is the channel that holds each value until the next. `resample`,

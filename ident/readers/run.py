@@ -98,9 +98,12 @@ def _times(
 
 
 def _on_one_clock(
-    described: RunDescription, channels: Mapping[str, Samples], time: Samples, numbers: Numbers,
+    described: RunDescription,
+    channels: Mapping[str, Samples],
+    time: Samples,
+    numbers: Numbers,
     places: Mapping[str, str],
-) -> tuple[Run, OnOneClock]:  # fmt: skip
+) -> tuple[Run, OnOneClock]:
     """The run on the clock of its outputs, and how it got there."""
     resample = described.time.resample if described.time is not None else None
     outputs = [channel for channel in described.outputs if channel in channels] or list(channels)
@@ -109,9 +112,14 @@ def _on_one_clock(
     clock = found.clock
     check_long_enough(len(found.channels[outputs[0]]), places["time"])
     run = replace(
-        described.labels, channels=found.channels, sample_rate=found.rate, clock_jitter=clock.jitter, gaps=clock.gaps,
-        evened=found.evened, unbroken=found.unbroken if clock.gaps else None,
-    )  # fmt: skip
+        described.labels,
+        channels=found.channels,
+        sample_rate=found.rate,
+        clock_jitter=clock.jitter,
+        gaps=clock.gaps,
+        evened=found.evened,
+        unbroken=found.unbroken if clock.gaps else None,
+    )
     return run, found
 
 

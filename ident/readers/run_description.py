@@ -20,10 +20,29 @@ from ident.words.nearest import did_you_mean
 from ident.words.run_name import run_name
 
 RUN = (
-    "id", "file", "sample_rate", "time", "specimen", "gain", "amplitude", "kind", "hold", "output", "use", "skip_rows",
-    "dialect", "rows", "split", "trend", "channels", "disturbance", "position_range", "frequency", "rated_current",
+    "id",
+    "file",
+    "sample_rate",
+    "time",
+    "specimen",
+    "gain",
+    "amplitude",
+    "kind",
+    "hold",
+    "output",
+    "use",
+    "skip_rows",
+    "dialect",
+    "rows",
+    "split",
+    "trend",
+    "channels",
+    "disturbance",
+    "position_range",
+    "frequency",
+    "rated_current",
     "closed_loop",
-)  # fmt: skip
+)
 
 
 ANSWERS = ("displacement", "velocity", "acceleration", "force", "load_pressure")

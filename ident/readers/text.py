@@ -57,9 +57,14 @@ def read_text(data: bytes, where: str, limits: Limits, stated: Dialect = FOUND) 
         return [found[n] if n in found else _stamped(text, layout, n, where, limits) for n in numbers]
 
     return Table(
-        layout.heading.names, load, (*turned, *layout.notices), _units(layout), layout.heading.aliases, layout.stamps,
+        layout.heading.names,
+        load,
+        (*turned, *layout.notices),
+        _units(layout),
+        layout.heading.aliases,
+        layout.stamps,
         layout.numbers,
-    )  # fmt: skip
+    )
 
 
 def _units(layout: Layout) -> tuple[str, ...]:
@@ -144,9 +149,15 @@ def is_number(field: str, delimiter: str | None) -> bool:
 
 
 def columns(
-    text: bytes, below: int, numbers: Sequence[int], delimiter: str | None, comma: bool | None, where: str,
-    limits: Limits, end: int | None = None,
-) -> list[Array]:  # fmt: skip
+    text: bytes,
+    below: int,
+    numbers: Sequence[int],
+    delimiter: str | None,
+    comma: bool | None,
+    where: str,
+    limits: Limits,
+    end: int | None = None,
+) -> list[Array]:
     """The columns of the rows in text[below:end]; `comma` is the decimal sign, None where the rows tell.
 
     Raises Unusable: ``not-numeric``, ``ragged-row``, ``too-large``.
@@ -230,9 +241,11 @@ def as_float(field: bytes, comma: bool, line: int, where: str, within: bool = Fa
         raise Unusable("not-numeric", what, where, "export it without signs between thousands")
     if is_prefixed(text):
         raise Unusable(
-            "letter-behind-number", f"line {line} holds {shown(text)!r}, a number with a letter behind it", where,
+            "letter-behind-number",
+            f"line {line} holds {shown(text)!r}, a number with a letter behind it",
+            where,
             "write plain numbers, such as 0.0251 or 25.1e-3 for 25.1m, and state the unit of the column",
-        )  # fmt: skip
+        )
     if within:
         what = f"line {line} holds {shown(text)!r} among numbers"
         remedy = "correct the number, or leave the cell empty"

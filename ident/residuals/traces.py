@@ -151,9 +151,14 @@ def _alike(run: Run, rate: float) -> object:
 
 
 def _cores(
-    chain: Chain, preset: Preset, values: Mapping[str, float], run: Run, actuator: Actuator, signals: tuple[str, ...],
+    chain: Chain,
+    preset: Preset,
+    values: Mapping[str, float],
+    run: Run,
+    actuator: Actuator,
+    signals: tuple[str, ...],
     rate: float,
-) -> list[tuple[LinearModel, Response]]:  # fmt: skip
+) -> list[tuple[LinearModel, Response]]:
     """The linear core at the values, and with each of its parameters nudged: output and signals."""
 
     def at(changed: Mapping[str, float]) -> tuple[LinearModel, Response]:

@@ -35,37 +35,93 @@ class View:
 
 
 VIEWS = (
-    View("spool", "w", "w", "Missing spool opening", "Drive signal at the spool",
-         "a dead zone is flat outside and slopes inside, an asymmetry is a V, saturation bends both ends"),
-    View("play", "w", "dq", "Missing spool opening", "Speed of the drive signal at the spool",
-         "play between valve and spool is a step at zero: it lags where the motion turns round"),
-    View("friction", "R", "v", "Missing resistance", "Piston velocity",
-         "dry friction is a step at zero, turbulent damping curves upwards on both sides like v|v|"),
-    View("spring", "R", "x", "Missing resistance", "Piston position",
-         "a straight line is a missing stiffness, a cubic one a hardening spring, a flat middle free play"),
-    View("pressure-flow", "Q", "P", "Missing share of the flow", "Load pressure along the flow",
-         "falls to the right where less flow goes against a load than with it", directed="Q", relative="Q"),
-    View("leakage", "L", "P", "Missing leakage", "Load pressure",
-         "a root of the pressure is leakage through an orifice"),
-    View("frame", "X", "F", "Missing displacement", "Force on the specimen",
-         "a straight line is a frame or transducer mount that gives way"),
+    View(
+        "spool",
+        "w",
+        "w",
+        "Missing spool opening",
+        "Drive signal at the spool",
+        "a dead zone is flat outside and slopes inside, an asymmetry is a V, saturation bends both ends",
+    ),
+    View(
+        "play",
+        "w",
+        "dq",
+        "Missing spool opening",
+        "Speed of the drive signal at the spool",
+        "play between valve and spool is a step at zero: it lags where the motion turns round",
+    ),
+    View(
+        "friction",
+        "R",
+        "v",
+        "Missing resistance",
+        "Piston velocity",
+        "dry friction is a step at zero, turbulent damping curves upwards on both sides like v|v|",
+    ),
+    View(
+        "spring",
+        "R",
+        "x",
+        "Missing resistance",
+        "Piston position",
+        "a straight line is a missing stiffness, a cubic one a hardening spring, a flat middle free play",
+    ),
+    View(
+        "pressure-flow",
+        "Q",
+        "P",
+        "Missing share of the flow",
+        "Load pressure along the flow",
+        "falls to the right where less flow goes against a load than with it",
+        directed="Q",
+        relative="Q",
+    ),
+    View(
+        "leakage", "L", "P", "Missing leakage", "Load pressure", "a root of the pressure is leakage through an orifice"
+    ),
+    View(
+        "frame",
+        "X",
+        "F",
+        "Missing displacement",
+        "Force on the specimen",
+        "a straight line is a frame or transducer mount that gives way",
+    ),
     View("tracking", "v", "v", "Missing speed", "Speed", "what a single lag does not follow"),
-)  # fmt: skip
+)
 """What engineers look for, in the order of the signal."""
 _SEEN = {
-    "w": "spool", "Ff": "friction", "R": "friction", "S": "spring", "xk": "spring", "xL": "spring",
-    "Q": "pressure-flow", "L": "leakage", "Ke": "leakage", "X": "frame",
-}  # fmt: skip
+    "w": "spool",
+    "Ff": "friction",
+    "R": "friction",
+    "S": "spring",
+    "xk": "spring",
+    "xL": "spring",
+    "Q": "pressure-flow",
+    "L": "leakage",
+    "Ke": "leakage",
+    "X": "frame",
+}
 """By the signal that an effect redefines, the view in which that shows."""
 
 
 _MISSING = {
-    "e": "command", "w": "spool opening", "Q": "flow", "R": "resistance", "y_fb": "reading in the loop", "y": "reading",
-}  # fmt: skip
+    "e": "command",
+    "w": "spool opening",
+    "Q": "flow",
+    "R": "resistance",
+    "y_fb": "reading in the loop",
+    "y": "reading",
+}
 _AGAINST = {
-    "w": "Drive signal at the spool", "Q": "Flow", "P": "Load pressure", "v": "Piston velocity",
-    "x": "Piston position", "F": "Force on the specimen",
-}  # fmt: skip
+    "w": "Drive signal at the spool",
+    "Q": "Flow",
+    "P": "Load pressure",
+    "v": "Piston velocity",
+    "x": "Piston position",
+    "F": "Force on the specimen",
+}
 
 
 def views(preset: Preset) -> tuple[View, ...]:

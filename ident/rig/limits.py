@@ -13,18 +13,31 @@ from ident.words.engineering import quantity
 from ident.words.percent import percent
 
 DIMENSIONS: Mapping[str, str] = {
-    "stroke": "length", "speed": "velocity", "acceleration": "acceleration", "force": "force", "flow": "flow",
+    "stroke": "length",
+    "speed": "velocity",
+    "acceleration": "acceleration",
+    "force": "force",
+    "flow": "flow",
     "supply_pressure": "pressure",
-}  # fmt: skip
+}
 """What may be limited, with the dimension that its unit must have."""
 UNITS: Mapping[str, str] = {
-    "stroke": "m", "speed": "m/s", "acceleration": "m/s^2", "force": "N", "flow": "m^3/s", "supply_pressure": "Pa",
-}  # fmt: skip
+    "stroke": "m",
+    "speed": "m/s",
+    "acceleration": "m/s^2",
+    "force": "N",
+    "flow": "m^3/s",
+    "supply_pressure": "Pa",
+}
 """The SI unit of each."""
 PEAKS: Mapping[str, str] = {
-    "stroke": "displacement from the middle", "speed": "speed", "acceleration": "acceleration", "force": "force",
-    "flow": "valve flow", "supply_pressure": "load pressure",
-}  # fmt: skip
+    "stroke": "displacement from the middle",
+    "speed": "speed",
+    "acceleration": "acceleration",
+    "force": "force",
+    "flow": "valve flow",
+    "supply_pressure": "load pressure",
+}
 """What is compared with each limit: the largest size that it has in a run."""
 
 

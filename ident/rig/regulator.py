@@ -35,8 +35,12 @@ class Regulator:
             value, may_be_zero = getattr(self, name), name in ("ki", "sample_time", "delay")
             if value is not None and not (0 < value < math.inf or (may_be_zero and value == 0)):
                 wanted = "0 or above" if may_be_zero else "above 0"
-                raise Unusable("bad-regulator", f"{value:g} is not a value of {name}", f"regulator {name}",
-                               f"give a number {wanted}")  # fmt: skip
+                raise Unusable(
+                    "bad-regulator",
+                    f"{value:g} is not a value of {name}",
+                    f"regulator {name}",
+                    f"give a number {wanted}",
+                )
 
     def response(self, w: Array) -> tuple[Array, Array]:
         """|C| and its phase (rad) at w (rad/s), the hold included, without delay and limit."""

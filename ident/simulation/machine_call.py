@@ -17,8 +17,20 @@ Array = NDArray[np.float64]
 _POINTERS, _NUMBERS = 5, 3  # arguments of `advance` before its output and the output's stride
 
 
-def _typed(_typing: Any, code: Any, b: Any, u: Any, fm: Any, u_at: Any, fm_at: Any, first: Any, last: Any,
-           every: Any, out: Any, stride: Any) -> Any:  # fmt: skip
+def _typed(
+    _typing: Any,
+    code: Any,
+    b: Any,
+    u: Any,
+    fm: Any,
+    u_at: Any,
+    fm_at: Any,
+    first: Any,
+    last: Any,
+    every: Any,
+    out: Any,
+    stride: Any,
+) -> Any:
     given = (code, b, u, fm, u_at, fm_at, first, last, every, out, stride)
     taken = [types.int64 if isinstance(one, types.Integer) else one for one in given]
 
@@ -48,8 +60,22 @@ contiguous.
 """
 
 
-def _typed_from(_typing: Any, code: Any, b: Any, b_from: Any, u: Any, fm: Any, u_at: Any, fm_at: Any, at_from: Any,
-                first: Any, last: Any, every: Any, out: Any, stride: Any) -> Any:  # fmt: skip
+def _typed_from(
+    _typing: Any,
+    code: Any,
+    b: Any,
+    b_from: Any,
+    u: Any,
+    fm: Any,
+    u_at: Any,
+    fm_at: Any,
+    at_from: Any,
+    first: Any,
+    last: Any,
+    every: Any,
+    out: Any,
+    stride: Any,
+) -> Any:
     given = (code, b, b_from, u, fm, u_at, fm_at, at_from, first, last, every, out, stride)
     taken = [types.int64 if isinstance(one, types.Integer) else one for one in given]
 
@@ -81,9 +107,20 @@ each sample need not slice, which counts references.
 
 @jit(nogil=True)
 def advance_groups(
-    code: int, wide: int, groups: tuple[int, int], buffers: Array, u: Array, fm: Array, u_at: NDArray[np.int64],
-    fm_at: NDArray[np.int64], first: int, last: int, every: int, out: Array, lanes: int
-) -> None:  # fmt: skip
+    code: int,
+    wide: int,
+    groups: tuple[int, int],
+    buffers: Array,
+    u: Array,
+    fm: Array,
+    u_at: NDArray[np.int64],
+    fm_at: NDArray[np.int64],
+    first: int,
+    last: int,
+    every: int,
+    out: Array,
+    lanes: int,
+) -> None:
     """Advance a kernel of 8 or 16 lanes, `wide`, over groups of as many, from one to before another, without Python.
 
     `buffers` are those of sixteen lanes, one after the other; a step of all `lanes` is a row of `out`.

@@ -91,9 +91,13 @@ class Simulation:
             code, _kept = built.address(side_by_side.wide)
 
             def advance(
-                share: NDArray[np.intp], of: Lanes = side_by_side, code: int = code, begin: int = begin,
-                end: int = end, out: Array = out,
-            ) -> None:  # fmt: skip
+                share: NDArray[np.intp],
+                of: Lanes = side_by_side,
+                code: int = code,
+                begin: int = begin,
+                end: int = end,
+                out: Array = out,
+            ) -> None:
                 given = of.buffers, command.record, forces, of.command_at, of.force_at
                 for some, first, last in _batches(share, begin, end, self.steps * of.wide):
                     check_time()

@@ -53,9 +53,13 @@ class PackedKernel:
 
 
 def packed_kernel(
-    chain: Chain, values: Mapping[str, Array], sample_rate: float, steps: int, channels: tuple[str, ...],
+    chain: Chain,
+    values: Mapping[str, Array],
+    sample_rate: float,
+    steps: int,
+    channels: tuple[str, ...],
     driven: tuple[str, ...] = (),
-) -> PackedKernel:  # fmt: skip
+) -> PackedKernel:
     """The kernel of a chain for `values` of every symbol, each (v,) with v at most 16, at `sample_rate` (Hz).
 
     `channels` are those whose readings are shown at the begin of each step. Raises Unusable where something measured
@@ -68,8 +72,12 @@ def packed_kernel(
     lane = {name: _filled(np.broadcast_to(value, (count,))) for name, value in known.items()}
     built = kernel(chain, channels[0], exponents_in_code(chain, lane), channels[1:])
     if set(built.measured) - set(driven):
-        raise Unusable("no-loop", "its displacement depends on measured signals other than the command", "model",
-                       "use a model that the command alone drives")  # fmt: skip
+        raise Unusable(
+            "no-loop",
+            "its displacement depends on measured signals other than the command",
+            "model",
+            "use a model that the command alone drives",
+        )
     delay = np.zeros(LANES)
     if built.shift is not None:
         delay = np.broadcast_to(constant(built.shift, lane) / lane[STEP], (LANES,))
@@ -84,9 +92,13 @@ def packed_kernel(
 
 
 def stepper(
-    chain: Chain, values: Mapping[str, Array], sample_rate: float, steps: int, channels: tuple[str, ...],
+    chain: Chain,
+    values: Mapping[str, Array],
+    sample_rate: float,
+    steps: int,
+    channels: tuple[str, ...],
     driven: tuple[str, ...] = (),
-) -> Stepper:  # fmt: skip
+) -> Stepper:
     """The stepper of a chain; arguments and refusals are those of :func:`packed_kernel`."""
     packed = packed_kernel(chain, values, sample_rate, steps, channels, driven)
     built, count = packed.kernel, max(np.size(value) for value in values.values())

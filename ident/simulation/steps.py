@@ -51,7 +51,7 @@ FASTEST = FINE * MOST  # radians a sample of the fastest mode that is followed c
 
 def steps_where_reversed(
     of: AtReversals, size: Array, turned: float, rate: float, force: Array | None, every: int = 1
-) -> NDArray[np.int64]:  # fmt: skip
+) -> NDArray[np.int64]:
     """Steps a sample that a way, a speed or a force (v,) asks for where the motion reverses.
 
     `turned` is that of :func:`steps_at_reversals`, `rate` the sample rate, Hz. `force` (v,) would move the mass by the

@@ -50,10 +50,18 @@ def causes(loop: Loop, before: Mapping[str, float]) -> tuple[Cause, ...]:
     if not factors or whole <= 0 or now > 0:
         return ()
     found = [
-        Cause(part.name, part.kind, part.meaning, part.unit, before[part.name], part.value,
-              (_margin(loop, {part.name: factors[part.name]}) - now) / (whole - now))
-        for part in loop.parts if part.name in factors
-    ]  # fmt: skip
+        Cause(
+            part.name,
+            part.kind,
+            part.meaning,
+            part.unit,
+            before[part.name],
+            part.value,
+            (_margin(loop, {part.name: factors[part.name]}) - now) / (whole - now),
+        )
+        for part in loop.parts
+        if part.name in factors
+    ]
     most = max(one.share for one in found)
     if most < LEAST:
         return ()

@@ -53,10 +53,12 @@ TWINS = frozenset({"Z0", "Kv"})
 def parts_of(parameters: Iterable[Parameter], values: Mapping[str, float]) -> tuple[LoopPart, ...]:
     """The parts of a loop that are parameters of its machine; `values` are by the names of the equations."""
     return tuple(
-        LoopPart(p.name, kind_of(p.in_equations, p.unit), p.meaning, values[p.in_equations], p.unit,
-                 p.in_equations in TWINS)
-        for p in parameters if p.in_equations in values
-    )  # fmt: skip
+        LoopPart(
+            p.name, kind_of(p.in_equations, p.unit), p.meaning, values[p.in_equations], p.unit, p.in_equations in TWINS
+        )
+        for p in parameters
+        if p.in_equations in values
+    )
 
 
 def kind_of(symbol: str, unit: str) -> str:

@@ -63,8 +63,17 @@ def _by(loop: Loop, part: LoopPart) -> Iterator[Remedy]:
             factor = float(np.exp(sign * size))
             if part.unit == SAMPLES:  # there are only whole ones
                 factor = max(1.0, np.floor(factor * part.value + _ROUNDING)) / part.value
-            yield Remedy(part.name, part.kind, part.meaning, part.unit, part.value, part.value * factor, factor, size,
-                         gain_margin(loop, {part.name: factor}))  # fmt: skip
+            yield Remedy(
+                part.name,
+                part.kind,
+                part.meaning,
+                part.unit,
+                part.value,
+                part.value * factor,
+                factor,
+                size,
+                gain_margin(loop, {part.name: factor}),
+            )
 
 
 def _smallest(loop: Loop, name: str, sign: float) -> float | None:

@@ -39,14 +39,26 @@ _DERIVATIVE = Parameter(
 _FILTER = Parameter(
     "Tf", "T_f", "s", 1e-6, 1e2, 1e-3, "time constant of the derivative's filter", ORDER_OF_MAGNITUDE, start=Starts.TIME
 )
-_OF_SPEED = Parameter("Tv", "T_v", "s", 1e-5, 1e2, 1e-2, "gain of the speed loop over that of the position loop",
-                      ORDER_OF_MAGNITUDE, start=Starts.TIME)  # fmt: skip
+_OF_SPEED = Parameter(
+    "Tv",
+    "T_v",
+    "s",
+    1e-5,
+    1e2,
+    1e-2,
+    "gain of the speed loop over that of the position loop",
+    ORDER_OF_MAGNITUDE,
+    start=Starts.TIME,
+)
 
 
 def _law(
-    text: str, meaning: str, states: tuple[tuple[Quantity, str, str], ...] = (), parameters: tuple[Parameter, ...] = (),
+    text: str,
+    meaning: str,
+    states: tuple[tuple[Quantity, str, str], ...] = (),
+    parameters: tuple[Parameter, ...] = (),
     scales: tuple[Scale, ...] = (),
-) -> Stage:  # fmt: skip
+) -> Stage:
     """The controller with another law, whose states integrate what their equations say."""
     made = PROPORTIONAL.with_equations((text, meaning))
     extra = stage("controller", tuple(q for q, _, _ in states), *((line, said) for _, line, said in states))
@@ -59,18 +71,28 @@ _ERROR_SUM = (Quantity("ei", "m*s", "integral of the error"), "ei' = r - y_in", 
 _ERROR_LAG = (Quantity("ef", "m", "error behind the filter"), "ef' = (r - y_in - ef) / Tf", "the error is filtered")
 
 PI = _law(
-    "e = Kp * (r - y_in) + KI * ei", "proportional and integral", (_ERROR_SUM,), (_INTEGRAL,),
+    "e = Kp * (r - y_in) + KI * ei",
+    "proportional and integral",
+    (_ERROR_SUM,),
+    (_INTEGRAL,),
     (Scale("KI", "Kp * W", 0.0, 1e1, logarithmic=False),),
-)  # fmt: skip
+)
 
 PID = _law(
-    "e = Kp * (r - y_in) + KI * ei + KD * (r - y_in - ef) / Tf", "proportional, integral, and filtered derivative",
-    (_ERROR_SUM, _ERROR_LAG), (_INTEGRAL, _DERIVATIVE, _FILTER),
-    (Scale("KI", "Kp * W", 0.0, 1e1, logarithmic=False), Scale("KD", "Kp / W", 0.0, 1e1, logarithmic=False),
-     Scale("Tf", "1 / W", 1e-2, 1e0)),
-)  # fmt: skip
+    "e = Kp * (r - y_in) + KI * ei + KD * (r - y_in - ef) / Tf",
+    "proportional, integral, and filtered derivative",
+    (_ERROR_SUM, _ERROR_LAG),
+    (_INTEGRAL, _DERIVATIVE, _FILTER),
+    (
+        Scale("KI", "Kp * W", 0.0, 1e1, logarithmic=False),
+        Scale("KD", "Kp / W", 0.0, 1e1, logarithmic=False),
+        Scale("Tf", "1 / W", 1e-2, 1e0),
+    ),
+)
 
 SPEED_INSIDE = _law(
-    "e = Kp * (r - y_in - Tv * v_in)", "position loop around a speed loop, the gain of the outer one on the dial",
-    parameters=(_OF_SPEED,), scales=(Scale("Tv", "1 / W", 1e-3, 1e2),),
-)  # fmt: skip
+    "e = Kp * (r - y_in - Tv * v_in)",
+    "position loop around a speed loop, the gain of the outer one on the dial",
+    parameters=(_OF_SPEED,),
+    scales=(Scale("Tv", "1 / W", 1e-3, 1e2),),
+)

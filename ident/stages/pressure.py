@@ -29,10 +29,16 @@ ACTING_PRESSURE = stage(
     ("D = Ap * w", "the known pressure acts on an area (Merritt 1967, section 6-2)"),
     parameters=(
         Parameter(
-            "Ap", "Aₚ", "N/m", 1e-12, 1e12, 1.0, "area on which the pressure acts, or torque for each unit of it",
+            "Ap",
+            "Aₚ",
+            "N/m",
+            1e-12,
+            1e12,
+            1.0,
+            "area on which the pressure acts, or torque for each unit of it",
             ORDER_OF_MAGNITUDE,
         ),
     ),
     scales=(Scale("Ap", "mL * L * W**2 / U", 1e-3, 1e5),),
-)  # fmt: skip
+)
 """A pressure that nothing of the motion changes: of a regulator, or as measured."""

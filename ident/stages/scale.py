@@ -78,8 +78,12 @@ def in_reading_order(scales: Iterable[Scale]) -> tuple[Scale, ...]:
     def place(name: str, readers: tuple[str, ...] = ()) -> None:
         if name in readers:
             circle = " → ".join((*readers[readers.index(name) :], name))
-            raise Unusable("circular-scales", f"{circle}: each is measured by the next", "scales of the parameters",
-                           "measure one of them by the runs or by a condition")  # fmt: skip
+            raise Unusable(
+                "circular-scales",
+                f"{circle}: each is measured by the next",
+                "scales of the parameters",
+                "measure one of them by the runs or by a condition",
+            )
         for read in known:
             if read in known[name].equation.names and read not in placed:
                 place(read, (*readers, name))

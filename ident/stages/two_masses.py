@@ -43,20 +43,28 @@ def _coupled(changed: Iterable[tuple[str, str]], joint: tuple[tuple[str, str], .
 
 
 TWO_MASSES = _coupled(
-    (("a = (D - R - f - S - Fj) / (m0 + mL)", "the drive's mass, against the spring to the other"),
-     ("M = m0 + mL", "drive and specimen stop together")),
-    (("xj' = v - vj", "the spring is stretched by the drive's lead"),
-     ("Fj = kj * xj + cj * (v - vj)", "spring and damper between the masses"),
-     ("vj' = Fj / m1", "the spring moves the load")),
-)  # fmt: skip
+    (
+        ("a = (D - R - f - S - Fj) / (m0 + mL)", "the drive's mass, against the spring to the other"),
+        ("M = m0 + mL", "drive and specimen stop together"),
+    ),
+    (
+        ("xj' = v - vj", "the spring is stretched by the drive's lead"),
+        ("Fj = kj * xj + cj * (v - vj)", "spring and damper between the masses"),
+        ("vj' = Fj / m1", "the spring moves the load"),
+    ),
+)
 """Recorded at the drive: x and v are those of m₀."""
 
 TWO_MASSES_AT_LOAD = _coupled(
-    (("R = 0", "no other damping"),
-     ("M = m1 + mL", "load and specimen stop together"),
-     ("a = (Fj - R - f - S) / (m1 + mL)", "the spring moves the load")),
-    (("xj' = vj - v", "the spring is stretched by the drive's lead"),
-     ("Fj = kj * xj + cj * (vj - v)", "spring and damper between the masses"),
-     ("vj' = (D - c0 * vj - Fj) / m0", "the drive's mass with its damping, against the spring")),
-)  # fmt: skip
+    (
+        ("R = 0", "no other damping"),
+        ("M = m1 + mL", "load and specimen stop together"),
+        ("a = (Fj - R - f - S) / (m1 + mL)", "the spring moves the load"),
+    ),
+    (
+        ("xj' = vj - v", "the spring is stretched by the drive's lead"),
+        ("Fj = kj * xj + cj * (vj - v)", "spring and damper between the masses"),
+        ("vj' = (D - c0 * vj - Fj) / m0", "the drive's mass with its damping, against the spring"),
+    ),
+)
 """Recorded at the load: x and v are those of m₁."""

@@ -74,13 +74,23 @@ LINE_OF_SHARES = LawForm(
 )
 LINE = LawForm("linear", "y = s + b z", lambda p, z: p[0] + p[1] * z, ((0.0, 0.0),), (-_INF, -_INF), (_INF, _INF))
 ARRHENIUS = LawForm(
-    "Arrhenius", "y = s exp(b (T₀/T − 1))", lambda p, u: p[0] + p[1] * (u - 1.0), ((0.0, 0.0),), (-_INF, -_INF),
-    (_INF, _INF), viscous=True,
-)  # fmt: skip
+    "Arrhenius",
+    "y = s exp(b (T₀/T − 1))",
+    lambda p, u: p[0] + p[1] * (u - 1.0),
+    ((0.0, 0.0),),
+    (-_INF, -_INF),
+    (_INF, _INF),
+    viscous=True,
+)
 WALTHER = LawForm(
-    "Walther", "y = s (ν/ν₀)^±1, ν = exp(K (T₀/T)^m) − 0.7 mm²/s", _walther, ((0.0, 4.0, 3.6), (0.0, -4.0, 3.6)),
-    (-_INF, -_EXPONENT[1], _STEEPNESS[0]), (_INF, _EXPONENT[1], _STEEPNESS[1]), viscous=True,
-)  # fmt: skip
+    "Walther",
+    "y = s (ν/ν₀)^±1, ν = exp(K (T₀/T)^m) − 0.7 mm²/s",
+    _walther,
+    ((0.0, 4.0, 3.6), (0.0, -4.0, 3.6)),
+    (-_INF, -_EXPONENT[1], _STEEPNESS[0]),
+    (_INF, _EXPONENT[1], _STEEPNESS[1]),
+    viscous=True,
+)
 
 
 def forms_of(temperature: bool, relative: bool) -> tuple[LawForm, ...]:

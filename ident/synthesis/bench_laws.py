@@ -76,9 +76,19 @@ def in_proportion(settings: Array, seen: float, first: float, memory: Array) -> 
 
 @jit(nogil=True, error_model="numpy")
 def driven(
-    law: int, settings: Array, step: float, steps: int, slope: float, last_bit: float, constants: Array, nodes: Array,
-    pieces: Array, position: float, current: Array, out: Array,
-) -> None:  # fmt: skip
+    law: int,
+    settings: Array,
+    step: float,
+    steps: int,
+    slope: float,
+    last_bit: float,
+    constants: Array,
+    nodes: Array,
+    pieces: Array,
+    position: float,
+    current: Array,
+    out: Array,
+) -> None:
     """Fill `current` (n,) by a law, and `out` (3, n) with what the actuator makes of it; `slope` limits dI/dt."""
     memory, state, part = np.zeros(5), np.zeros(4), np.empty((3, 2))
     state[0] = position

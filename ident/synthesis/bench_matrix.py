@@ -98,9 +98,19 @@ def record(plan: Plan, model: Model) -> tuple[Array, Array, Array]:
     current, out = np.empty(samples), np.empty((3, samples))
     settings = np.array([*plan.settings, *[0.0] * 4][:4])
     driven(
-        plan.law, settings, 1.0 / RATE, 2, STEEPEST, STROKE / 2**BITS, model.constants, model.table.nodes,
-        model.table.pieces, plan.start, current, out,
-    )  # fmt: skip
+        plan.law,
+        settings,
+        1.0 / RATE,
+        2,
+        STEEPEST,
+        STROKE / 2**BITS,
+        model.constants,
+        model.table.nodes,
+        model.table.pieces,
+        plan.start,
+        current,
+        out,
+    )
     return current, out[0], out[1]
 
 
@@ -132,16 +142,22 @@ def write_bench(
         gauges = 0.5 * SUPPLY + 1e6 * PRESSURE_NOISE * noise * rng.standard_normal((2, len(current)))
         noisy = position + noise * np.std(position) * rng.standard_normal(len(position))
         np.savez(
-            out / "runs" / f"{plan.id}.npz", current=100.0 * current, pressure_a=1e-6 * (gauges[0] + 0.5 * pressure),
-            displacement=1e3 * quantised(noisy), pressure_b=1e-6 * (gauges[1] - 0.5 * pressure),
-        )  # fmt: skip
+            out / "runs" / f"{plan.id}.npz",
+            current=100.0 * current,
+            pressure_a=1e-6 * (gauges[0] + 0.5 * pressure),
+            displacement=1e3 * quantised(noisy),
+            pressure_b=1e-6 * (gauges[1] - 0.5 * pressure),
+        )
         entries.append(_entry(plan))
     report(Progress("simulate", len(todo), len(todo)))
     notes = f"simulated with the model kononykhin, seed {seed}, noise {noise:g}, 12-bit position; not measured"
     machine = {
-        "serial": serial, "name": "simulated", "stroke": f"{1e3 * STROKE:g} mm",
-        "supply_pressure": f"{1e-6 * SUPPLY:g} MPa", "notes": notes,
-    }  # fmt: skip
+        "serial": serial,
+        "name": "simulated",
+        "stroke": f"{1e3 * STROKE:g} mm",
+        "supply_pressure": f"{1e-6 * SUPPLY:g} MPa",
+        "notes": notes,
+    }
     whole = {"actuator": machine, "limits": "limits.yaml", "runs": entries}
     (out / "matrix.yaml").write_text(yaml.safe_dump(whole, sort_keys=False), encoding="utf-8")
     (out / "limits.yaml").write_text(yaml.safe_dump(LIMITS, sort_keys=False), encoding="utf-8")
@@ -155,7 +171,11 @@ def quantised(position: Array) -> Array:
 def _entry(plan: Plan) -> dict[str, object]:
     channels = {"current": "%", "displacement": "mm", "pressure_a": "MPa", "pressure_b": "MPa"}
     return {
-        "id": plan.id, "file": f"runs/{plan.id}.npz", "sample_rate": f"{RATE:g} Hz", "kind": plan.kind,
-        "rated_current": "100 %", **plan.labels,
+        "id": plan.id,
+        "file": f"runs/{plan.id}.npz",
+        "sample_rate": f"{RATE:g} Hz",
+        "kind": plan.kind,
+        "rated_current": "100 %",
+        **plan.labels,
         "channels": {name: {"column": name, "unit": unit} for name, unit in channels.items()},
-    }  # fmt: skip
+    }

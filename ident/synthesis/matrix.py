@@ -106,8 +106,12 @@ class Simulation:
             remedy = f"use {' or '.join(able)}"
             raise Unusable("cannot-simulate", f"model {model.name} has no test matrix of its own", "simulate", remedy)
         if not (1 / 16 <= self.seconds <= 600 and 0 <= self.noise < 1):
-            raise Unusable("bad-value", f"{self.seconds:g} s with noise {self.noise:g}", "simulate",
-                           "give 0.0625 to 600 seconds and noise from 0 to below 1")  # fmt: skip
+            raise Unusable(
+                "bad-value",
+                f"{self.seconds:g} s with noise {self.noise:g}",
+                "simulate",
+                "give 0.0625 to 600 seconds and noise from 0 to below 1",
+            )
 
     @cached_property
     def model(self) -> Preset:
@@ -133,9 +137,18 @@ class Simulation:
             report(Progress("simulate", index, len(todo)))
             rng = np.random.default_rng([self.seed, index])
             u = white_noise(round(self.seconds * SAMPLE_RATE), plan.inches * _INCH, rng)
-            still = Run(plan.id, "", SAMPLE_RATE, {"command": u, "displacement": np.zeros_like(u)},
-                        {"command": "m", "displacement": "m"}, specimen=plan.specimen, gain=plan.gain,
-                        amplitude=plan.inches * _INCH, kind="blwn", use=plan.use)  # fmt: skip
+            still = Run(
+                plan.id,
+                "",
+                SAMPLE_RATE,
+                {"command": u, "displacement": np.zeros_like(u)},
+                {"command": "m", "displacement": "m"},
+                specimen=plan.specimen,
+                gain=plan.gain,
+                amplitude=plan.inches * _INCH,
+                kind="blwn",
+                use=plan.use,
+            )
             x = _displacement(model, values, still, Actuator(self.serial, piston_area=AREA))
             x = x + self.noise * np.std(x) * rng.standard_normal(len(x))
             yield plan, replace(still, channels={"command": u, "displacement": x})
@@ -145,8 +158,12 @@ class Simulation:
 def simulated(simulation: Simulation, report: Report = silent) -> Matrix:
     """The matrix, in memory. Raises Unusable for the set of a bench, which is written to a folder."""
     if simulation.model.kind == "bench":
-        raise Unusable("cannot-simulate", "the set of a bench is written to a folder", "simulate",
-                       "use `servoident simulate OUT` and read it")  # fmt: skip
+        raise Unusable(
+            "cannot-simulate",
+            "the set of a bench is written to a folder",
+            "simulate",
+            "use `servoident simulate OUT` and read it",
+        )
     runs = tuple(run for _, run in simulation.runs(report))
     digest = hashlib.sha256(simulation.actuator.notes.encode())
     for run in runs:
@@ -155,10 +172,16 @@ def simulated(simulation: Simulation, report: Report = silent) -> Matrix:
 
 
 def simulate_matrix(
-    out: Path, preset: str = "qian2014", seconds: float = 30.0, seed: int = 0, noise: float = 0.005,
-    effects: Mapping[str, float] | None = None, report: Report = silent, serial: str = "SIM-0001",
+    out: Path,
+    preset: str = "qian2014",
+    seconds: float = 30.0,
+    seed: int = 0,
+    noise: float = 0.005,
+    effects: Mapping[str, float] | None = None,
+    report: Report = silent,
+    serial: str = "SIM-0001",
     small: bool = False,
-) -> None:  # fmt: skip
+) -> None:
     """Write the matrix of a :class:`Simulation` to the folder `out`, which must not exist or be empty.
 
     Raises Unusable where the folder is in use, or a bench is asked for what it has not.

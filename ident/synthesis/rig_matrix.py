@@ -30,9 +30,17 @@ _BEGUN = 0.1  # s
 
 
 def write_rig_matrix(
-    out: Path, model: Preset, values: Mapping[str, float], test: RigTest, seconds: float = 30.0, seed: int = 0,
-    noise: float = 0.005, serial: str = "SIM-0001", machine: Mapping[str, Any] | None = None, report: Report = silent,
-) -> None:  # fmt: skip
+    out: Path,
+    model: Preset,
+    values: Mapping[str, float],
+    test: RigTest,
+    seconds: float = 30.0,
+    seed: int = 0,
+    noise: float = 0.005,
+    serial: str = "SIM-0001",
+    machine: Mapping[str, Any] | None = None,
+    report: Report = silent,
+) -> None:
     """Write the matrix of a machine to the folder `out`: `values` by name, SI, `machine` the stages it is made of.
 
     `noise` is white, its standard deviation relative to each output. Raises Unusable where a value is missing, or the
@@ -42,8 +50,12 @@ def write_rig_matrix(
     if out.exists() and (not out.is_dir() or any(out.iterdir())):
         raise Unusable("folder-in-use", "the folder is not empty", str(out), "name a new one")
     if not (1 / 16 <= seconds <= 600 and 0 <= noise < 1):
-        raise Unusable("bad-value", f"{seconds:g} s with noise {noise:g}", "simulate",
-                       "give 0.0625 to 600 seconds and noise from 0 to below 1")  # fmt: skip
+        raise Unusable(
+            "bad-value",
+            f"{seconds:g} s with noise {noise:g}",
+            "simulate",
+            "give 0.0625 to 600 seconds and noise from 0 to below 1",
+        )
     (out / "runs").mkdir(parents=True, exist_ok=True)
     entries, todo = [], list(_plans(test))
     for index, (name, amplitude, gain, use) in enumerate(todo):
@@ -105,16 +117,20 @@ def _still(name: str, test: RigTest, command: Array, gain: float | None, model: 
     """A run of which nothing but the command is known."""
     channels = {"command": command, **{one: np.zeros_like(command) for one in test.outputs}}
     units = {"command": test.unit, **{one: model.chain.units[model.chain.signal(one)] for one in test.outputs}}
-    return Run(name, "", test.sample_rate, channels, units, gain=gain, amplitude=float(np.std(command)),
-               output=test.outputs[0])  # fmt: skip
+    return Run(
+        name, "", test.sample_rate, channels, units, gain=gain, amplitude=float(np.std(command)), output=test.outputs[0]
+    )
 
 
 def _entry(run: Run, test: RigTest, use: str) -> dict[str, Any]:
     found: dict[str, Any] = {
-        "id": run.id, "file": f"runs/{run.id}.npz", "sample_rate": f"{test.sample_rate:g} Hz",
-        "use": use, "output": list(test.outputs) if len(test.outputs) > 1 else test.outputs[0],
+        "id": run.id,
+        "file": f"runs/{run.id}.npz",
+        "sample_rate": f"{test.sample_rate:g} Hz",
+        "use": use,
+        "output": list(test.outputs) if len(test.outputs) > 1 else test.outputs[0],
         "channels": {name: {"column": name, "unit": unit} for name, unit in run.units.items()},
-    }  # fmt: skip
+    }
     return found if run.gain is None else found | {"gain": float(trimmed(run.gain))}
 
 

@@ -29,5 +29,9 @@ def with_point(text: str, where: str) -> str:
         what = f"the comma in {number!r} may be a decimal sign or separate thousands"
         remedy = f"write {number.replace(',', '.')}{of} or {number.replace(',', '')}{of}"
         raise Unusable("decimal-comma", what, where, remedy)
-    raise Unusable("decimal-comma", f"{number!r} has a comma that cannot be read as a decimal sign", where,
-                   "write one number with a decimal point, as 1234.5, and no sign between thousands")  # fmt: skip
+    raise Unusable(
+        "decimal-comma",
+        f"{number!r} has a comma that cannot be read as a decimal sign",
+        where,
+        "write one number with a decimal point, as 1234.5, and no sign between thousands",
+    )

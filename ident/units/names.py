@@ -97,9 +97,15 @@ _IN_FULL = {
 }  # fmt: skip
 """Units in full, as a heading writes them: in the plural too, with a capital letter or in capitals."""
 _WORDS = {f"{name}{end}": unit for name, unit in _IN_FULL.items() for end in ("", "s")} | {
-    "inch": "in", "inches": "in", "foot": "ft", "feet": "ft", "percent": "percent", "counts": "counts",
-    "celsius": "degC", "lbf": "lbf",
-}  # fmt: skip
+    "inch": "in",
+    "inches": "in",
+    "foot": "ft",
+    "feet": "ft",
+    "percent": "percent",
+    "counts": "counts",
+    "celsius": "degC",
+    "lbf": "lbf",
+}
 SPELLINGS = {
     **{way: unit for name, unit in _WORDS.items() for way in (name, name.capitalize(), name.upper())},
     "%": "percent", "°": "deg", "°C": "degC", "°F": "degF", '"': "inch", "hz": "Hz", "HZ": "Hz", "KHz": "kHz",
@@ -114,7 +120,14 @@ SPELLINGS = {
 COMPOUNDS = {
     **{f"{pound}*{length}": f"lbf*{length}" for pound in ("lb", "lbs") for length in ("ft", "in")},
     **{f"{length}*{pound}": f"lbf*{length}" for pound in ("lb", "lbs") for length in ("ft", "in")},
-    "mmH2O": "millimeter_of_water", "cmH2O": "centimeter_of_water", "inH2O": "inch_of_water",
-    "oz*in": "ozf*in", "in*oz": "ozf*in", "r/min": "rev/min", "r/s": "rev/s", "kgm2": "kg*m^2", "kgm^2": "kg*m^2",
-}  # fmt: skip
+    "mmH2O": "millimeter_of_water",
+    "cmH2O": "centimeter_of_water",
+    "inH2O": "inch_of_water",
+    "oz*in": "ozf*in",
+    "in*oz": "ozf*in",
+    "r/min": "rev/min",
+    "r/s": "rev/s",
+    "kgm2": "kg*m^2",
+    "kgm^2": "kg*m^2",
+}
 """Compounds whose names by themselves are another unit: the pound of a torque is a force, the r of r/min a turn."""

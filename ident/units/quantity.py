@@ -22,7 +22,13 @@ from ident.units.usual import USUAL
 from ident.words.nearest import quoted
 
 DIMENSIONS = {
-    "length": "m", "area": "m^2", "volume": "m^3", "mass": "kg", "time": "s", "frequency": "1/s", "velocity": "m/s",
+    "length": "m",
+    "area": "m^2",
+    "volume": "m^3",
+    "mass": "kg",
+    "time": "s",
+    "frequency": "1/s",
+    "velocity": "m/s",
     "angular velocity": "rad/s",
        "acceleration": "m/s^2", "force": "N", "pressure": "Pa", "stiffness": "N/m", "damping": "N*s/m", "current": "A",
     "voltage": "V", "temperature": "K", "flow": "m^3/s", "dimensionless": "1", "per sample": "1/sample",
@@ -34,9 +40,15 @@ _NAMED = {unit: name for name, unit in DIMENSIONS.items()}
 """The name of each dimension by its SI unit."""
 
 _WRITTEN = {
-    "frequency": "Hz", "area": "mm^2", "length": "mm", "volume": "cm^3", "pressure": "bar", "flow": "l/min",
-    "temperature": "degC", "angle": "deg",
-}  # fmt: skip
+    "frequency": "Hz",
+    "area": "mm^2",
+    "length": "mm",
+    "volume": "cm^3",
+    "pressure": "bar",
+    "flow": "l/min",
+    "temperature": "degC",
+    "angle": "deg",
+}
 """The unit of an example where the SI unit would make an absurd one of a bench's number: 640 mm^2, not 640 m^2."""
 
 _USUAL = {"time": "ms", **_WRITTEN}

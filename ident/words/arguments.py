@@ -26,14 +26,25 @@ _LONGEST = 40  # characters of a value that are shown
 _PLAIN = (str, int, float, list, tuple, dict, set)  # of these, where they are short
 _NUMBERS: Mapping[Any, type] = {int: Integral, float: Real}
 _CALLED: dict[type, str] = {
-    str: "a text", float: "a number", int: "a whole number", bool: "True or False", Path: "a path",
-    NoneType: "None", list: "a list", tuple: "a tuple", dict: "a dict", set: "a set",
-}  # fmt: skip
+    str: "a text",
+    float: "a number",
+    int: "a whole number",
+    bool: "True or False",
+    Path: "a path",
+    NoneType: "None",
+    list: "a list",
+    tuple: "a tuple",
+    dict: "a dict",
+    set: "a set",
+}
 _MADE_BY = {
-    "Matrix": "a matrix, as read_matrix or simulate gives it", "FitResult": "a fit, as identify gives it",
-    "Diagnosis": "a diagnosis, as diagnose gives it", "Comparison": "a comparison, as compare gives it",
-    "Settings": "Settings(…)", "Effect": "an effect",
-}  # fmt: skip
+    "Matrix": "a matrix, as read_matrix or simulate gives it",
+    "FitResult": "a fit, as identify gives it",
+    "Diagnosis": "a diagnosis, as diagnose gives it",
+    "Comparison": "a comparison, as compare gives it",
+    "Settings": "Settings(…)",
+    "Effect": "an effect",
+}
 """Where a user has a value of these classes from."""
 
 

@@ -47,10 +47,12 @@ class Listing:
         widths = [max(map(len, column)) for column in zip(*shown, strict=True)]
         right = [title in self.numbers for title in self.header]
         lines = [
-            _GAP.join(cell.rjust(width) if to_right else cell.ljust(width)
-                      for cell, width, to_right in zip(row, widths, right, strict=True)).rstrip()
+            _GAP.join(
+                cell.rjust(width) if to_right else cell.ljust(width)
+                for cell, width, to_right in zip(row, widths, right, strict=True)
+            ).rstrip()
             for row in shown
-        ]  # fmt: skip
+        ]
         if left_out:
             lines.insert(1 + half, f"… {left_out} more rows …")
         return "\n".join(([self.title] if self.title else []) + lines)

@@ -117,9 +117,12 @@ def _tables() -> None:
         sa.PrimaryKeyConstraint("id"),
     )
     for name, columns, only in (
-        ("in_force", ["serial"], OPEN), ("number_in_force", ["number"], OPEN), ("number", ["number"], None),
-        ("serial", ["serial", "id"], None), ("since", ["since", "number"], None),
-    ):  # fmt: skip
+        ("in_force", ["serial"], OPEN),
+        ("number_in_force", ["number"], OPEN),
+        ("number", ["number"], None),
+        ("serial", ["serial", "id"], None),
+        ("since", ["since", "number"], None),
+    ):
         where = {} if only is None else {"sqlite_where": only, "postgresql_where": only}
         op.create_index(f"ix_approvals_{name}", "approvals", columns, unique=name == "in_force", **where)
     op.create_table(

@@ -173,8 +173,12 @@ def test_one_core_and_all_cores_give_one_answer(tmp_path):
     folder = reference.write(tmp_path / "matrix", records_of(2.0, "linear")[::6], "linear", TRUTH)
     alone = subprocess.run(
         [sys.executable, "-c", SMALL, str(folder), json.dumps(cores[:1])],
-        check=True, capture_output=True, text=True, timeout=300, cwd=Path(__file__).parents[2],
-    ).stdout  # fmt: skip
+        check=True,
+        capture_output=True,
+        text=True,
+        timeout=300,
+        cwd=Path(__file__).parents[2],
+    ).stdout
     together = replace(identify(read_matrix(folder), Settings(seed=3)), seconds=0.0)
     assert json.loads(alone) == json.loads(json.dumps(together.to_json()))
     assert together.error["fit"] == pytest.approx(NOISE, rel=0.05)

@@ -54,8 +54,20 @@ def loop(output: str = "displacement", held: bool = False) -> Matrix:
                 x += dt * v
         out += 0.01 * out.std() * rng.standard_normal(len(out))
         channels = {"command": u, "displacement": out}
-        runs.append(Run(f"{use}-{number}", "", RATE, channels, {"command": "m", "displacement": "m"}, gain=2.0,
-                        hold="zoh" if held else "linear", specimen=Specimen(), output=output, use=use))  # fmt: skip
+        runs.append(
+            Run(
+                f"{use}-{number}",
+                "",
+                RATE,
+                channels,
+                {"command": "m", "displacement": "m"},
+                gain=2.0,
+                hold="zoh" if held else "linear",
+                specimen=Specimen(),
+                output=output,
+                use=use,
+            )
+        )
     return Matrix(Actuator("LOOP"), tuple(runs))
 
 

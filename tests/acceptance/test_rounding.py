@@ -37,20 +37,32 @@ def simulated(model: str, values: dict[str, float], output: str = "displacement"
     rng = np.random.default_rng(6)
     driven = "command" if of_matrix else PRESETS[model].data.driven_by
     runs = [
-        Run(f"run-{i}", "", RATE, {driven: band_limited_noise(2048, 1e-3, rng), output: np.zeros(2048)}, output=output,
-            specimen=Specimen(mass=i * 2.0))
+        Run(
+            f"run-{i}",
+            "",
+            RATE,
+            {driven: band_limited_noise(2048, 1e-3, rng), output: np.zeros(2048)},
+            output=output,
+            specimen=Specimen(mass=i * 2.0),
+        )
         for i in range(2)
-    ]  # fmt: skip
+    ]
     preset, matrix = PRESETS[model].for_matrix(
         Matrix(Actuator("A", piston_area=5e-4), tuple(runs), **of_matrix), "none"
     )
     clean = modelled(preset, values, matrix)
     noise = {run.id: 0.01 * np.std(clean[run.id]) * rng.standard_normal(run.length) for run in runs}
     measured = [
-        Run(run.id, "", RATE, {**run.channels, output: clean[run.id] + noise[run.id]}, output=output,
-            specimen=run.specimen)
+        Run(
+            run.id,
+            "",
+            RATE,
+            {**run.channels, output: clean[run.id] + noise[run.id]},
+            output=output,
+            specimen=run.specimen,
+        )
         for run in runs
-    ]  # fmt: skip
+    ]
     return Matrix(matrix.actuator, tuple(measured), controller=matrix.controller)
 
 
@@ -67,14 +79,15 @@ CASES: dict[str, tuple[Callable[[], Matrix], Settings]] = {
     "first_order": (lambda: simulated("first_order", {"gain": 0.9, "tau": 4e-3}), Settings(model="first_order")),
     "drive": (lambda: simulated("drive", {"m0": 3.0, "c0": 40.0, "k0": 2e4}), Settings(model="drive")),
     "drive under its loop": (
-        lambda: simulated("drive", {"m0": 3.0, "c0": 40.0, "k0": 1.0, "kp": 60.0, "kv": 900.0},
-                          controller=Controller(60.0, 900.0)),
+        lambda: simulated(
+            "drive", {"m0": 3.0, "c0": 40.0, "k0": 1.0, "kp": 60.0, "kv": 900.0}, controller=Controller(60.0, 900.0)
+        ),
         Settings(model="drive"),
     ),
     "open_valve": (lambda: simulated("open_valve", OPEN, "load_pressure"), Settings(model="open_valve")),
     "kononykhin": (bench, Settings(model="kononykhin")),
     "kononykhin step by step": (bench, Settings(model="kononykhin", method="gradient")),
-}  # fmt: skip
+}
 
 
 def known(fit: FitResult) -> dict[str, tuple[float, float]]:

@@ -65,9 +65,12 @@ def packed(records: list[reference.Record], serial: str) -> dict[str, bytes]:
     for record in records:
         cell = record.trial.cell
         text += RUN % {
-            "id": record.trial.id, "mass": cell.mass, "stiffness": cell.stiffness, "gain": cell.gain,
+            "id": record.trial.id,
+            "mass": cell.mass,
+            "stiffness": cell.stiffness,
+            "gain": cell.gain,
             "use": record.trial.use,
-        }  # fmt: skip
+        }
         buffer = io.BytesIO()
         np.savez(buffer, command=record.command, displacement=record.displacement)
         found[f"runs/{record.trial.id}.npz"] = buffer.getvalue()

@@ -33,11 +33,19 @@ from tests.reference import qian_reference as linear
 
 API = "/api/v1"
 SHORT = {"population": 12, "generations": 2, "elite": 3}
-BENT = {"name": "proposed_1", "place": "spool", "equation": ["w = w - s * w * abs(w)"],
-        "strength": {"symbol": "s", "unit": "1/m", "lower": -100.0, "upper": 100.0}}  # fmt: skip
-NOTCHED = {"name": "proposed_2", "place": "spool", "equation": ["w = w - s * clip(w, -h, h)"],
-           "strength": {"symbol": "s", "unit": "1", "lower": 0.0, "upper": 1.5},
-           "shape": {"h": {"unit": "m", "lower": 1e-5, "upper": 1e-3, "value": HALF_WIDTH}}}  # fmt: skip
+BENT = {
+    "name": "proposed_1",
+    "place": "spool",
+    "equation": ["w = w - s * w * abs(w)"],
+    "strength": {"symbol": "s", "unit": "1/m", "lower": -100.0, "upper": 100.0},
+}
+NOTCHED = {
+    "name": "proposed_2",
+    "place": "spool",
+    "equation": ["w = w - s * clip(w, -h, h)"],
+    "strength": {"symbol": "s", "unit": "1", "lower": 0.0, "upper": 1.5},
+    "shape": {"h": {"unit": "m", "lower": 1e-5, "upper": 1e-3, "value": HALF_WIDTH}},
+}
 STANDS_ON = "null_bias"  # in addition to which the terms were found
 SERVO = ("dead_zone", "sensor_lag", "backlash", "overlap", "proposed_1", "proposed_2")
 BENCH = ("command_delay", "second_lag", "spring_load", "stiction")
@@ -120,9 +128,13 @@ def servo(service: TestClient, tmp_path_factory: pytest.TempPathFactory) -> Mach
         for count, one in enumerate((BENT, NOTCHED), 1)
     )
     found = Diagnosis(
-        candidates=tuple(ranked(name, *of) for name, of in parameters.items()), verdict=Verdict(), proposals=terms,
-        baseline=BASELINE, ladder=(Rung(error=ERRORS),), settings={"custom": [OWN]},
-    )  # fmt: skip
+        candidates=tuple(ranked(name, *of) for name, of in parameters.items()),
+        verdict=Verdict(),
+        proposals=terms,
+        baseline=BASELINE,
+        ladder=(Rung(error=ERRORS),),
+        settings={"custom": [OWN]},
+    )
     return machine(service, folder, "qian2014", held, found)
 
 

@@ -42,13 +42,21 @@ BAD_SETTINGS = (
     BadSetting("unknown load", "unknown-load", {"load": "sideways"}, ("--load", "sideways")),
     BadSetting("unknown option", "unknown-option", {"options": {"colour": 1}}, ("--option", "colour=1")),
     BadSetting("unknown parameter", "unknown-parameter", {"set": {"Z9": 1}}, ("--set", "Z9=1")),
-    BadSetting("bounds the wrong way round", "empty-bounds", {"bounds": {"tau": ["5 ms", "1 ms"]}},
-               ("--bounds", "tau=5 ms:1 ms")),
-    BadSetting("bounds in a wrong unit", "wrong-dimension", {"bounds": {"tau": ["1 mm", "5 mm"]}},
-               ("--bounds", "tau=1 mm:5 mm")),
+    BadSetting(
+        "bounds the wrong way round",
+        "empty-bounds",
+        {"bounds": {"tau": ["5 ms", "1 ms"]}},
+        ("--bounds", "tau=5 ms:1 ms"),
+    ),
+    BadSetting(
+        "bounds in a wrong unit",
+        "wrong-dimension",
+        {"bounds": {"tau": ["1 mm", "5 mm"]}},
+        ("--bounds", "tau=1 mm:5 mm"),
+    ),
     BadSetting("a value out of range", "not-finite", {"set": {"tau": "1e999 s"}}, ("--set", "tau=1e999 s")),
     BadSetting("a value that is no number", "not-a-quantity", {"set": {"tau": "nan"}}, ("--set", "tau=nan")),
-)  # fmt: skip
+)
 
 
 @pytest.fixture
@@ -112,8 +120,11 @@ def test_what_only_a_disk_can_hold_is_refused_before_it_is_sent(
     assert refused_by_command(servoident("upload", path)) == refused_by_command(servoident("check", path))
 
 
-@pytest.mark.parametrize("bad", [b for b in BAD_MATRICES if b.code in ("outside-folder", "yaml-alias", "not-a-zip")],
-                         ids=lambda bad: bad.name)  # fmt: skip
+@pytest.mark.parametrize(
+    "bad",
+    [b for b in BAD_MATRICES if b.code in ("outside-folder", "yaml-alias", "not-a-zip")],
+    ids=lambda bad: bad.name,
+)
 def test_upload_refuses_what_names_other_files(bad: Bad, servoident: Program, folder: MatrixFolder) -> None:
     """No server is asked: it would have the file already when it refuses."""
     path = bad.make(folder)

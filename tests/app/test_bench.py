@@ -244,10 +244,15 @@ def test_the_margin_of_a_produced_actuator_is_a_quantity_of_its_sheet(service: T
 
 @pytest.mark.parametrize(
     ("block", "code"),
-    [("{ki: 1}", "missing-field"), ("{kp: 8 mm}", "wrong-dimension"), ("{kp: -1}", "bad-regulator"),
-     ("{kp: 8, kd: 1}", "unknown-key"), ("{kp: 8, amplitudes: 2 %}", "not-a-list"),
-     ("{kp: 8, amplitudes: [0 %]}", "bad-amplitude")],
-)  # fmt: skip
+    [
+        ("{ki: 1}", "missing-field"),
+        ("{kp: 8 mm}", "wrong-dimension"),
+        ("{kp: -1}", "bad-regulator"),
+        ("{kp: 8, kd: 1}", "unknown-key"),
+        ("{kp: 8, amplitudes: 2 %}", "not-a-list"),
+        ("{kp: 8, amplitudes: [0 %]}", "bad-amplitude"),
+    ],
+)
 def test_a_regulator_that_cannot_be_read_is_refused(block: str, code: str) -> None:
     """With the field at fault."""
     with pytest.raises(Unusable) as refused:

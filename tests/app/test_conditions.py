@@ -29,9 +29,13 @@ FIT = Path(__file__).parents[1] / "stored" / "fit.json"
 OIL = walther(46.0, 6.8)
 SUMMARY: dict[str, Any] = {"data_hash": "", "runs": [], "findings": [], "notices": []}
 OVER = {"parameter": "c0", "batch": "WARM"}
-CASE = {"structure": {"mass": "87.5 kg", "stiffness": "87.5 kN/m", "damping": "3.5 kN*s/m"},
-        "physical": {"mass": "10 %", "stiffness": "20 %"}, "gain": 5, "piston_area": "497 mm^2",
-        "ground": {"kind": "sine", "frequency": "2 Hz", "amplitude": "0.1 g", "duration": "1 s"}}  # fmt: skip
+CASE = {
+    "structure": {"mass": "87.5 kg", "stiffness": "87.5 kN/m", "damping": "3.5 kN*s/m"},
+    "physical": {"mass": "10 %", "stiffness": "20 %"},
+    "gain": 5,
+    "piston_area": "497 mm^2",
+    "ground": {"kind": "sine", "frequency": "2 Hz", "amplitude": "0.1 g", "duration": "1 s"},
+}
 
 
 def truth(celsius: float) -> float:
@@ -43,10 +47,13 @@ def sets(rng: np.random.Generator, count: int) -> list[dict[str, float]]:
     """Values by name as a set holds them: c0 by the law, Z0 without one."""
     warmth = rng.uniform(0, 70, count)
     return [
-        {"condition.temperature": t + 273.15, "c0": truth(t) * (1 + 0.03 * rng.standard_normal()),
-         "Z0": 2.6e-6 * (1 + 0.01 * rng.standard_normal())}
+        {
+            "condition.temperature": t + 273.15,
+            "c0": truth(t) * (1 + 0.03 * rng.standard_normal()),
+            "Z0": 2.6e-6 * (1 + 0.01 * rng.standard_normal()),
+        }
         for t in warmth
-    ]  # fmt: skip
+    ]
 
 
 @pytest.fixture(scope="module")
@@ -77,10 +84,15 @@ def _kept(session: Any, serial: str, name: str, values: dict[str, float], ended:
     row.set = SetRow(serial=serial, batch=batch, model="qian2014", error_fit=0.01, error_verify=0.02)
     units = {"c0": "N*s/m", "Z0": "m^4/s", "condition.temperature": "K"}
     row.set.values = [
-        ValueRow(name=key, place=place, value=value, unit=units[key],
-                 std_error=None if key.startswith("condition") else 1e-3 * value)
+        ValueRow(
+            name=key,
+            place=place,
+            value=value,
+            unit=units[key],
+            std_error=None if key.startswith("condition") else 1e-3 * value,
+        )
         for place, (key, value) in enumerate(values.items())
-    ]  # fmt: skip
+    ]
     session.add(row)
     session.flush()
     session.add(ApprovalRow(serial=serial, number=row.set.number, until="2026-01-01" if ended else None))
@@ -173,9 +185,10 @@ def test_a_machine_is_moved_to_another_condition() -> None:
     assert moved.fit.parameters["c0"].std_error > ratio * fit.parameters["c0"].std_error
     assert "c0" in moved.text[0]
     for at, other, given, code in (
-        ("60 degC", fit_at(None), held, "no-condition"), ("90 degC", fit_at(20.0), held, "beyond-sets"),
+        ("60 degC", fit_at(None), held, "no-condition"),
+        ("90 degC", fit_at(20.0), held, "beyond-sets"),
         ("60 degC", fit_at(20.0), held[:3], "no-law"),
-    ):  # fmt: skip
+    ):
         with pytest.raises(Unusable) as error:
             AtCondition.stated("temperature", at, given, "a batch").move(FitResult.from_json(other))
         assert error.value.code == code
@@ -186,9 +199,14 @@ def test_the_command_takes_sets_of_a_file(tmp_path: Path) -> None:
     file = tmp_path / "sets.json"
     fit = FitResult.from_json(fit_at(20.0))
     held = sets(np.random.default_rng(581), 40)
-    file.write_text(json.dumps([
-        {"model": "qian2014", "parameters": {name: {"value": value} for name, value in one.items()}} for one in held
-    ]))  # fmt: skip
+    file.write_text(
+        json.dumps(
+            [
+                {"model": "qian2014", "parameters": {name: {"value": value} for name, value in one.items()}}
+                for one in held
+            ]
+        )
+    )
     moved = moved_to(fit, "60 degC", "temperature", file)
     assert moved.fit == AtCondition.stated("temperature", "60 degC", held, "sets.json").move(fit).fit
     for at, given in (("60 degC", None), (None, file)):

@@ -66,16 +66,21 @@ def _tried(
 
 
 def _attempts(
-    service: TestClient, operation: APIOperation, who: Headers, matrix: str, examples: int,
+    service: TestClient,
+    operation: APIOperation,
+    who: Headers,
+    matrix: str,
+    examples: int,
     statuses: Counter[int],
-) -> Callable[[], None]:  # fmt: skip
+) -> Callable[[], None]:
     from schemathesis.checks import not_a_server_error
     from schemathesis.specs.openapi.checks import content_type_conformance, status_code_conformance
 
     checks = [not_a_server_error, status_code_conformance, content_type_conformance]
 
-    @settings(max_examples=examples, deadline=None, derandomize=True, database=None,
-              suppress_health_check=list(HealthCheck))  # fmt: skip
+    @settings(
+        max_examples=examples, deadline=None, derandomize=True, database=None, suppress_health_check=list(HealthCheck)
+    )
     @given(st.data())
     def attempt(data: st.DataObject) -> None:
         case = data.draw(operation.as_strategy())

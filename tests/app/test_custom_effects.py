@@ -11,9 +11,12 @@ from ident.fit.result import FitResult
 from schemas.fit import FitRequest
 
 OWN = {
-    "name": "overlap", "place": "spool", "equation": "w = w - clip(w, -h, h)",
-    "strength": {"symbol": "h", "unit": "mm", "lower": 0, "upper": 0.02}, "meaning": "the lands overlap",
-}  # fmt: skip
+    "name": "overlap",
+    "place": "spool",
+    "equation": "w = w - clip(w, -h, h)",
+    "strength": {"symbol": "h", "unit": "mm", "lower": 0, "upper": 0.02},
+    "meaning": "the lands overlap",
+}
 
 
 def test_a_definition_is_answered_with_its_mathematics_and_units(service: TestClient) -> None:
@@ -29,10 +32,15 @@ def test_a_definition_is_answered_with_its_mathematics_and_units(service: TestCl
 
 @pytest.mark.parametrize(
     ("body", "where"),
-    [(OWN | {"equation": "w = w - __import__('os')"}, "equation, character 9"), ({"name": "x"}, "effect"),
-     ({}, "effect name"), ("- 1", "effect"), (OWN | {"shape": {"T": {}}}, "shape T"),
-     (OWN | {"strength": "h"}, "strength")],
-)  # fmt: skip
+    [
+        (OWN | {"equation": "w = w - __import__('os')"}, "equation, character 9"),
+        ({"name": "x"}, "effect"),
+        ({}, "effect name"),
+        ("- 1", "effect"),
+        (OWN | {"shape": {"T": {}}}, "shape T"),
+        (OWN | {"strength": "h"}, "strength"),
+    ],
+)
 def test_a_bad_definition_is_a_problem_with_its_place(service: TestClient, body: object, where: str) -> None:
     """422, problem+json, where and remedy filled in; the same in a fit."""
     answer = service.post("/api/v1/custom-effects", json=body)

@@ -26,9 +26,12 @@ from tests.hidden_dead_zone import HALF_WIDTH, write, zipped
 
 API = "/api/v1"
 OWN = {
-    "name": "overlap", "place": "spool", "equation": "w = w - clip(w, -h, h)", "meaning": "the lands overlap",
+    "name": "overlap",
+    "place": "spool",
+    "equation": "w = w - clip(w, -h, h)",
+    "meaning": "the lands overlap",
     "strength": {"symbol": "h", "unit": "mm", "lower": 0, "upper": 1},
-}  # fmt: skip
+}
 
 
 def ended(service: TestClient, answer: Any) -> dict[str, Any]:
@@ -106,14 +109,18 @@ def test_every_button_of_a_diagnosis_names_it(service, diagnosis, linear):
     assert len(named) >= len([one for one in diagnosis["candidates"] if one["parameters"]])
 
 
-@pytest.mark.parametrize(("start", "beside", "said"), [
-    ({}, {}, "a start names one result: a fit or a diagnosis"),
-    ({"fit": "f", "diagnosis": "d"}, {}, "give one of the two"),
-    ({"diagnosis": "DIAGNOSIS"}, {"model": "strano"}, "model cannot be given with a start"),
-    ({"diagnosis": "DIAGNOSIS"}, {"seed": 4}, "seed cannot be given with a start"),
-    ({"diagnosis": "DIAGNOSIS", "effects": ["stiction"]}, {}, "refitted no model with just stiction"),
-    ({"diagnosis": "nothing"}, {}, "no diagnosis"), ({"fit": "nothing"}, {}, "no fit"),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    ("start", "beside", "said"),
+    [
+        ({}, {}, "a start names one result: a fit or a diagnosis"),
+        ({"fit": "f", "diagnosis": "d"}, {}, "give one of the two"),
+        ({"diagnosis": "DIAGNOSIS"}, {"model": "strano"}, "model cannot be given with a start"),
+        ({"diagnosis": "DIAGNOSIS"}, {"seed": 4}, "seed cannot be given with a start"),
+        ({"diagnosis": "DIAGNOSIS", "effects": ["stiction"]}, {}, "refitted no model with just stiction"),
+        ({"diagnosis": "nothing"}, {}, "no diagnosis"),
+        ({"fit": "nothing"}, {}, "no fit"),
+    ],
+)
 def test_a_start_that_cannot_be_is_refused(service, diagnosis, matrix, start, beside, said):
     start = {name: diagnosis["id"] if value == "DIAGNOSIS" else value for name, value in start.items()}
     answer = service.post(f"{API}/fits", json={"matrix": matrix, "start": start, **beside})

@@ -32,9 +32,12 @@ def draft(service) -> dict[str, object]:
 
 
 ANSWERS = {
-    "serial": "RAW-1", "verify": ["c.csv"], "time": {"column": "t", "unit": "s"}, "gain": "7",
+    "serial": "RAW-1",
+    "verify": ["c.csv"],
+    "time": {"column": "t", "unit": "s"},
+    "gain": "7",
     "channels": {"command": {"column": "u", "unit": "mm"}, "displacement": {"column": 2, "unit": "mm"}},
-}  # fmt: skip
+}
 
 
 def test_a_draft_says_what_the_files_hold_and_what_is_missing(service, draft):
@@ -64,8 +67,10 @@ def test_answers_make_a_matrix_as_an_upload_does(service, draft):
     assert [answer.status_code for answer in made] == [201, 201]
     matrix = service.get(made[0].headers["Location"]).json()
     assert [(run["id"], run["use"], run["gain"]) for run in matrix["runs"]] == [
-        ("a", "fit", 7), ("b", "fit", 7), ("c", "verify", 7)
-    ]  # fmt: skip
+        ("a", "fit", 7),
+        ("b", "fit", 7),
+        ("c", "verify", 7),
+    ]
     assert {run["sample_rate"] for run in matrix["runs"]} == {2500}
     assert service.get(f"{API}/drafts/{draft['id']}").status_code == 404
     store = Path(service.app.state.context.storage.folder)
@@ -91,7 +96,7 @@ def test_the_same_files_and_answers_again_are_the_same_matrix(service):
         ([("files", ("a.exe", b"MZ"))], 422, "unknown-type"),
         ([("files", ("x/a.csv", record(1))), ("files", ("y/a.csv", record(2)))], 422, "duplicate-file"),
     ],
-)  # fmt: skip
+)
 def test_files_that_cannot_be_a_draft_are_refused_and_leave_nothing(service, files, status, code):
     store = Path(service.app.state.context.storage.folder)
     before = sorted(store.glob("staged-*"))
@@ -108,7 +113,7 @@ def test_files_that_cannot_be_a_draft_are_refused_and_leave_nothing(service, fil
         ({"serial": ""}, "not-stated"),
         ({"channels": {**ANSWERS["channels"], "displacement": {"column": "x", "unit": "N"}}}, "wrong-dimension"),
     ],
-)  # fmt: skip
+)
 def test_answers_that_cannot_be_are_problems_and_the_draft_stays(service, draft, changes, code):
     answer = service.post(f"{API}/drafts/{draft['id']}/matrix", json=ANSWERS | changes)
     assert (answer.status_code, answer.json()["code"]) == (422, code), answer.text
@@ -158,9 +163,14 @@ def test_what_is_missing_of_some_files_names_them(service):
     files = [("files", ("a.csv", record(1))), ("files", ("b.csv", record(2, "clock,drive,way")))]
     draft = service.post(f"{API}/drafts", files=files).json()
     assert {(one["key"], *one["files"]) for one in draft["missing"]} == {
-        ("serial",), ("channel command", "a.csv"), ("channel displacement", "a.csv"), ("unit time", "a.csv"),
-        ("channel command", "b.csv"), ("channel displacement", "b.csv"), ("rate", "b.csv"),
-    }  # fmt: skip
+        ("serial",),
+        ("channel command", "a.csv"),
+        ("channel displacement", "a.csv"),
+        ("unit time", "a.csv"),
+        ("channel command", "b.csv"),
+        ("channel displacement", "b.csv"),
+        ("rate", "b.csv"),
+    }
 
 
 def test_a_text_is_read_in_the_dialect_that_is_stated_of_it(service):
@@ -184,9 +194,13 @@ def test_a_text_is_read_in_the_dialect_that_is_stated_of_it(service):
 
 @pytest.mark.parametrize(
     ("dialect", "code"),
-    [({"delimiter": "dot"}, "unknown-delimiter"), ({"decimal": ";"}, "unknown-decimal"),
-     ({"encoding": "ebcdic"}, "unknown-encoding"), ({"header_rows": 99999}, "bad-rows")],
-)  # fmt: skip
+    [
+        ({"delimiter": "dot"}, "unknown-delimiter"),
+        ({"decimal": ";"}, "unknown-decimal"),
+        ({"encoding": "ebcdic"}, "unknown-encoding"),
+        ({"header_rows": 99999}, "bad-rows"),
+    ],
+)
 def test_a_dialect_that_is_none_is_refused_with_what_can_be_said(service, draft, dialect, code):
     answer = service.post(f"{API}/drafts/{draft['id']}", json={"dialect": dialect})
     assert (answer.status_code, answer.json()["code"]) == (422, code)

@@ -73,8 +73,9 @@ def line(service: TestClient) -> TestClient:
             session.flush()
             session.add(MatrixRow(id=f"m-{serial}", serial=serial, batch="ERRORS", source={}, summary=SUMMARY))
             session.flush()
-            job = JobRow(id=f"f-{serial}", matrix=f"m-{serial}", state="succeeded", settings={"model": "qian2014"},
-                         progress={})  # fmt: skip
+            job = JobRow(
+                id=f"f-{serial}", matrix=f"m-{serial}", state="succeeded", settings={"model": "qian2014"}, progress={}
+            )
             session.add(job)
             session.flush()
             row = add_fit(session, job, found)

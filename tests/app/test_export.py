@@ -28,10 +28,13 @@ def test_a_fit_is_exported_as_header_state_space_and_unit(service, fitted):
 
 @pytest.mark.parametrize(
     ("path", "asked", "status", "code"),
-    [("export.exe", {}, 404, "no-such-format"), ("export.h", {"gain": "0"}, 422, "out-of-range"),
-     ("export.h", {"mass": "3 m"}, 422, "wrong-dimension"),
-     ("export.h", {"sample_rate": "fast"}, 422, "not-a-quantity")],
-)  # fmt: skip
+    [
+        ("export.exe", {}, 404, "no-such-format"),
+        ("export.h", {"gain": "0"}, 422, "out-of-range"),
+        ("export.h", {"mass": "3 m"}, 422, "wrong-dimension"),
+        ("export.h", {"sample_rate": "fast"}, 422, "not-a-quantity"),
+    ],
+)
 def test_what_cannot_be_exported_is_a_problem(service, fitted, path, asked, status, code):
     answer = service.get(f"{API}/fits/{fitted}/{path}", params=asked)
     assert answer.status_code == status, answer.text

@@ -58,8 +58,11 @@ def test_every_approval_is_kept_with_who_when_and_why(service: TestClient, fitte
     assert actuator["current"] is None
     rows = actuator["approvals"][: len(actuator["approvals"]) - before][::-1]
     assert [(row["fit"], row["why"]) for row in rows[-4:]] == [
-        (fitted, "first"), (other, "better"), (fitted, "no, it was not"), (None, "leaks")
-    ]  # fmt: skip
+        (fitted, "first"),
+        (other, "better"),
+        (fitted, "no, it was not"),
+        (None, "leaks"),
+    ]
     assert [row["to"] for row in rows[-4:-1]] == [row["from"] for row in rows[-3:]]
     assert rows[-1]["to"] is None
     assert {row["who"] for row in rows[-4:]} == {"start token"}
@@ -146,14 +149,23 @@ def test_limits_are_kept_with_their_units(line: TestClient) -> None:
     assert line.put(f"{API}/limits/qian2014", json=every).status_code == 200
     found = {each["batch"]: each["limits"] for each in line.get(f"{API}/limits/qian2014").json()["batches"]}
     assert found[""]["tau"] | {"changed_at": ""} == {
-        "lower": None, "upper": 3.0, "unit": "ms", "si_lower": None, "si_upper": 0.003, "si_unit": "s",
-        "who": "start token", "changed_at": "",
-    }  # fmt: skip
+        "lower": None,
+        "upper": 3.0,
+        "unit": "ms",
+        "si_lower": None,
+        "si_upper": 0.003,
+        "si_unit": "s",
+        "who": "start token",
+        "changed_at": "",
+    }
     assert found[""]["error.verify"]["si_upper"] == pytest.approx(0.05)
     for wrong in (
-        {"tau": {"upper": 3, "unit": "kg"}}, {"nothing": {"upper": 3, "unit": "s"}}, {"tau": {"unit": "s"}},
-        {"tau": {"lower": 3, "upper": 2, "unit": "s"}}, {"tau": {"upper": 3}},
-    ):  # fmt: skip
+        {"tau": {"upper": 3, "unit": "kg"}},
+        {"nothing": {"upper": 3, "unit": "s"}},
+        {"tau": {"unit": "s"}},
+        {"tau": {"lower": 3, "upper": 2, "unit": "s"}},
+        {"tau": {"upper": 3}},
+    ):
         assert line.put(f"{API}/limits/qian2014", json={"limits": wrong}).status_code == 422
     assert line.put(f"{API}/limits/nothing", json={"limits": {}}).status_code == 422
 
@@ -187,10 +199,14 @@ def test_a_verdict_is_pass_fail_or_unknown_with_reasons(line: TestClient) -> Non
 @pytest.mark.parametrize(
     ("value", "error", "outcome", "uncertain"),
     [
-        (5.0, 0.1, "inside", False), (9.81, 0.1, "unknown", True), (10.19, 0.1, "unknown", True),
-        (10.21, 0.1, "outside", False), (9.79, 0.1, "inside", False), (5.0, None, "unknown", False),
+        (5.0, 0.1, "inside", False),
+        (9.81, 0.1, "unknown", True),
+        (10.19, 0.1, "unknown", True),
+        (10.21, 0.1, "outside", False),
+        (9.79, 0.1, "inside", False),
+        (5.0, None, "unknown", False),
     ],
-)  # fmt: skip
+)
 def test_two_standard_errors_from_a_limit_a_value_is_uncertain(
     value: float, error: float | None, outcome: str, uncertain: bool
 ) -> None:
@@ -243,8 +259,16 @@ def outcome(service: TestClient, asked: dict[str, str]) -> dict[str, Any]:
     return found
 
 
-@pytest.mark.parametrize("path", ["/statistics?parameter=Z0&batch=LINE", "/limits?model=qian2014&batch=LINE",
-                                  "/regressions", "/actuators/SW-1", "/statistics?parameter=nothing"])  # fmt: skip
+@pytest.mark.parametrize(
+    "path",
+    [
+        "/statistics?parameter=Z0&batch=LINE",
+        "/limits?model=qian2014&batch=LINE",
+        "/regressions",
+        "/actuators/SW-1",
+        "/statistics?parameter=nothing",
+    ],
+)
 @pytest.mark.usefixtures("fitted")
 def test_the_pages_of_the_line_are_shown(line: TestClient, path: str) -> None:
     page = line.get(path)

@@ -90,12 +90,13 @@ def test_viewers_see_what_the_filter_found(service: TestClient) -> None:
 
 def test_what_is_not_there_is_said(service: TestClient) -> None:
     for method, path, body, code in (
-        ("get", "none", None, "no-such-stream"), ("get", "none/events", None, "no-such-stream"),
+        ("get", "none", None, "no-such-stream"),
+        ("get", "none/events", None, "no-such-stream"),
         ("put", "none/recording", {"on": True}, "no-such-stream"),
         ("post", "rig-3/marks", {"text": ""}, "invalid-request"),
         ("post", "rig-3/recording", {"serial": "S", "run": "../x"}, "invalid-request"),
         ("post", "rig-3/recording", {"serial": "S", "run": "r"}, "no-recording"),
-    ):  # fmt: skip
+    ):
         with connected(service, {**START, "name": "rig-3"}) as socket:
             sent(socket, np.zeros((2, 2)))
             answer = getattr(service, method)(f"{API}/live/{path}", **({} if body is None else {"json": body}))

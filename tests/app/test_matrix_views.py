@@ -24,11 +24,18 @@ STATED = ({"piston_area": 1e-3}, {"supply_pressure": 2e7}, {"servo_valve": "D765
 def stored(*without: str, **stated) -> MatrixView:
     """An angle that follows an angle, as the database keeps it; what an earlier version did not write is left out."""
     kept = summary(replace(servo(1), actuator=Actuator("A", **stated)))
-    return view(SimpleNamespace(
-        id="m", serial="A", parent=None, created_at="", batch="", removed_at=None,
-        piston_area=stated.get("piston_area"),
-        summary={name: value for name, value in kept.items() if name not in without},
-    ))  # fmt: skip
+    return view(
+        SimpleNamespace(
+            id="m",
+            serial="A",
+            parent=None,
+            created_at="",
+            batch="",
+            removed_at=None,
+            piston_area=stated.get("piston_area"),
+            summary={name: value for name, value in kept.items() if name not in without},
+        )
+    )
 
 
 @pytest.mark.parametrize("stated", STATED, ids=lambda stated: next(iter(stated)))

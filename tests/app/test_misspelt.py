@@ -148,10 +148,15 @@ DRAWN = {"fit", "matrix", "webhook", "token", "--by", "--object"}
 FREE = ADDRESSES | MADE_UP | QUANTITIES | DRAWN | {"files", "source"}
 """Options that take text but no name of a list."""
 FREE_OF = {
-    ("init", "--serial"), ("simulate", "--serial"), ("limits", "--batch"),  # a new name may be given
-    ("regress", "--serial"), ("regress", "--batch"), ("statistics", "--serial"),  # of a whole line
-    ("verdict", "serial"), ("search", "text"),
-}  # fmt: skip
+    ("init", "--serial"),
+    ("simulate", "--serial"),
+    ("limits", "--batch"),  # a new name may be given
+    ("regress", "--serial"),
+    ("regress", "--batch"),
+    ("statistics", "--serial"),  # of a whole line
+    ("verdict", "serial"),
+    ("search", "text"),
+}
 
 
 def options(command: Any, path: tuple[str, ...] = ()) -> Iterator[tuple[str, str]]:
@@ -215,10 +220,18 @@ def made(service: TestClient, servoident: Program, place: Path) -> Given:
     changes.write_text(yaml.safe_dump({"runs": {f"{run}x": {"gain": 7}}}))
     parts = place / "parts.yaml"
     parts.write_text(PARTS)
-    words = {"PARTS": (str(parts),), "MATRIX": (str(folder),), "FIT": (str(place / "fit.json"),),
-             "OUT": (str(place / "out"),),
-             "RAW": (str(raw), "--serial", "RAW-1", "--out", str(place / "raw-out")), "HELD": tuple(held),
-             "RUN": (f"{run}x",), "CHANGES": (str(changes),), "STORED": (stored,), "STORED_FIT": (fit,)}  # fmt: skip
+    words = {
+        "PARTS": (str(parts),),
+        "MATRIX": (str(folder),),
+        "FIT": (str(place / "fit.json"),),
+        "OUT": (str(place / "out"),),
+        "RAW": (str(raw), "--serial", "RAW-1", "--out", str(place / "raw-out")),
+        "HELD": tuple(held),
+        "RUN": (f"{run}x",),
+        "CHANGES": (str(changes),),
+        "STORED": (stored,),
+        "STORED_FIT": (fit,),
+    }
     return Given(words, run)
 
 

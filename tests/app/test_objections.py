@@ -26,17 +26,24 @@ UNKNOWN = {"fit": None, "verify": None}
         (FAR * 0.00501, 0.006, FLOOR, ["the error is 0.751 %, 1.5 times the noise floor of 0.500 %"]),
         (0.12, None, FLOOR, ["the error is 12.0 %, 24 times the noise floor of 0.500 %"]),
         (0.005, 0.06, FLOOR, ["the error on validation data is 6.00 %, 10 times their noise floor of 0.600 %"]),
-        (0.02, 0.05, UNKNOWN,
-         ["the error on validation data is 5.00 %, 2.5 times the error on estimation data of 2.00 %"]),
+        (
+            0.02,
+            0.05,
+            UNKNOWN,
+            ["the error on validation data is 5.00 %, 2.5 times the error on estimation data of 2.00 %"],
+        ),
         (0.02, 0.02, UNKNOWN, []),
         (None, None, {}, []),
-        (ErrorOf(12.0, unstable=["k24"]), None, FLOOR,
-         ["the error is unknown: the model is unstable on run k24"]),
+        (ErrorOf(12.0, unstable=["k24"]), None, FLOOR, ["the error is unknown: the model is unstable on run k24"]),
         (UNSTABLE, None, FLOOR, ["the error is unknown: the model is unstable"]),
-        (ErrorOf(0.12, 0.9), None, FLOOR,
-         ["the error is 12.0 % (with the mean 90.0 %), 24 times the noise floor of 0.500 %"]),
+        (
+            ErrorOf(0.12, 0.9),
+            None,
+            FLOOR,
+            ["the error is 12.0 % (with the mean 90.0 %), 24 times the noise floor of 0.500 %"],
+        ),
     ],
-)  # fmt: skip
+)
 def test_what_speaks_against_an_approval_follows_from_errors_and_floors(
     fit: float | ErrorOf | None, verify: float | None, floor: dict[str, float | None], said: list[str]
 ) -> None:
@@ -67,9 +74,13 @@ def stored(
         session.add(MatrixRow(id=f"m-{name}", serial=name, batch="OBJECT", source={}, summary=summary))
         session.flush()
         row = FitRow(
-            id=f"o-{name}", matrix=f"m-{name}", serial=name, model="qian2014", parent=parent,
+            id=f"o-{name}",
+            matrix=f"m-{name}",
+            serial=name,
+            model="qian2014",
+            parent=parent,
             result=result | errors | {"effects": list(effects)},
-        )  # fmt: skip
+        )
         row.set = SetRow(serial=name, batch="OBJECT", model="qian2014", error_fit=error, error_verify=error)
         session.add(row)
     return row.id
@@ -128,6 +139,7 @@ def test_the_main_button_of_a_fit_is_the_next_step_of_the_first_page(service: Te
     assert main_deeds(poor) == ["Search for missing effects"]
     assert main_deeds(good) == ["Approve for OBJECT-6"]
     assert [text for text in ("Not good yet", "Conditional on the model", "Good fit") if text in poor] == [
-        "Not good yet", "Conditional on the model",
-    ]  # fmt: skip
+        "Not good yet",
+        "Conditional on the model",
+    ]
     assert [text for text in ("Not good yet", "Conditional on the model", "Good fit") if text in good] == ["Good fit"]

@@ -23,9 +23,10 @@ from tests.hidden_bump import NOISE, zipped
 API = "/api/v1"
 AT = f"{API}/own-effects"
 OF_BENCH = {
-    "place": "valve", "equation": "q = q - clip(q, -h, h)",
+    "place": "valve",
+    "equation": "q = q - clip(q, -h, h)",
     "strength": {"symbol": "h", "unit": "1", "lower": 0, "upper": 0.1},
-}  # fmt: skip
+}
 
 
 @pytest.fixture(autouse=True)
@@ -90,8 +91,10 @@ def test_the_same_again_is_no_news_and_another_is_refused(service: TestClient) -
 
 
 def test_a_retry_with_its_key_is_answered_as_the_first_time(service: TestClient) -> None:
-    answers = [service.post(AT, json={"name": "lapped", "definition": OWN}, headers={"Idempotency-Key": "k-own"})
-               for _ in range(2)]  # fmt: skip
+    answers = [
+        service.post(AT, json={"name": "lapped", "definition": OWN}, headers={"Idempotency-Key": "k-own"})
+        for _ in range(2)
+    ]
     assert [answer.status_code for answer in answers] == [201, 201]
     assert answers[0].json() == answers[1].json()
 
@@ -156,8 +159,10 @@ def test_they_are_listed_page_by_page_and_by_the_model_that_can_take_them(servic
     first = service.get(AT, params={"limit": 2}).json()
     rest = service.get(AT, params={"limit": 2, "cursor": first["next"]}).json()
     assert [one["name"] for one in first["items"] + rest["items"]] == ["a_lapped", "b_lapped", "c_lapped", "d_bench"]
-    names = {model: [one["name"] for one in service.get(AT, params={"model": model}).json()["items"]]
-             for model in ("qian2014", "kononykhin", "drive")}  # fmt: skip
+    names = {
+        model: [one["name"] for one in service.get(AT, params={"model": model}).json()["items"]]
+        for model in ("qian2014", "kononykhin", "drive")
+    }
     assert names["qian2014"] == ["a_lapped", "b_lapped", "c_lapped"]
     assert "d_bench" in names["kononykhin"]
     assert names["drive"] == []

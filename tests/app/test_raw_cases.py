@@ -78,8 +78,11 @@ def is_right(runs, case: Case) -> None:
 def test_init_reads_it_or_asks_for_exactly_what_the_file_does_not_state(servoident, case, tmp_path):
     refused = servoident("init", FOLDER / case.name, "--out", tmp_path / "m")
     assert refused.returncode == 2
-    options = {"unit command": "--channel command=:UNIT", "unit displacement": "--channel displacement=:UNIT",
-               "unit time": "--time :UNIT"}  # fmt: skip
+    options = {
+        "unit command": "--channel command=:UNIT",
+        "unit displacement": "--channel displacement=:UNIT",
+        "unit time": "--time :UNIT",
+    }
     asked = {"--serial SERIAL", *(options[key] for key in case.asked)}
     command = refused.stderr.strip().rpartition(f" --out {tmp_path / 'm'} ")[2]
     assert {f"--{option}" for option in f" {command}".split(" --")[1:]} == asked
@@ -121,9 +124,11 @@ def test_read_matrix_reads_it_under_the_names_of_its_columns(case):
     assert f"columns={ {'command': command, 'displacement': displacement} }" in refused.value.remedy
     assert f"'column': {time!r}" in refused.value.remedy
     matrix = read_matrix(
-        FOLDER / case.name, units={"command": case.units[1], "displacement": case.units[2]},
-        columns={"command": command, "displacement": displacement}, time={"column": time, "unit": case.units[0]},
-    )  # fmt: skip
+        FOLDER / case.name,
+        units={"command": case.units[1], "displacement": case.units[2]},
+        columns={"command": command, "displacement": displacement},
+        time={"column": time, "unit": case.units[0]},
+    )
     is_right(matrix.runs, case)
     assert "cut off" not in case.told or any(case.told in one for one in matrix.notices)
 
@@ -132,8 +137,12 @@ def test_a_time_stamp_is_in_seconds_and_in_nothing_else():
     if not (FOLDER / "iso_time.csv").is_file():
         pytest.skip("no small files")
     with pytest.raises(Unusable, match="seconds") as refused:
-        read_matrix(FOLDER / "iso_time.csv", units=COMMA, columns={"command": 1, "displacement": 2},
-                    time={"column": 0, "unit": "ms"})  # fmt: skip
+        read_matrix(
+            FOLDER / "iso_time.csv",
+            units=COMMA,
+            columns={"command": 1, "displacement": 2},
+            time={"column": 0, "unit": "ms"},
+        )
     assert refused.value.code == "time-stamps"
 
 
@@ -162,8 +171,9 @@ def test_files_of_one_signal_are_a_run_of_which_the_rate_alone_is_asked(servoide
     sent = [("files", (file.name, file.read_bytes())) for file in files]
     draft = service.post(f"{API}/drafts", files=sent).json()
     assert ([one["name"] for one in draft["files"]], [one["key"] for one in draft["missing"]]) == (
-        ["run.csv"], ["serial", "rate"]
-    )  # fmt: skip
+        ["run.csv"],
+        ["serial", "rate"],
+    )
     assert any("joined from command_mm.txt, position_mm.txt" in one for one in draft["doubts"])
     joined = ("join", *files, "--out", tmp_path / "run.csv")
     assert servoident(*joined).returncode == 0
@@ -177,8 +187,16 @@ def test_files_of_one_signal_are_a_run_of_which_the_rate_alone_is_asked(servoide
 class Log:
     """The tables of a drive's log: columns by position."""
 
-    given: tuple[str, ...] = ("--channel", "command=1:V", "--channel", "displacement=3:m", "--channel",
-                              "velocity=5:m/s", "--time", "0:s")  # fmt: skip
+    given: tuple[str, ...] = (
+        "--channel",
+        "command=1:V",
+        "--channel",
+        "displacement=3:m",
+        "--channel",
+        "velocity=5:m/s",
+        "--time",
+        "0:s",
+    )
     tests: tuple[str, ...] = field(default=("slow-forward", "slow-backward", "fast-forward", "fast-backward"))
 
 
@@ -196,10 +214,14 @@ def test_a_log_of_several_tests_is_as_many_runs_whose_columns_are_asked_by_posit
     assert done.returncode == 0, done.stderr
     draft = service.post(f"{API}/drafts", files=[("files", (file.name, file.read_bytes()))]).json()
     assert {one["key"] for one in draft["missing"]} == {"serial", "channel command", "channel displacement", "rate"}
-    made = service.post(f"{API}/drafts/{draft['id']}/matrix", json={
-        "serial": "LOG", "time": {"column": 0, "unit": "s"},
-        "channels": {"command": {"column": 1, "unit": "V"}, "displacement": {"column": 3, "unit": "m"}},
-    })  # fmt: skip
+    made = service.post(
+        f"{API}/drafts/{draft['id']}/matrix",
+        json={
+            "serial": "LOG",
+            "time": {"column": 0, "unit": "s"},
+            "channels": {"command": {"column": 1, "unit": "V"}, "displacement": {"column": 3, "unit": "m"}},
+        },
+    )
     assert [run["id"] for run in made.json()["runs"]] == list(log.tests), made.text
     runs = read_matrix(tmp_path / "m").runs
     assert [run.id for run in runs] == list(log.tests)
@@ -207,6 +229,10 @@ def test_a_log_of_several_tests_is_as_many_runs_whose_columns_are_asked_by_posit
         rows = np.array(truth[run.id])
         assert (run.sample_rate, run.units["velocity"]) == (pytest.approx(50), "m/s")
         np.testing.assert_allclose([run.command, run.measured, run.channels["velocity"]], rows[:, [1, 3, 5]].T)
-    alone = read_matrix(file, units={"command": "V", "displacement": "m"}, sample_rate="50 Hz",
-                        columns={"command": "fast-forward/1", "displacement": "fast-forward/3"})  # fmt: skip
+    alone = read_matrix(
+        file,
+        units={"command": "V", "displacement": "m"},
+        sample_rate="50 Hz",
+        columns={"command": "fast-forward/1", "displacement": "fast-forward/3"},
+    )
     np.testing.assert_allclose(alone.runs[0].measured, np.array(truth["fast-forward"])[:, 3])

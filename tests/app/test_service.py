@@ -133,10 +133,14 @@ def test_each_run_has_a_small_picture(service: TestClient, matrix: str) -> None:
 
 def test_the_page_of_a_whole_matrix_is_small(service: TestClient, tmp_path: Path) -> None:
     simulate_matrix(tmp_path / "matrix", seconds=0.25, seed=1)
-    stored = service.post("/api/v1/matrices", files=[
-        ("files", (str(path.relative_to(tmp_path / "matrix")), path.read_bytes()))
-        for path in sorted((tmp_path / "matrix").rglob("*")) if path.is_file()
-    ]).json()  # fmt: skip
+    stored = service.post(
+        "/api/v1/matrices",
+        files=[
+            ("files", (str(path.relative_to(tmp_path / "matrix")), path.read_bytes()))
+            for path in sorted((tmp_path / "matrix").rglob("*"))
+            if path.is_file()
+        ],
+    ).json()
     page = service.get(f"/matrices/{stored['id']}")
     assert page.text.count('id="run-') == 84
     assert len(page.content) < 200_000

@@ -22,9 +22,10 @@ def left(service: TestClient, job: str) -> int:
     query = "SELECT count(*) + total(length(output)) FROM operation_outputs WHERE workflow_uuid = ?"
     with sqlite3.connect(queue) as connection:
         outputs = connection.execute(query, [job]).fetchone()[0]
-        return int(outputs) + connection.execute(
-            "SELECT count(*) FROM workflow_status WHERE workflow_uuid = ?", [job]
-        ).fetchone()[0]  # fmt: skip
+        return (
+            int(outputs)
+            + connection.execute("SELECT count(*) FROM workflow_status WHERE workflow_uuid = ?", [job]).fetchone()[0]
+        )
 
 
 def test_the_outputs_of_steps_go_when_the_job_ends(service: TestClient, fitted: str) -> None:
@@ -58,8 +59,9 @@ def test_a_fit_keeps_its_history_once_and_compact(service: TestClient, fitted: s
 def test_a_fit_of_an_earlier_version_has_its_history_in_its_row(service: TestClient, fitted: str) -> None:
     found = service.get(f"/api/v1/fits/{fitted}").json()
     with service.app.state.context.sessions.begin() as session:
-        row = FitRow(id="earlier", matrix=found["matrix"], serial=found["serial"], model="qian2014",
-                     result=found["result"])  # fmt: skip
+        row = FitRow(
+            id="earlier", matrix=found["matrix"], serial=found["serial"], model="qian2014", result=found["result"]
+        )
         row.set = SetRow(serial=found["serial"], model="qian2014")
         session.add(row)
     try:

@@ -143,8 +143,9 @@ def test_the_client_of_the_documentation_follows_a_simulated_source(service: Tes
             told = list(client["follow"](stream, samples, tmp_path / "recorded.csv"))
         assert told[-1][1:3] == pytest.approx(drawn.loop[:2], rel=0.05)
         assert any(alarm["kind"] == "stroke" for *_, alarms in told for alarm in alarms)
-        assert np.array_equal(np.loadtxt(tmp_path / "recorded.csv", delimiter=",", skiprows=1),
-                              np.column_stack([drawn.r, drawn.y]))  # fmt: skip
+        assert np.array_equal(
+            np.loadtxt(tmp_path / "recorded.csv", delimiter=",", skiprows=1), np.column_stack([drawn.r, drawn.y])
+        )
 
 
 def test_only_the_sample_rate_must_be_given(service: TestClient) -> None:
@@ -172,9 +173,17 @@ def test_a_first_message_that_says_nothing_usable_is_a_problem_and_the_end(servi
 
 @pytest.mark.parametrize(
     "message",
-    ["no JSON", '{"r": [1]}', '{"r": [1], "y": [1, 2]}', '{"r": [NaN], "y": [1]}', '{"r": [1e300], "y": [1]}', b"123",
-     np.array([[1e300, 0.0]]).tobytes(), np.array([[np.nan, 0.0]]).tobytes()],
-)  # fmt: skip
+    [
+        "no JSON",
+        '{"r": [1]}',
+        '{"r": [1], "y": [1, 2]}',
+        '{"r": [NaN], "y": [1]}',
+        '{"r": [1e300], "y": [1]}',
+        b"123",
+        np.array([[1e300, 0.0]]).tobytes(),
+        np.array([[np.nan, 0.0]]).tobytes(),
+    ],
+)
 def test_samples_that_are_none_are_a_problem_and_the_end(service: TestClient, message: str | bytes) -> None:
     with connected(service) as socket:
         (socket.send_bytes if isinstance(message, bytes) else socket.send_text)(message)

@@ -29,12 +29,20 @@ def truth_of(truth: reference.Truth, records: Sequence[reference.Record], bits: 
     line = np.polyfit(u, v, 1)
     forward, back = (float(u[s] @ v[s] / (u[s] @ u[s])) for s in (u > 0, u < 0))
     return {
-        "zero_shift": truth.I0 / 100, "dead_space": truth.dead_space / 100, "hysteresis": truth.B / 100,
-        "kp": 1e8 * truth.kp, "friction": 1e6 * truth.dPfr, "T": truth.T, "delay": truth.delay, "gain": line[0],
-        "gain_forward": forward, "gain_back": back, "asymmetry": 2 * (forward - back) / (forward + back),
+        "zero_shift": truth.I0 / 100,
+        "dead_space": truth.dead_space / 100,
+        "hysteresis": truth.B / 100,
+        "kp": 1e8 * truth.kp,
+        "friction": 1e6 * truth.dPfr,
+        "T": truth.T,
+        "delay": truth.delay,
+        "gain": line[0],
+        "gain_forward": forward,
+        "gain_back": back,
+        "asymmetry": 2 * (forward - back) / (forward + back),
         "nonlinearity": float(np.max(np.abs(v - np.polyval(line, u))) / np.max(np.abs(v))),
         "position_error": float(np.mean([_of_converter(r, bits) for r in records if r.kind == "frequency"])),
-    }  # fmt: skip
+    }
 
 
 def _of_converter(record: reference.Record, bits: int) -> float:
@@ -57,8 +65,13 @@ def wrong(seed: int, read: reference.Instruments) -> dict[str, float]:
 
 def _static(analysis: Analysis) -> Iterator[tuple[str, float, float]]:
     s = analysis.static
-    named = {"zero_shift": s.zero_shift, "dead_space": s.dead_space, "hysteresis": s.hysteresis, "kp": s.slope,
-             "friction": s.friction}  # fmt: skip
+    named = {
+        "zero_shift": s.zero_shift,
+        "dead_space": s.dead_space,
+        "hysteresis": s.hysteresis,
+        "kp": s.slope,
+        "friction": s.friction,
+    }
     return ((name, one.value, one.deviation) for name, one in named.items())
 
 

@@ -31,8 +31,13 @@ class Found:
 
     def relative(self, name: str) -> float:
         """|found − true| / true of a quantity of the sheet."""
-        true = {"hysteresis": self.truth.B, "dead_space": self.truth.dead_space, "kp": self.truth.kp,
-                "friction": self.truth.dPfr, "T": self.truth.T}[name]  # fmt: skip
+        true = {
+            "hysteresis": self.truth.B,
+            "dead_space": self.truth.dead_space,
+            "kp": self.truth.kp,
+            "friction": self.truth.dPfr,
+            "T": self.truth.T,
+        }[name]
         return abs(self.quantities[name].value / true - 1)
 
     @property

@@ -27,15 +27,23 @@ def as_matrix(truth: reference.Truth, records: Sequence[reference.Record]) -> Ma
 def as_run(record: reference.Record) -> Run:
     """One record."""
     channels = {
-        "current": record.current / 100, "displacement": record.position / 1e3, "pressure_a": 1e6 * record.pressure_a,
+        "current": record.current / 100,
+        "displacement": record.position / 1e3,
+        "pressure_a": 1e6 * record.pressure_a,
         "pressure_b": 1e6 * record.pressure_b,
-    }  # fmt: skip
+    }
     low, high = record.position_range
     return Run(
-        record.id, "", reference.RATE, channels, units={"current": "1", "displacement": "m"}, kind=record.kind,
-        frequency=record.frequency or None, rated_current=1.0,
+        record.id,
+        "",
+        reference.RATE,
+        channels,
+        units={"current": "1", "displacement": "m"},
+        kind=record.kind,
+        frequency=record.frequency or None,
+        rated_current=1.0,
         position_range=(1e-3 * low, 1e-3 * high) if record.kind == "static" else None,
-    )  # fmt: skip
+    )
 
 
 def as_set(truth: reference.Truth, records: Sequence[reference.Record]) -> BenchSet:

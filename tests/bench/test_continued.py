@@ -38,8 +38,14 @@ def promised(fit: FitResult) -> Diagnosis:
     }
     rung = Rung(added="spring_load", error=fit.error, parameters=values)
     settings = Settings(model="kononykhin", method="gradient").to_json()
-    return Diagnosis(model="kononykhin", candidates=(), verdict=Verdict(("spring_load",)), ladder=(rung,),
-                     settings=settings, data_hash=fit.data_hash)  # fmt: skip
+    return Diagnosis(
+        model="kononykhin",
+        candidates=(),
+        verdict=Verdict(("spring_load",)),
+        ladder=(rung,),
+        settings=settings,
+        data_hash=fit.data_hash,
+    )
 
 
 @pytest.mark.parametrize("of", ["fit", "diagnosis"])

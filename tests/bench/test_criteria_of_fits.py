@@ -65,8 +65,9 @@ def polished(monkeypatch: pytest.MonkeyPatch, *costs: float) -> tuple[Any, list[
 
     def ended(start: float, steps: int) -> Any:
         asked.append(steps)
-        return SimpleNamespace(cost=start, deviations={"T": 0.1}, values={"T": 1.0}, point=np.zeros(1),
-                               residual=SimpleNamespace(reach={}))  # fmt: skip
+        return SimpleNamespace(
+            cost=start, deviations={"T": 0.1}, values={"T": 1.0}, point=np.zeros(1), residual=SimpleNamespace(reach={})
+        )
 
     monkeypatch.setattr(polish, "Residual", lambda start, *_: start)
     monkeypatch.setattr(polish, "solve", ended)
@@ -94,9 +95,7 @@ def test_a_search_that_ends_a_hundredth_farther_went_astray(monkeypatch, farther
 def residual(*names: str) -> Residual:
     """Of a model on a record that goes 0.1 m."""
     record = Record("r", "static", 1e3, "linear", np.zeros(500), np.linspace(0.0, 0.1, 500), None, 0.0)
-    return Residual(
-        Model(0.01, 0.01, 0.0, 1e8, 1e5, SpeedTable.straight(0.1)), (Observed.of(record),), names
-    )  # fmt: skip
+    return Residual(Model(0.01, 0.01, 0.0, 1e8, 1e5, SpeedTable.straight(0.1)), (Observed.of(record),), names)
 
 
 def test_a_value_that_may_be_zero_is_measured_by_a_twentieth_of_its_range():
@@ -150,9 +149,11 @@ def test_three_vectors_of_a_search_are_refined(monkeypatch):
     monkeypatch.setattr(identification, "polished", known)
     own = SimpleNamespace(values=dict)
     work = SimpleNamespace(
-        _model=lambda point: point, analysis=SimpleNamespace(model=own), _own=lambda of: (of, ()),
+        _model=lambda point: point,
+        analysis=SimpleNamespace(model=own),
+        _own=lambda of: (of, ()),
         space=SimpleNamespace(bounds=lambda _: {}, names=()),
-    )  # fmt: skip
+    )
     population = [[0.1 * place] for place in range(0, 10, 2)]
     identification.BenchIdentification._polished(work, {"best": [0.9], "population": population})  # type: ignore[arg-type]
     assert asked == [3]

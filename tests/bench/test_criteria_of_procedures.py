@@ -226,9 +226,11 @@ def test_a_delay_is_said_from_four_deviations_and_a_fiftieth_of_the_lag_on(monke
 
     model = SimpleNamespace(T=1.0, B=0.0)
     ended = Solution(
-        values={"T": 1.0, "B": 0.0, delay: share}, deviations={delay: share / errors}, correlation=correlation,
+        values={"T": 1.0, "B": 0.0, delay: share},
+        deviations={delay: share / errors},
+        correlation=correlation,
         model=model,
-    )  # fmt: skip
+    )
     monkeypatch.setattr(time_constant, "Residual", lambda *given: given)
     monkeypatch.setattr(time_constant, "solve", lambda *_, **__: ended)
     monkeypatch.setattr(time_constant, "scatter", lambda _: None)

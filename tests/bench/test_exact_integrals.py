@@ -58,9 +58,12 @@ def test_the_gains_of_a_part_are_those_of_a_lag_under_a_straight_line(T):
         h = H / parts
         for start, first, last, expected in ((1.0, 0.0, 0.0, row[0]), (0.0, 1.0, 0.0, row[1]), (0.0, 0.0, 1.0, row[2])):
             found = solve_ivp(
-                lambda t, y, a=first, b=last, h=h: (a + (b - a) * t / h - y) / T, (0.0, h), [start],
-                rtol=1e-10, atol=1e-13,
-            )  # fmt: skip
+                lambda t, y, a=first, b=last, h=h: (a + (b - a) * t / h - y) / T,
+                (0.0, h),
+                [start],
+                rtol=1e-10,
+                atol=1e-13,
+            )
             assert found.y[0, -1] == pytest.approx(expected, rel=1e-6, abs=1e-10)
     step = 1e-6 * T
     differences = (gains_of(T + step, H, (1, 8))[0] - gains_of(T - step, H, (1, 8))[0]) / (2.0 * step)

@@ -43,9 +43,20 @@ def recorded(name: str) -> reference.Record:
 def answer(of: Model, current: np.ndarray, start: float, held: bool = False) -> tuple[np.ndarray, np.ndarray]:
     position, pressure = np.empty((1, len(current))), np.empty((1, len(current)))
     respond_exact(
-        current, of.delay * reference.RATE, 1 / reference.RATE, held, of.constants, of.table.nodes, of.table.pieces,
-        np.zeros((0, 2, 1, 4)), start, np.arange(len(current)), 0.0, position, pressure,
-    )  # fmt: skip
+        current,
+        of.delay * reference.RATE,
+        1 / reference.RATE,
+        held,
+        of.constants,
+        of.table.nodes,
+        of.table.pieces,
+        np.zeros((0, 2, 1, 4)),
+        start,
+        np.arange(len(current)),
+        0.0,
+        position,
+        pressure,
+    )
     return position[0], pressure[0]
 
 

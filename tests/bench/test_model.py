@@ -30,8 +30,13 @@ from tests.reference import kononykhin_reference as reference
 MIDDLE = {p.name: p.value for p in KONONYKHIN.parameters}
 TIME = np.arange(6000) / 1000
 SLOW = 0.01 * np.sin(2 * np.pi * 0.5 * TIME) + 0.01 * np.sin(2 * np.pi * 1.3 * TIME)
-STRENGTHS = {"command_delay__delay": 0.02, "second_lag__time_constant": 0.02, "stiction__pressure": 3e6,
-             "spring_load__rate": 5e9, "spring_load__centre": 1e-4}  # fmt: skip
+STRENGTHS = {
+    "command_delay__delay": 0.02,
+    "second_lag__time_constant": 0.02,
+    "stiction__pressure": 3e6,
+    "spring_load__rate": 5e9,
+    "spring_load__centre": 1e-4,
+}
 CURRENT = 0.1 * np.sin(2 * np.pi * 0.5 * TIME) + 0.3 * np.sin(2 * np.pi * 1.3 * TIME)
 
 

@@ -40,8 +40,9 @@ def test_a_search_that_went_astray_ends_where_the_procedures_do_and_says_so(obse
     assert alone.cost**0.5 > 10 * optimum
     found, notes = polished([DEAD], TRUTH, observed, NAMES)
     assert found.cost**0.5 == pytest.approx(optimum, rel=1e-3)
-    assert notes == ["No member of the search leads as near to the records as the procedures: "
-                     "the fit starts from their values."]  # fmt: skip
+    assert notes == [
+        "No member of the search leads as near to the records as the procedures: the fit starts from their values."
+    ]
 
 
 def test_a_search_that_arrived_is_not_said_to_have_gone_astray(observed):

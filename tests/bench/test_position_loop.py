@@ -26,8 +26,16 @@ SMOOTH = Truth(dPfr=0.05, asymmetry=0.0)
 def model_of(truth: Truth) -> Model:
     """The model with the values of a truth, in rated currents and SI."""
     forward, back = (tuple(1e-3 * truth.speed(side * 100 * np.array(NODES))) for side in (1.0, -1.0))
-    return Model(truth.T, truth.B / 100, truth.I0 / 100, 1e8 * truth.kp, 1e6 * truth.dPfr,
-                 SpeedTable(forward, back, NODES), 1e6 * truth.Ps, {"command_delay__delay": truth.delay})  # fmt: skip
+    return Model(
+        truth.T,
+        truth.B / 100,
+        truth.I0 / 100,
+        1e8 * truth.kp,
+        1e6 * truth.dPfr,
+        SpeedTable(forward, back, NODES),
+        1e6 * truth.Ps,
+        {"command_delay__delay": truth.delay},
+    )
 
 
 class Actuator:
@@ -42,8 +50,25 @@ class Actuator:
         """The position (m) a step later, the current (rated currents) going there in a straight line."""
         of = self.truth
         self.currents.append(100 * current)
-        _advance(self.state, self.currents[0], self.currents[1], self.step, of.T, of.B, of.I0, of.kp, of.dPfr, of.Ps,
-                 of.G, of.asymmetry, 4 * of.nonlinearity, 0.0, 0.0, 0.0, 4)  # fmt: skip
+        _advance(
+            self.state,
+            self.currents[0],
+            self.currents[1],
+            self.step,
+            of.T,
+            of.B,
+            of.I0,
+            of.kp,
+            of.dPfr,
+            of.Ps,
+            of.G,
+            of.asymmetry,
+            4 * of.nonlinearity,
+            0.0,
+            0.0,
+            0.0,
+            4,
+        )
         return float(1e-3 * self.state[2])
 
 

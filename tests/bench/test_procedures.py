@@ -69,8 +69,9 @@ def test_the_printed_iteration_minimises_the_fourth_power():
     printed, least = as_printed(ALPHA, x), fit_sine(ALPHA, x)
     other = minimize(
         lambda a: np.sum((a[0] + a[1] * np.sin(ALPHA + a[2]) - x) ** 4) / least.rms**4,
-        [least.a1, least.a2, least.a3], tol=1e-14,
-    ).x  # fmt: skip
+        [least.a1, least.a2, least.a3],
+        tol=1e-14,
+    ).x
     assert [printed.a1, printed.a2, printed.a3] == pytest.approx(list(other), rel=1e-4)
     assert printed.a2 / least.a2 - 1 == pytest.approx(0.007, abs=5e-4)
 

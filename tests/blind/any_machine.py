@@ -67,12 +67,22 @@ class Lab:
         structure = str(rng.choice(STRUCTURES))
         what = str(rng.choice(HIDDEN[structure])) if hidden else ""
         return cls(
-            seed, structure, str(rng.choice(KINDS)), what, rng.uniform(0.4, 0.8), 10 ** rng.uniform(1.3, 4.0),
-            10 ** rng.uniform(-2.5, -1.7), bool(rng.integers(2)), int(rng.integers(8, 17)),
-            rng.uniform(-1, 1) * rng.integers(2), 10 ** rng.uniform(-1, 1.3), str(rng.choice(["V", "mA", "%"])),
-            0.15 * (rng.integers(4) == 0), rng.uniform(0.5, 1.5) * (rng.integers(4) == 0),
+            seed,
+            structure,
+            str(rng.choice(KINDS)),
+            what,
+            rng.uniform(0.4, 0.8),
+            10 ** rng.uniform(1.3, 4.0),
+            10 ** rng.uniform(-2.5, -1.7),
+            bool(rng.integers(2)),
+            int(rng.integers(8, 17)),
+            rng.uniform(-1, 1) * rng.integers(2),
+            10 ** rng.uniform(-1, 1.3),
+            str(rng.choice(["V", "mA", "%"])),
+            0.15 * (rng.integers(4) == 0),
+            rng.uniform(0.5, 1.5) * (rng.integers(4) == 0),
             rng.uniform(0.5, 2.0) * (rng.integers(4) == 0),
-        )  # fmt: skip
+        )
 
     def measured(self, noisy: bool = True) -> Matrix:
         """Two runs to fit and one to verify, read from files; without what disturbs and the converter the same."""
@@ -98,11 +108,18 @@ class Lab:
             table = np.column_stack([times / self.rate, scale * u, y])
             np.savetxt(folder / f"{number}.csv", table, delimiter=",", header="t,u,y", comments="", fmt="%.12g")
             hold = "zoh" if self.kind in ("steps", "staircase") else "linear"
-            runs.append({
-                "id": f"{use}-{number}", "file": f"{number}.csv", "time": {"column": "t", "unit": "s"}, "use": use,
-                "output": output, "hold": hold, "kind": "blwn" if self.kind == "noise" else "other",
-                "channels": {"command": {"column": "u", "unit": in_command}, output: {"column": "y", "unit": unit}},
-            })  # fmt: skip
+            runs.append(
+                {
+                    "id": f"{use}-{number}",
+                    "file": f"{number}.csv",
+                    "time": {"column": "t", "unit": "s"},
+                    "use": use,
+                    "output": output,
+                    "hold": hold,
+                    "kind": "blwn" if self.kind == "noise" else "other",
+                    "channels": {"command": {"column": "u", "unit": in_command}, output: {"column": "y", "unit": unit}},
+                }
+            )
         description = {"actuator": {"serial": f"LAB-{self.seed}"}, "runs": runs}
         (folder / "matrix.yaml").write_text(yaml.safe_dump(description))
 
@@ -245,8 +262,11 @@ def _motor(lab: Lab, fine: Array) -> Array:
 
 
 _MACHINES: dict[str, Callable[[Lab, Array], Array]] = {
-    "lag": _lag, "loop": _loop, "cylinder": _cylinder, "motor": _motor,
-}  # fmt: skip
+    "lag": _lag,
+    "loop": _loop,
+    "cylinder": _cylinder,
+    "motor": _motor,
+}
 
 
 def sound(lab: Lab) -> Lab:

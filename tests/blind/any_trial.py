@@ -83,9 +83,17 @@ def trial(seed: int, hidden: bool, seconds: float | None = None) -> Outcome:
     last = found.ladder[-1].error if found.ladder else fit.error  # there was no time for a step
     group = next((group for group in found.verdict.indistinguishable if lab.hidden in group), ())
     return Outcome(
-        lab, fit.model, _differs(lab, fit.model), fit.error["fit"] or 0.0, last["fit"] or 0.0,
-        found.verdict.effects, found.verdict.standing, group, worth, sure(found),
-    )  # fmt: skip
+        lab,
+        fit.model,
+        _differs(lab, fit.model),
+        fit.error["fit"] or 0.0,
+        last["fit"] or 0.0,
+        found.verdict.effects,
+        found.verdict.standing,
+        group,
+        worth,
+        sure(found),
+    )
 
 
 def _differs(lab: Lab, model: str) -> float:
@@ -98,11 +106,13 @@ def _differs(lab: Lab, model: str) -> float:
 def rates(outcomes: list[Outcome]) -> str:
     """How often each thing was right, as counts with 95 % intervals."""
     hidden, sound_ones = [o for o in outcomes if o.counts], [o for o in outcomes if not o.lab.hidden]
-    return "; ".join((
-        f"structure right {rate([o.structure_right for o in outcomes])}",
-        f"hidden effect named {rate([o.named for o in hidden])}",
-        f"nothing found where nothing is hidden {rate([o.standing != 'found' for o in sound_ones])}",
-    ))  # fmt: skip
+    return "; ".join(
+        (
+            f"structure right {rate([o.structure_right for o in outcomes])}",
+            f"hidden effect named {rate([o.named for o in hidden])}",
+            f"nothing found where nothing is hidden {rate([o.standing != 'found' for o in sound_ones])}",
+        )
+    )
 
 
 def main() -> None:

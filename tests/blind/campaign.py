@@ -23,9 +23,12 @@ from tests.blind.written import WRITTEN
 from tests.reference.outside_reference import UNLISTED
 
 NAMED = {
-    "one": NAMES, "outside": UNLISTED, "own": WRITTEN, "label": ("mass", "stiffness", "gain"),
+    "one": NAMES,
+    "outside": UNLISTED,
+    "own": WRITTEN,
+    "label": ("mass", "stiffness", "gain"),
     "noise": tuple(NOISES),
-}  # fmt: skip
+}
 """What the trials of a kind are about, by name: what is hidden, but for noise; the other kinds draw it."""
 SMALL = ("one", "none", "two", "three", "clutter", "noise")
 OUT = Path(__file__).parents[2] / "docs" / "blind-trials.jsonl"
@@ -59,8 +62,10 @@ def show(row: dict[str, Any]) -> None:
     extra = f" groups {row['groups']}" if row["groups"] else ""
     extra += f" suspects {row['suspects']}" if row["suspects"] else ""
     extra += " unexplained" if row["unexplained"] else ""
-    print(f"{mark} {hidden} → {found} first {row['first'][0]} verify {row['verify']:.3f} "
-          f"{row['seconds']} s{extra}", flush=True)  # fmt: skip
+    print(
+        f"{mark} {hidden} → {found} first {row['first'][0]} verify {row['verify']:.3f} {row['seconds']} s{extra}",
+        flush=True,
+    )
 
 
 def main() -> None:

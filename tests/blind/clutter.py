@@ -26,7 +26,7 @@ from tests.blind.machines import (
     matrix_of,
     runs_away,
     strength_for,
-)  # fmt: skip
+)
 from tests.blind.trial import NAMES, judged
 from tests.reference import nonlinear_reference as reference
 from tests.reference import qian_reference as linear
@@ -74,9 +74,17 @@ def clutter(seed: int, noise: float = 0.01, small: bool = False) -> dict[str, An
         machine = drawn(rng, noise, small)
     names = tuple(machine.hidden)
     oracle = identify(matrix, Settings(effects=names)).error["verify"] or 0.0
-    row = {"kind": "clutter", "matrix": "small" if small else "full", "noise": noise, "seed": seed,
-           "hidden": dict(machine.hidden), "shapes": dict(machine.shapes), "outside": dict(machine.outside),
-           "strong": names[0], "oracle": oracle / noise}  # fmt: skip
+    row = {
+        "kind": "clutter",
+        "matrix": "small" if small else "full",
+        "noise": noise,
+        "seed": seed,
+        "hidden": dict(machine.hidden),
+        "shapes": dict(machine.shapes),
+        "outside": dict(machine.outside),
+        "strong": names[0],
+        "oracle": oracle / noise,
+    }
     found = judged(matrix, machine.hidden, most=CRITERIA.selection.most)
     return row | found | said(found, names)
 

@@ -145,13 +145,19 @@ def trial(seed: int) -> dict[str, Any]:
     verdict = found.verdict
     grouped = {name for group in verdict.indistinguishable if len(group) <= 3 for name in group}
     named = of.hidden in {*verdict.effects, *grouped} and len(verdict.effects) == 1
-    return row | sure(found) | {
-        "model": fit.model, "structure": fit.model == "first_order", "effects": list(verdict.effects),
-        "groups": [list(group) for group in verdict.indistinguishable],
-        "right": named if of.hidden else not verdict.effects,
-        "errors": [found.ladder[0].error.get("verify"), found.ladder[-1].error.get("verify")],
-        "seconds": round(time.process_time() - begun, 1),
-    }  # fmt: skip
+    return (
+        row
+        | sure(found)
+        | {
+            "model": fit.model,
+            "structure": fit.model == "first_order",
+            "effects": list(verdict.effects),
+            "groups": [list(group) for group in verdict.indistinguishable],
+            "right": named if of.hidden else not verdict.effects,
+            "errors": [found.ladder[0].error.get("verify"), found.ladder[-1].error.get("verify")],
+            "seconds": round(time.process_time() - begun, 1),
+        }
+    )
 
 
 def main() -> None:

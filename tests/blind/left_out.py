@@ -60,9 +60,13 @@ class Secret:
         of = self.machine
         strengths = {f"{name}.{effect(name).strength.symbol}": value for name, value in of.hidden.items()}
         records = reference.measure_all(
-            reference.named({**of.shapes, **strengths}), of.trials if trials is None else trials, seconds=2.0,
-            noise=of.noise if noise is None else noise, seed=of.seed, plant=of.plant,
-        )  # fmt: skip
+            reference.named({**of.shapes, **strengths}),
+            of.trials if trials is None else trials,
+            seconds=2.0,
+            noise=of.noise if noise is None else noise,
+            seed=of.seed,
+            plant=of.plant,
+        )
         return matrix_of(records, of.plant)
 
 
@@ -106,9 +110,12 @@ def show(row: Row) -> None:
         print(f"{head}: unreachable, linear error {row['linear']:.2f}, itself {row['oracle']}", flush=True)
         return
     mark = "equivalent" if row["equivalent"] else "MISS" if row["told"] else "the rest of the catalogue does as well"
-    print(f"{head}: {mark}; {' '.join(row['named']) or '-'}; {' | '.join(row['found']) or 'nothing'}; "
-          f"listed {row['listed']:.2f}, verify {row['verify']:.2f}, off {row['off']:.2f} {row['off_new']:.2f}, "
-          f"{row['seconds']} s", flush=True)  # fmt: skip
+    print(
+        f"{head}: {mark}; {' '.join(row['named']) or '-'}; {' | '.join(row['found']) or 'nothing'}; "
+        f"listed {row['listed']:.2f}, verify {row['verify']:.2f}, off {row['off']:.2f} {row['off_new']:.2f}, "
+        f"{row['seconds']} s",
+        flush=True,
+    )
 
 
 def summary(found: Sequence[Row]) -> str:

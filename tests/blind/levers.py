@@ -91,9 +91,14 @@ class Levers:
         unit = {"motor": "rad/s", "arm": "rad"}.get(self.kind, "m")
         units = {"command": "1" if self.unknown else "V", output: "1" if self.unknown else unit}
         return Run(
-            use, "", self.rate, {"command": first + self.level, output: step * np.round(y / step)}, units,
-            output=output, use=use,
-        )  # fmt: skip
+            use,
+            "",
+            self.rate,
+            {"command": first + self.level, output: step * np.round(y / step)},
+            units,
+            output=output,
+            use=use,
+        )
 
     @cached_property
     def _parts(self) -> tuple[float, float, float, float, float, float]:

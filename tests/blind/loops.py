@@ -110,8 +110,14 @@ class Loop:
         rng = np.random.default_rng([175, self.seed, use == "verify"])
         y = self.clean + self.noise * self.clean.std() * rng.standard_normal(self.count)
         unit = "1" if self.unknown else "m"
-        return Run(use, "", self.rate, {"command": self._command(), "displacement": y},
-                   {"command": unit, "displacement": unit}, use=use)  # fmt: skip
+        return Run(
+            use,
+            "",
+            self.rate,
+            {"command": self._command(), "displacement": y},
+            {"command": unit, "displacement": unit},
+            use=use,
+        )
 
     def _command(self) -> Array:
         rng, n = np.random.default_rng([176, self.seed]), self.count

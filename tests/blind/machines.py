@@ -57,12 +57,17 @@ def matrix_of(records: list[linear.Record], plant: linear.Plant) -> Matrix:
     """Records of the reference as a matrix."""
     runs = tuple(
         Run(
-            r.trial.id, "", linear.SAMPLE_RATE, {"command": r.command, "displacement": r.displacement},
+            r.trial.id,
+            "",
+            linear.SAMPLE_RATE,
+            {"command": r.command, "displacement": r.displacement},
             specimen=Specimen(r.trial.cell.mass, r.trial.cell.stiffness, r.trial.cell.damping),
-            gain=r.trial.cell.gain, kind="blwn", use=r.trial.use,
+            gain=r.trial.cell.gain,
+            kind="blwn",
+            use=r.trial.use,
         )
         for r in records
-    )  # fmt: skip
+    )
     return Matrix(Actuator("BLIND-1", piston_area=plant.A), runs)
 
 

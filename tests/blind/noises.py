@@ -62,9 +62,14 @@ def _autoregressive(random: np.random.Generator, run: Run, size: float) -> Array
 
 
 NOISES: dict[str, Noise] = {
-    "low_passed": _low_passed, "hum": _hum, "rounded": _rounded, "drift": _drift, "pink": _pink, "white": _white,
+    "low_passed": _low_passed,
+    "hum": _hum,
+    "rounded": _rounded,
+    "drift": _drift,
+    "pink": _pink,
+    "white": _white,
     "autoregressive": _autoregressive,
-}  # fmt: skip
+}
 
 
 def with_noise(matrix: Matrix, kind: str, share: float, seed: int, repeats: int = 0, absolute: bool = False) -> Matrix:

@@ -34,9 +34,15 @@ TOLD = 1.5
 """Times the noise: above it an offset is the larger part of the residual, and has to stand in the headline."""
 BEFORE = 200  # samples in which a machine that moves already has been moving
 OF_MACHINES = (
-    ("motor", ""), ("motor", "quadratic_damping"), ("positioner", ""), ("mass", ""), ("mass", "cubic_stiffness"),
-    ("inertia", ""), ("arm", ""), ("specimen", ""),
-)  # fmt: skip
+    ("motor", ""),
+    ("motor", "quadratic_damping"),
+    ("positioner", ""),
+    ("mass", ""),
+    ("mass", "cubic_stiffness"),
+    ("inertia", ""),
+    ("arm", ""),
+    ("specimen", ""),
+)
 Array = np.ndarray
 Row = dict[str, Any]
 
@@ -62,14 +68,22 @@ class Off:
         kind, hidden = OF_MACHINES[rng.integers(len(OF_MACHINES))]
         free = kind in ("motor", "mass", "inertia", "arm")
         machine = replace(
-            Various.drawn(seed, hidden=False), kind=kind, hidden=hidden, unknown=False, level=0.0,
+            Various.drawn(seed, hidden=False),
+            kind=kind,
+            hidden=hidden,
+            unknown=False,
+            level=0.0,
             hold="band-limited" if kind == "specimen" else str(rng.choice(["zoh", "linear"])),
             noise=float(10 ** rng.uniform(-2.6, -1.3)),
-        )  # fmt: skip
+        )
         return cls(
-            machine, float(rng.uniform(-3.0, 3.0)), float(rng.choice([0.0, rng.uniform(0.3, 0.95)])),
-            None if rng.random() < 0.6 else False, bool(rng.integers(2)), tuple(free * rng.uniform(-0.5, 0.5, 3)),
-        )  # fmt: skip
+            machine,
+            float(rng.uniform(-3.0, 3.0)),
+            float(rng.choice([0.0, rng.uniform(0.3, 0.95)])),
+            None if rng.random() < 0.6 else False,
+            bool(rng.integers(2)),
+            tuple(free * rng.uniform(-0.5, 0.5, 3)),
+        )
 
     def measured(self) -> Matrix:
         """Two runs to fit and one to verify."""
@@ -98,9 +112,15 @@ class Off:
         channels = {moved: u, output: y + self.machine.noise * y.std() * noise}
         stated: dict[str, Any] = {} if self.machine.hold == "band-limited" else {"hold": self.machine.hold}
         (run,) = from_arrays(
-            channels, units={moved: of_command, output: of_output}, output=output, sample_rate=f"{RATE} Hz",
-            id=f"{use}-{number}", use=use, actuator={"serial": "OFF"}, **stated,
-        ).runs  # fmt: skip
+            channels,
+            units={moved: of_command, output: of_output},
+            output=output,
+            sample_rate=f"{RATE} Hz",
+            id=f"{use}-{number}",
+            use=use,
+            actuator={"serial": "OFF"},
+            **stated,
+        ).runs
         return run if self.zeroed is None else replace(run, zeroed={output: self.zeroed})
 
     @property
@@ -140,15 +160,22 @@ def trial(seed: int) -> Row:
         z["offset"] = (offset.value - off.offset * size) / offset.std_error
     place = of.kind == "positioner"  # it has no zero of its own
     return {
-        "seed": seed, "kind": of.kind, "hidden": of.hidden, "offset": off.offset, "noise": of.noise,
-        "colour": off.colour, "zeroed": off.zeroed, "moving": off.moving, "z": z,
+        "seed": seed,
+        "kind": of.kind,
+        "hidden": of.hidden,
+        "offset": off.offset,
+        "noise": of.noise,
+        "colour": off.colour,
+        "zeroed": off.zeroed,
+        "moving": off.moving,
+        "z": z,
         "large": not place and abs(off.offset) > TOLD * of.noise,
         "said": "offset of" in found.headline or "with the mean" in found.headline,
         "found": offset is not None,
         "errors": [found.error["verify"], found.error_with_mean["verify"]],
         "rmse": [found.rmse["verify"], of.noise * float(matrix.runs[2].measured.std())],
         "headline": found.headline,
-    }  # fmt: skip
+    }
 
 
 def scores(everything: Sequence[Row], offsets: bool) -> Array:

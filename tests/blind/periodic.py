@@ -36,22 +36,44 @@ WORTH = (1.3, 8.0)  # error that the base leaves, in floors
 
 MACHINES: dict[str, tuple[str, ...]] = {
     "specimen": (
-        "coulomb_friction", "presliding_friction", "stribeck_friction", "quadratic_damping", "cubic_stiffness",
-        "specimen_hysteresis", "specimen_free_play", "end_stop",
+        "coulomb_friction",
+        "presliding_friction",
+        "stribeck_friction",
+        "quadratic_damping",
+        "cubic_stiffness",
+        "specimen_hysteresis",
+        "specimen_free_play",
+        "end_stop",
     ),
     "motor": (
-        "dead_zone", "gain_asymmetry", "backlash", "coulomb_friction", "presliding_friction", "stribeck_friction",
+        "dead_zone",
+        "gain_asymmetry",
+        "backlash",
+        "coulomb_friction",
+        "presliding_friction",
+        "stribeck_friction",
         "quadratic_damping",
     ),
     "drive": (
-        "coulomb_friction", "presliding_friction", "stribeck_friction", "quadratic_damping", "cubic_stiffness",
+        "coulomb_friction",
+        "presliding_friction",
+        "stribeck_friction",
+        "quadratic_damping",
+        "cubic_stiffness",
         "end_stop",
     ),
     "loop": (
-        "dead_zone", "gain_asymmetry", "backlash", "coulomb_friction", "presliding_friction", "stribeck_friction",
-        "quadratic_damping", "cubic_stiffness", "end_stop",
+        "dead_zone",
+        "gain_asymmetry",
+        "backlash",
+        "coulomb_friction",
+        "presliding_friction",
+        "stribeck_friction",
+        "quadratic_damping",
+        "cubic_stiffness",
+        "end_stop",
     ),
-}  # fmt: skip
+}
 """What may be hidden in each machine; hysteresis and free play are those of a specimen."""
 SPEED_OUT = "motor"  # the machine of which the speed is recorded
 LOOP = "machine:controller=p,load=mass_spring_damper,sensor=displacement"
@@ -249,9 +271,15 @@ def commanded(wave: Wave, phase: Array) -> Array:
 # -------------------------------------------------------------------------------------------- the force of a specimen
 
 STRENGTHS = {
-    "coulomb_friction": "Fc", "stribeck_friction": "dF", "presliding_friction": "Fd", "quadratic_damping": "c2",
-    "cubic_stiffness": "k3", "specimen_hysteresis": "fy", "position_friction": "Fx", "end_stop": "ks",
-}  # fmt: skip
+    "coulomb_friction": "Fc",
+    "stribeck_friction": "dF",
+    "presliding_friction": "Fd",
+    "quadratic_damping": "c2",
+    "cubic_stiffness": "k3",
+    "specimen_hysteresis": "fy",
+    "position_friction": "Fx",
+    "end_stop": "ks",
+}
 """In what a specimen's force is linear; the way to a stop, the inverse of the catalogue's strength, is a shape here."""
 
 

@@ -40,9 +40,7 @@ CANDIDATES: dict[str, Candidate] = {
     "integral_action": Candidate("Ki", "1/period", (0.2, 2.0)),
     "lead": Candidate("Td", "period", (0.01,), upper=1.0),
     "loop_delay": Candidate("T", "period", (0.01,), upper=0.2),
-    "valve_second_order": Candidate(
-        "Tn", "period", (0.01, 0.05), (Shape("zeta", "1", (0.7,), 0.1, 3.0),), upper=0.5
-    ),
+    "valve_second_order": Candidate("Tn", "period", (0.01, 0.05), (Shape("zeta", "1", (0.7,), 0.1, 3.0),), upper=0.5),
     "backlash": Candidate("b", "drive", (0.01, 0.05, 0.2), upper=0.9),
     "dead_zone": Candidate("h", "drive", (0.02, 0.08, 0.3), (Shape("a", "1", (0.0,), -1.0, 1.0, False),), upper=0.9),
     "underlap": Candidate("h", "drive", (0.02, 0.08, 0.3), upper=1.0),
@@ -62,30 +60,50 @@ CANDIDATES: dict[str, Candidate] = {
     "sensor_gain": Candidate("g", "1", (0.01,), upper=0.9, both=True),
     "position_friction": Candidate("Fx", "force/way^2", _FRICTION),
     "end_stop": Candidate(
-        "ks", "force/way", (1.0, 10.0),
+        "ks",
+        "force/way",
+        (1.0, 10.0),
         (Shape("way", "way", (0.7, 0.85, 0.95), 0.2, 1.2), Shape("xm", "way", (0.0,), -0.3, 0.3, False)),
     ),
     "sensor_nonlinearity": Candidate("s", "1/way^2", (0.05,), both=True),
-}  # fmt: skip
+}
 """The catalogue at a driven mass; stops are begun where they would cut the motion that the base makes."""
 
 _OF_LOAD = (
-    "coulomb_friction", "stribeck_friction", "presliding_friction", "quadratic_damping", "cubic_stiffness",
-    "position_friction", "end_stop",
-)  # fmt: skip
+    "coulomb_friction",
+    "stribeck_friction",
+    "presliding_friction",
+    "quadratic_damping",
+    "cubic_stiffness",
+    "position_friction",
+    "end_stop",
+)
 _OF_DRIVE = (
-    "command_delay", "command_limit", "valve_second_order", "backlash", "dead_zone", "underlap", "gain_asymmetry",
+    "command_delay",
+    "command_limit",
+    "valve_second_order",
+    "backlash",
+    "dead_zone",
+    "underlap",
+    "gain_asymmetry",
     "flow_saturation",
-)  # fmt: skip
+)
 APPLICABLE: dict[str, tuple[str, ...]] = {
     "specimen": (*_OF_LOAD, "specimen_hysteresis", "specimen_free_play"),
     "motor": (*_OF_DRIVE, *_OF_LOAD),
     "drive": ("command_delay", *_OF_LOAD, "sensor_lag", "acquisition_lag", "sensor_nonlinearity"),
     "loop": (
-        *_OF_DRIVE, *_OF_LOAD, "integral_action", "lead", "loop_delay", "sensor_lag", "acquisition_lag", "sensor_gain",
+        *_OF_DRIVE,
+        *_OF_LOAD,
+        "integral_action",
+        "lead",
+        "loop_delay",
+        "sensor_lag",
+        "acquisition_lag",
+        "sensor_gain",
         "sensor_nonlinearity",
     ),
-}  # fmt: skip
+}
 """What is fitted at each machine; what the catalogue has beyond it changes nothing but gain and offset there."""
 FREE = {"motor": ("Kt", "c"), "drive": ("m", "c", "k"), "loop": ("Kt", "c")}
 """The base's parameters of a driven mass; without a force in the records one of them is a scale of all."""

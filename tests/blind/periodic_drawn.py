@@ -33,9 +33,20 @@ def drawn(seed: int, hidden: bool) -> Test:
         if kind == "steps":
             wave = Wave(kind, moving, min(corner, 0.22 - moving), CREEP)
     amplitude = {"motor": 10 ** rng.uniform(-0.5, 1), "drive": 10 ** rng.uniform(0, 2.5)}.get(machine, amplitude)
-    test = Test(seed, machine, wave, float(samples), periods, float(frequency), float(amplitude),
-                str(rng.choice(["displacement", "velocity"])), begins, float(rng.uniform()), noise,
-                _law(rng, machine, frequency, amplitude))  # fmt: skip
+    test = Test(
+        seed,
+        machine,
+        wave,
+        float(samples),
+        periods,
+        float(frequency),
+        float(amplitude),
+        str(rng.choice(["displacement", "velocity"])),
+        begins,
+        float(rng.uniform()),
+        noise,
+        _law(rng, machine, frequency, amplitude),
+    )
     if not hidden:
         return test
     name = str(rng.choice(MACHINES[machine]))
@@ -80,10 +91,18 @@ def _shapes(rng: np.random.Generator, name: str) -> dict[str, float]:
 
 
 _MOST: dict[str, float] = {
-    "coulomb_friction": 0.6, "presliding_friction": 0.6, "stribeck_friction": 0.6, "quadratic_damping": 3.0,
-    "cubic_stiffness": 2.0, "specimen_hysteresis": 1.0, "specimen_free_play": 0.6, "end_stop": 30.0, "dead_zone": 0.6,
-    "gain_asymmetry": 0.5, "backlash": 0.6,
-}  # fmt: skip
+    "coulomb_friction": 0.6,
+    "presliding_friction": 0.6,
+    "stribeck_friction": 0.6,
+    "quadratic_damping": 3.0,
+    "cubic_stiffness": 2.0,
+    "specimen_hysteresis": 1.0,
+    "specimen_free_play": 0.6,
+    "end_stop": 30.0,
+    "dead_zone": 0.6,
+    "gain_asymmetry": 0.5,
+    "backlash": 0.6,
+}
 """The largest strength, in its scale: a machine that does not move tells nothing."""
 _CLOSE = 0.1  # of the wanted excess
 _TRIES = 8
@@ -120,9 +139,13 @@ def _sizes(test: Test) -> dict[str, float]:
     law = test.law
     force = law.c * v + law.k * x + law.m * a
     return {
-        "way": x, "speed": v, "force": force, "force/way": force / x, "force/way^3": force / x**3,
+        "way": x,
+        "speed": v,
+        "force": force,
+        "force/way": force / x,
+        "force/way^3": force / x**3,
         "force/speed^2": force / v**2,
-    }  # fmt: skip
+    }
 
 
 def hiding(test: Test, strength: float, scales: Mapping[str, float]) -> Test:

@@ -83,8 +83,10 @@ class Driven:
     def scales(self) -> dict[str, float]:
         """The sizes of what the base does: signals of its motion, by the unit of a parameter."""
         law = self.base[1]
-        x, v = (driven(law, self.command, self.test.rate, self.test.hold, self.substeps, name)[self.test.before :]
-                for name in ("displacement", "velocity"))  # fmt: skip
+        x, v = (
+            driven(law, self.command, self.test.rate, self.test.hold, self.substeps, name)[self.test.before :]
+            for name in ("displacement", "velocity")
+        )
         drive = self.command[self.test.before :]
         if law.Kp:
             drive = law.Kp * (drive - x)
@@ -121,10 +123,16 @@ class Driven:
     def _fit_from(self, law: Law, named: Sequence[str], how: Candidate, most: int = _EVALUATIONS) -> tuple[float, Law]:
         lowest = 1.0 / (self.test.rate * self.substeps)  # a lag shorter than a step is none
         strength = _Axis(
-            named[0], self.scales[how.scale], False,
-            -how.upper if how.both else lowest / self.scales[how.scale] if named[0].endswith(("_T", "_Tn"))
-            and not named[0].endswith("delay_T") else 0.0, how.upper,
-        )  # fmt: skip
+            named[0],
+            self.scales[how.scale],
+            False,
+            -how.upper
+            if how.both
+            else lowest / self.scales[how.scale]
+            if named[0].endswith(("_T", "_Tn")) and not named[0].endswith("delay_T")
+            else 0.0,
+            how.upper,
+        )
         axes = [
             _Axis(one, self.scales[s.scale], s.logarithmic, s.lower, s.upper)
             for one, s in zip(named[1:], how.shapes, strict=True)
@@ -143,9 +151,15 @@ class Driven:
             return law._replace(**{axis.name: axis.value(p) for axis, p in zip(every, point, strict=True)})
 
         found = least_squares(
-            lambda point: self.residual(law_of(point)), start, bounds=(lower, upper), x_scale="jac",
-            max_nfev=most, ftol=1e-4, xtol=1e-7, diff_step=1e-5,
-        )  # fmt: skip
+            lambda point: self.residual(law_of(point)),
+            start,
+            bounds=(lower, upper),
+            x_scale="jac",
+            max_nfev=most,
+            ftol=1e-4,
+            xtol=1e-7,
+            diff_step=1e-5,
+        )
         return float(2 * found.cost), law_of(found.x)
 
 

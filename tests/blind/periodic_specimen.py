@@ -61,9 +61,12 @@ class Specimen:
         best = refined[0][0]
         for _, shape in refined[:3] if len(refined[0][1]) else ():
             if best > enough:
-                found = minimize(lambda p: self._with(name, p), shape, method="Nelder-Mead",
-                                 options={"maxfev": 120, "xatol": 1e-4, "fatol": 0.1,
-                                          "initial_simplex": _simplex(shape)})  # fmt: skip
+                found = minimize(
+                    lambda p: self._with(name, p),
+                    shape,
+                    method="Nelder-Mead",
+                    options={"maxfev": 120, "xatol": 1e-4, "fatol": 0.1, "initial_simplex": _simplex(shape)},
+                )
                 best = min(best, float(found.fun))
         return best
 
@@ -90,7 +93,7 @@ class Specimen:
             "presliding_friction": (law.presliding_friction_xs / x,),
             "specimen_hysteresis": (law.specimen_hysteresis_xy / x, law.specimen_hysteresis_n),
             "specimen_free_play": (self.test.free_play / x,),
-        }  # fmt: skip
+        }
         if self.test.hidden == "end_stop":
             return np.array([np.log(law.end_stop_way / x), 0.0])
         return np.log(shape.get(self.test.hidden, ()))
@@ -111,10 +114,11 @@ class Specimen:
             return np.inf
         values = [float(np.exp(p)) for p in shape]
         of = {
-            "stribeck_friction": lambda: {"vs": values[0] * v}, "presliding_friction": lambda: {"xs": values[0] * x},
+            "stribeck_friction": lambda: {"vs": values[0] * v},
+            "presliding_friction": lambda: {"xs": values[0] * x},
             "specimen_hysteresis": lambda: {"xy": values[0] * x, "n": max(values[1], 1.0)},
             "end_stop": lambda: {"way": values[0] * x, "xm": float(shape[1]) * x},
-        }.get(name, dict)()  # fmt: skip
+        }.get(name, dict)()
         return self._left(self._base(self.path.x), specimen_term(name, of, self.path), name == "cubic_stiffness")
 
     def _base(self, stretch: Array) -> list[Array]:

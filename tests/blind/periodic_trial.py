@@ -28,8 +28,12 @@ from tests.blind.table import PERIODIC, periodic
 
 _FLOOR = 1.05  # floors that a refit leaves, and is at the floor
 _OTHER = 2.0  # times the true shape, or its inverse: the shape of a refit that did not find it
-_NAMES = {"end_stop": "stiffness", "presliding_friction": "displacement", "stribeck_friction": "speed",
-          "specimen_hysteresis": "yield_displacement"}  # fmt: skip
+_NAMES = {
+    "end_stop": "stiffness",
+    "presliding_friction": "displacement",
+    "stribeck_friction": "speed",
+    "specimen_hysteresis": "yield_displacement",
+}
 _SHAPES = {"presliding_friction": "xs", "stribeck_friction": "vs", "specimen_hysteresis": "xy"}
 
 Row = dict[str, Any]
@@ -80,17 +84,22 @@ def said(test: Test, decided: Allowed, found: Diagnosis) -> Row:
     named, groups = found.verdict.effects, found.verdict.indistinguishable
     floors = {
         one.effect: round((one.error.get("fit") or 0.0) / test.noise, 3)
-        for one in found.candidates if one.error.get("fit") is not None
-    }  # fmt: skip
+        for one in found.candidates
+        if one.error.get("fit") is not None
+    }
     row: Row = {
-        "named": list(named), "groups": [list(group) for group in groups], "standing": found.verdict.standing,
-        "unexplained": found.verdict.unexplained, "complete": found.complete, "candidates": floors,
+        "named": list(named),
+        "groups": [list(group) for group in groups],
+        "standing": found.verdict.standing,
+        "unexplained": found.verdict.unexplained,
+        "complete": found.complete,
+        "candidates": floors,
         "errors": {use: round((found.ladder[-1].error.get(use) or 0.0) / test.noise, 3) for use in ("fit", "verify")},
         "floor": round((found.noise_floor["fit"] or 0.0) / test.noise, 3),
         "linear": round((found.ladder[0].error.get("fit") or 0.0) / test.noise, 3),
         "right": right(named, groups, test.hidden, decided.names, decided.counts),
         **sure(found),
-    }  # fmt: skip
+    }
     return row | {"why": "" if row["right"] else why(test, decided, found, row)}
 
 

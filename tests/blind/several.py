@@ -82,9 +82,16 @@ class Several:
         shown = [name for name in EFFECTS[kind] if not (command == "two levels" and name in STATIC)]
         hidden = rng.choice(shown, min(int(rng.integers(1, 3)), len(shown)), replace=False)
         return cls(
-            seed, kind, tuple(map(str, hidden)), command, rng.uniform(10, 40), rng.uniform(0.5, 1.0),
-            10 ** rng.uniform(1.5, 3.0), 10 ** rng.uniform(-2.7, -1.7), str(rng.choice(["V", "1", "%"])),
-        )  # fmt: skip
+            seed,
+            kind,
+            tuple(map(str, hidden)),
+            command,
+            rng.uniform(10, 40),
+            rng.uniform(0.5, 1.0),
+            10 ** rng.uniform(1.5, 3.0),
+            10 ** rng.uniform(-2.7, -1.7),
+            str(rng.choice(["V", "1", "%"])),
+        )
 
     @property
     def truth(self) -> tuple[str, ...]:

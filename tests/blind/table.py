@@ -26,10 +26,14 @@ Row = dict[str, Any]
 GOALS = {"one full": 97, "one small": 90, "none full": 98, "none small": 98, "two full": 92, "two small": 92,
          "three full": 80, "three small": 80, "outside full": 90, "own full": 100, "label full": 95}  # fmt: skip
 _WORDS = {
-    "one": "one effect hidden", "none": "nothing hidden", "two": "two effects", "three": "three effects",
-    "outside": "an effect that is not listed", "own": "the same, written as an equation",
+    "one": "one effect hidden",
+    "none": "nothing hidden",
+    "two": "two effects",
+    "three": "three effects",
+    "outside": "an effect that is not listed",
+    "own": "the same, written as an equation",
     "label": "a wrong label on one run",
-}  # fmt: skip
+}
 
 
 def rate(found: Sequence[Row]) -> str:
@@ -52,8 +56,13 @@ def summary(tried: Sequence[Row]) -> Iterable[str]:
         found = [row for row in tried if row["kind"] == kind and row["matrix"] == matrix]
         if found:
             groups = np.mean([np.mean([len(group) for group in row["groups"]] or [1]) for row in found])
-            misses = [abs(row["strengths"][n] / value - 1) for row in found if row["kind"] not in ("outside", "label")
-                      for n, value in row["hidden"].items() if n in row["strengths"]]  # fmt: skip
+            misses = [
+                abs(row["strengths"][n] / value - 1)
+                for row in found
+                if row["kind"] not in ("outside", "label")
+                for n, value in row["hidden"].items()
+                if n in row["strengths"]
+            ]
             strength = f"{100 * np.median(misses):.2f}" if misses else "–"
             verify = [row["verify"] for row in found]
             ends = f"{np.median(verify):.3f} | {100 * np.mean(np.array(verify) <= 1.05):.1f}"
@@ -176,15 +185,18 @@ def page(everything: Sequence[Row]) -> str:
     """The whole page."""
     tried = [row for row in everything if row.get("reachable", True) and not row.get("void")]
     parts: list[tuple[str, Callable[[Sequence[Row]], Iterable[str]], Sequence[Row]]] = [
-        ("Fresh seeds of every kind", fresh, rows(FRESH)), ("Rates", summary, tried),
+        ("Fresh seeds of every kind", fresh, rows(FRESH)),
+        ("Rates", summary, tried),
         ("One effect, by noise and size", levels, tried),
-        ("Noise of other kinds", noises, tried), ("One strong effect among weak ones", cluttered, tried),
+        ("Noise of other kinds", noises, tried),
+        ("One strong effect among weak ones", cluttered, tried),
         ("What was named", confusion, tried),
-        ("Unreachable", unreachable, everything), ("Machines that nobody described", labs, rows(LABS)),
+        ("Unreachable", unreachable, everything),
+        ("Machines that nobody described", labs, rows(LABS)),
         ("Periodic tests", periodic, rows(PERIODIC)),
         ("Machines of many kinds, missing inputs and oscillations", rates, rows(VARIOUS)),
         ("What follows like a lag", lag_rates, rows(LAGS)),
-    ]  # fmt: skip
+    ]
     head = (
         "# Blind trials\n\nWritten by `python -m tests.blind.table` from blind-trials.jsonl. Data come from the "
         "independent reference with parameters drawn anew for each trial; the seed of each stands in its row. `named`: "

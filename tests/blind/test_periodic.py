@@ -23,12 +23,18 @@ _OF_SPECIMEN = ("specimen_hysteresis", "specimen_free_play", "specimen_joint")
 UNTOLD = {
     "specimen": ("static_load",),
     "motor": (
-        "null_bias", "static_load", *_OF_SPECIMEN, "frame_compliance", "sensor_lag", "acquisition_lag", "sensor_gain",
+        "null_bias",
+        "static_load",
+        *_OF_SPECIMEN,
+        "frame_compliance",
+        "sensor_lag",
+        "acquisition_lag",
+        "sensor_gain",
         "sensor_nonlinearity",
     ),
     "drive": ("static_load", *_OF_SPECIMEN, "frame_compliance", "sensor_gain"),
     "loop": ("null_bias", "static_load", *_OF_SPECIMEN),
-}  # fmt: skip
+}
 """What no test can show: offsets, a gain that is free, a specimen where none is, a position that is not recorded."""
 
 
@@ -142,8 +148,10 @@ def test_the_whole_catalogue_leaves_a_class_of_three_for_strong_dry_friction(ful
     if not full:
         pytest.skip("a second: run with --full")
     assert allowed(with_effect(damper(), coulomb_friction_Fc=25.0)).names == (
-        "coulomb_friction", "presliding_friction", "specimen_hysteresis",
-    )  # fmt: skip
+        "coulomb_friction",
+        "presliding_friction",
+        "specimen_hysteresis",
+    )
 
 
 def test_a_class_of_more_than_three_is_dropped():
@@ -194,8 +202,11 @@ def test_the_table_counts_each_kind_and_what_was_dropped():
         "samples": 50.0, "periods": 7, "noise": 0.01, "class": ["backlash"], "named": ["lead"], "why": "not converged",
     }  # fmt: skip
     nothing = row | {"kind": "nothing", "counts": "nothing", "hidden": ""}
-    text = "\n".join(periodic([row | {"right": True}, row | {"right": False}, row | {"counts": "dropped"},
-                            nothing | {"right": True}]))  # fmt: skip
+    text = "\n".join(
+        periodic(
+            [row | {"right": True}, row | {"right": False}, row | {"counts": "dropped"}, nothing | {"right": True}]
+        )
+    )
     assert "| hidden | all | 1 of 2 | 50.0 (1-99) | 95 |" in text
     assert "| nothing | all | 1 of 1 | 100.0 (2-100) | 97 |" in text
     assert "50 samples a period, 7 periods, 1 % noise: backlash hidden, the test allows backlash; named lead" in text

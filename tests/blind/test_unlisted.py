@@ -36,9 +36,14 @@ def test_an_equation_as_a_user_writes_it_is_that_of_the_reference(name):
 def test_a_trial_says_what_was_found_and_whether_it_is_the_truth():
     hidden = Hidden(NAMES.index("square_leakage"), 0.2)
     row = {
-        "kind": KIND[hidden.name], "effect": hidden.name, "seed": 1, "level": 3.0, "matrix": "small",
-        "catalogue": False, "reachable": True,
-    } | outcome(Secret(PLANT, hidden, 0.005, 1), catalogue=False)  # fmt: skip
+        "kind": KIND[hidden.name],
+        "effect": hidden.name,
+        "seed": 1,
+        "level": 3.0,
+        "matrix": "small",
+        "catalogue": False,
+        "reachable": True,
+    } | outcome(Secret(PLANT, hidden, 0.005, 1), catalogue=False)
     assert row["found"] == ["Q = Q + s * (P * abs(P))"]
     assert row["accepted"]
     assert row["right"]

@@ -25,7 +25,7 @@ from tests.blind.machines import (
     matrix_of,
     offset_strength,
     strength_for,
-)  # fmt: skip
+)
 from tests.blind.noises import NOISES, with_noise
 from tests.blind.sure import sure
 from tests.blind.written import written
@@ -46,10 +46,15 @@ def single(name: str, level: float, noise: float, small: bool, seed: int) -> dic
     else:
         strength, reached = strength_for(machine, name, level, sign)
     row: dict[str, Any] = {
-        "kind": "one", "matrix": "small" if small else "full", "noise": noise, "level": level, "seed": seed,
-        "hidden": {name: strength}, "linear_error": reached,
+        "kind": "one",
+        "matrix": "small" if small else "full",
+        "noise": noise,
+        "level": level,
+        "seed": seed,
+        "hidden": {name: strength},
+        "linear_error": reached,
         "reachable": name in OFFSET or reached >= _REACHED * level * noise,
-    }  # fmt: skip
+    }
     if not row["reachable"]:
         return row
     shapes = {"shapes": dict(machine.shapes)} if machine.shapes else {}
@@ -72,8 +77,12 @@ def several(count: int, seed: int, noise: float = 0.01, small: bool = False) -> 
             shapes |= drawn
     kinds = {0: "none", 1: "one", 2: "two", 3: "three"}
     row: dict[str, Any] = {
-        "kind": kinds[count], "matrix": "small" if small else "full", "noise": noise, "seed": seed, "hidden": hidden,
-    }  # fmt: skip
+        "kind": kinds[count],
+        "matrix": "small" if small else "full",
+        "noise": noise,
+        "seed": seed,
+        "hidden": hidden,
+    }
     return row | ({"shapes": shapes} if shapes else {}) | outcome(Machine(plant, hidden, noise, small, start, shapes))
 
 
@@ -171,16 +180,22 @@ def judged(
     last = found.ladder[-1]
     floor = found.noise_floor
     return {
-        "error": fit.error["fit"], "floor": floor["fit"], "found": list(found.verdict.effects),
+        "error": fit.error["fit"],
+        "floor": floor["fit"],
+        "found": list(found.verdict.effects),
         "groups": [list(group) for group in found.verdict.indistinguishable],
-        "first": [c.effect for c in found.candidates[:3]], "first_group": list(found.candidates[0].group),
+        "first": [c.effect for c in found.candidates[:3]],
+        "first_group": list(found.candidates[0].group),
         "strengths": {name: _strength(found, name) for name in found.verdict.effects},
-        "after": last.error["fit"], "verify": (last.error["verify"] or 0) / (floor["verify"] or 1),
-        "unexplained": found.verdict.unexplained, "proposed": [one.equation for one in found.proposals or ()],
+        "after": last.error["fit"],
+        "verify": (last.error["verify"] or 0) / (floor["verify"] or 1),
+        "unexplained": found.verdict.unexplained,
+        "proposed": [one.equation for one in found.proposals or ()],
         "suspects": [[s.run, s.what] for s in found.verdict.suspects],
-        "named": named(found, set(hidden)), "seconds": round(time.perf_counter() - begun, 1),
+        "named": named(found, set(hidden)),
+        "seconds": round(time.perf_counter() - begun, 1),
         **sure(found),
-    }  # fmt: skip
+    }
 
 
 def _strength(found: Diagnosis, name: str) -> float:

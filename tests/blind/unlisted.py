@@ -47,9 +47,16 @@ def trial(name: str, seed: int, level: float, full: bool = False, catalogue: boo
     """What the search makes of one hidden effect."""
     machine, error = secret(name, seed, level, full)
     row: Row = {
-        "kind": KIND[name], "effect": name, "seed": seed, "level": level, "matrix": "full" if full else "small",
-        "catalogue": catalogue, "hidden": machine.hidden[1:], "noise": machine.noise, "linear": error,
-    }  # fmt: skip
+        "kind": KIND[name],
+        "effect": name,
+        "seed": seed,
+        "level": level,
+        "matrix": "full" if full else "small",
+        "catalogue": catalogue,
+        "hidden": machine.hidden[1:],
+        "noise": machine.noise,
+        "linear": error,
+    }
     oracle = machine.oracle() if error >= _LEAST * level else None
     row["oracle"] = (oracle.error["fit"] or 0.0) / machine.noise if oracle else None
     row["reachable"] = row["oracle"] is not None and row["oracle"] <= _POSSIBLE
@@ -88,11 +95,19 @@ def outcome(machine: Hiding, catalogue: bool, true: tuple[Mapping[str, Any], Map
     new = [t for t in _NEW if not runs_away(machine.measured([t], 0.0))] or machine.trials  # within the stroke
     off = [_off(found, machine.measured(trials, 0.0), machine.noise) for trials in (machine.trials, new)]
     return {
-        "named": list(found.verdict.effects), "listed": (listed.error["verify"] or 0.0) / machine.noise,
-        "found": [one.equation for one in proposed], "shapes": shapes, **errors, "accepted": accepted,
-        "off": off[0], "off_new": off[1], "right": off[0] <= RIGHT and off[1] <= RIGHT_NEW,
-        "notes": list(found.notes), "seconds": seconds, **sure(found),
-    } | ({"law_off": characteristic.off(matrix, MODEL, true, found)} if true else {})  # fmt: skip
+        "named": list(found.verdict.effects),
+        "listed": (listed.error["verify"] or 0.0) / machine.noise,
+        "found": [one.equation for one in proposed],
+        "shapes": shapes,
+        **errors,
+        "accepted": accepted,
+        "off": off[0],
+        "off_new": off[1],
+        "right": off[0] <= RIGHT and off[1] <= RIGHT_NEW,
+        "notes": list(found.notes),
+        "seconds": seconds,
+        **sure(found),
+    } | ({"law_off": characteristic.off(matrix, MODEL, true, found)} if true else {})
 
 
 def _off(found: Diagnosis, clean: Matrix, noise: float) -> float:
@@ -112,9 +127,11 @@ def show(row: Row) -> None:
         print(f"{head}: unreachable, linear error {row['linear']:.2f}, true equation {row['oracle']}", flush=True)
         return
     mark = " ".join(word for word in ("accepted", "right") if row[word]) or "MISS"
-    print(f"{head}: {mark}; {' | '.join(row['found']) or 'nothing'}; verify {row['verify']:.2f}, "
-          f"off {row['off']:.2f} {row['off_new']:.2f}, law {100 * row['law_off']:.2g} %, {row['seconds']} s",
-          flush=True)  # fmt: skip
+    print(
+        f"{head}: {mark}; {' | '.join(row['found']) or 'nothing'}; verify {row['verify']:.2f}, "
+        f"off {row['off']:.2f} {row['off_new']:.2f}, law {100 * row['law_off']:.2g} %, {row['seconds']} s",
+        flush=True,
+    )
 
 
 def table(found: Sequence[Row]) -> Iterable[str]:

@@ -56,10 +56,12 @@ def written(hidden: Hidden) -> dict[str, Any]:
     numbers = {**_SIZES, "a": repr(hidden.a), "b": repr(hidden.b)}
     lines = [re.sub(r"[A-Za-z_]\w*", lambda m: f"{numbers.get(m[0], m[0])}", text) for text in _EQUATIONS[hidden.name]]
     return {
-        "name": f"true_{hidden.name}", "place": _PLACES[lines[-1].split(" = ")[0]], "equation": lines,
+        "name": f"true_{hidden.name}",
+        "place": _PLACES[lines[-1].split(" = ")[0]],
+        "equation": lines,
         "strength": {"symbol": "s", "unit": "1", "lower": min(0.0, 4 * hidden.s), "upper": max(0.0, 4 * hidden.s)},
         "meaning": f"{hidden.name}, written down",
-    }  # fmt: skip
+    }
 
 
 @dataclass(frozen=True)
@@ -82,9 +84,13 @@ class Secret:
     def measured(self, trials: Sequence[linear.Trial] | None = None, noise: float | None = None) -> Matrix:
         """Its test matrix, or other runs, from the reference."""
         records = measure_all(
-            self.hidden, self.trials if trials is None else trials, self.plant, seconds=2.0 if self.full else 1.0,
-            noise=self.noise if noise is None else noise, seed=self.seed,
-        )  # fmt: skip
+            self.hidden,
+            self.trials if trials is None else trials,
+            self.plant,
+            seconds=2.0 if self.full else 1.0,
+            noise=self.noise if noise is None else noise,
+            seed=self.seed,
+        )
         return matrix_of(records, self.plant)
 
     def linear_error(self) -> float:

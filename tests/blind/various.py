@@ -37,7 +37,7 @@ KINDS: dict[str, tuple[str, str, str, str, tuple[str, ...]]] = {
     "counter": ("V", "velocity", "rad/s", "motor", ("rectified_sensor",)),
     "coupled": ("V", "velocity", "rad/s", "motor", ("elastic_load", "elastic_coupling")),
     "arm": ("N*m", "displacement", "rad", "drive", ("arm_gravity", "coulomb_friction")),
-}  # fmt: skip
+}
 """Of each machine the unit of its command, its output and the unit of that, its model, and what may be hidden."""
 
 
@@ -71,11 +71,18 @@ class Various:
         hold = str(rng.choice(["zoh", "linear", "band-limited"]))
         free = kind in ("motor", "mass", "inertia", "coupled")
         return cls(
-            seed, kind, what, rng.uniform(0.4, 0.9), rng.uniform(0.08, 0.25), rng.uniform(0.1, 0.6),
-            "band-limited" if kind == "specimen" else hold, bool(rng.integers(3) == 0), 10 ** rng.uniform(-2.6, -1.9),
+            seed,
+            kind,
+            what,
+            rng.uniform(0.4, 0.9),
+            rng.uniform(0.08, 0.25),
+            rng.uniform(0.1, 0.6),
+            "band-limited" if kind == "specimen" else hold,
+            bool(rng.integers(3) == 0),
+            10 ** rng.uniform(-2.6, -1.9),
             float(rng.uniform(-1, 1) * (rng.random() < 0.5) * (kind not in ("counter", "tanks"))),
             float(rng.uniform(-1, 1) * (rng.random() < 0.3) * free),
-        )  # fmt: skip
+        )
 
     def measured(self, noisy: bool = True) -> Matrix:
         """Two runs to fit and one to verify."""
@@ -95,9 +102,15 @@ class Various:
         units = {moved: "1", output: "1"} if self.unknown else {moved: of_command, output: of_output}
         stated: dict[str, Any] = {} if self.hold == "band-limited" else {"hold": self.hold}
         (run,) = from_arrays(
-            {moved: u, output: y}, units=units, output=output, sample_rate=f"{RATE} Hz", id=f"{use}-{number}", use=use,
-            actuator={"serial": f"V-{self.seed}"}, **stated,
-        ).runs  # fmt: skip
+            {moved: u, output: y},
+            units=units,
+            output=output,
+            sample_rate=f"{RATE} Hz",
+            id=f"{use}-{number}",
+            use=use,
+            actuator={"serial": f"V-{self.seed}"},
+            **stated,
+        ).runs
         return run
 
     def command(self, rng: np.random.Generator) -> Array:
@@ -126,8 +139,10 @@ class Various:
         inner = np.arange(len(fine)) / _FINE
 
         def slope(t: float, s: Array) -> tuple[float, ...]:
-            return rates(tuple(s), float(fine[min(int(t * _FINE), len(fine) - 1)] if self.hold == "zoh"
-                                         else np.interp(t, inner, fine)))  # fmt: skip
+            return rates(
+                tuple(s),
+                float(fine[min(int(t * _FINE), len(fine) - 1)] if self.hold == "zoh" else np.interp(t, inner, fine)),
+            )
 
         at = np.arange(len(u), dtype=float)
         found = odeint(slope, start, at, tfirst=True, hmax=0.5, rtol=1e-8, atol=1e-9, tcrit=at[1:-1], mxstep=5000)
@@ -268,6 +283,12 @@ def _pressed(of: Various, x: Array) -> Array:
 
 
 _MACHINES: dict[str, Callable[[Various], Parts]] = {
-    "motor": _motor, "positioner": _positioner, "mass": _mass, "inertia": _inertia, "tanks": _tanks,
-    "counter": _motor, "coupled": _coupled, "arm": _arm,
-}  # fmt: skip
+    "motor": _motor,
+    "positioner": _positioner,
+    "mass": _mass,
+    "inertia": _inertia,
+    "tanks": _tanks,
+    "counter": _motor,
+    "coupled": _coupled,
+    "arm": _arm,
+}

@@ -26,16 +26,22 @@ def rates(everything: Sequence[Row]) -> Iterable[str]:
     for what, goal, right in (
         ("the structure", "90", [row["structure"] for row in machines]),
         ("the hidden effect named", "90", [row["named"] for row in machines if row["hidden"]]),
-        (f"the same after seed {CREPT}", "90",
-         [row["named"] for row in machines if row["hidden"] and row["seed"] > CREPT]),
+        (
+            f"the same after seed {CREPT}",
+            "90",
+            [row["named"] for row in machines if row["hidden"] and row["seed"] > CREPT],
+        ),
         ("nothing named where nothing is hidden", "97", [row["named"] for row in machines if not row["hidden"]]),
         ("a missing input said", "95", [row["named"] for row in shown if row["hidden"] == FAULTS[0]]),
         ("a missing input said wrongly", "at most 2", [row["missing"] for row in machines]),
-        ("an oscillation said, its frequency within 2 %", "–",
-         [row["named"] for row in shown if row["hidden"] == FAULTS[1]]),
+        (
+            "an oscillation said, its frequency within 2 %",
+            "–",
+            [row["named"] for row in shown if row["hidden"] == FAULTS[1]],
+        ),
         ("an oscillation said wrongly", "–", [row["swings"] for row in machines]),
         ("failed", "0", ["failed" in row for row in shown]),
-    ):  # fmt: skip
+    ):
         if right:
             yield rate_line(what, sum(right), len(right), goal)
     yield f"\nOf {len(tried)} trials {len(tried) - len(shown)} were dropped: their records do not show it."
@@ -60,14 +66,22 @@ def _checks(row: Row) -> Iterable[str]:
     for what, of, said, goal in (
         ("an input that is missing", "lacks an input", "said", "95"),
         ("an input that is missing, said wrongly", "lacks none", "said", "at most 2"),
-        ("an oscillation under a command at rest, steps or a slow sine, its frequency within 2 %", "oscillates",
-         "within 2 %", "–"),
+        (
+            "an oscillation under a command at rest, steps or a slow sine, its frequency within 2 %",
+            "oscillates",
+            "within 2 %",
+            "–",
+        ),
         ("an oscillation under noise, its frequency within 2 %", "oscillates under noise", "within 2 %", "–"),
-        ("an oscillation under noise that does not put it out, its frequency within 2 %", "lasts under noise",
-         "within 2 %", "–"),
+        (
+            "an oscillation under noise that does not put it out, its frequency within 2 %",
+            "lasts under noise",
+            "within 2 %",
+            "–",
+        ),
         ("an oscillation that the command puts out", "is put out", "said", "–"),
         ("an oscillation of a stable loop", "stable", "said", "–"),
         ("an oscillation of a stable loop under noise", "stable under noise", "said", "–"),
-    ):  # fmt: skip
+    ):
         if counts[of]:
             yield rate_line(what, counts[f"{of}, {said}"], counts[of], goal)

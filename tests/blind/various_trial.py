@@ -57,12 +57,16 @@ def _hiding(of: Various, dry: bool) -> Row:
     model, found = _diagnosed(of.measured())
     verdict = found.verdict
     named = {name for group in verdict.indistinguishable if len(group) <= 3 for name in group} | set(verdict.effects)
-    return row | _said(found) | {
-        "model": model,
-        "structure": model == KINDS[of.kind][3] or _differs(of, model) <= SAME * of.noise,
-        "named": of.hidden in named if of.hidden else not verdict.effects,
-        "errors": [found.ladder[0].error.get("fit"), found.ladder[-1].error.get("fit")],
-    }  # fmt: skip
+    return (
+        row
+        | _said(found)
+        | {
+            "model": model,
+            "structure": model == KINDS[of.kind][3] or _differs(of, model) <= SAME * of.noise,
+            "named": of.hidden in named if of.hidden else not verdict.effects,
+            "errors": [found.ladder[0].error.get("fit"), found.ladder[-1].error.get("fit")],
+        }
+    )
 
 
 def _lacking(of: Levers, dry: bool) -> Row:
@@ -95,10 +99,13 @@ def _diagnosed(matrix: Matrix) -> tuple[str, Diagnosis]:
 def _said(found: Diagnosis) -> Row:
     verdict = found.verdict
     return {
-        "effects": list(verdict.effects), "groups": [list(group) for group in verdict.indistinguishable],
-        "standing": verdict.standing, "missing": bool(found.missing_inputs), "swings": bool(found.oscillation),
+        "effects": list(verdict.effects),
+        "groups": [list(group) for group in verdict.indistinguishable],
+        "standing": verdict.standing,
+        "missing": bool(found.missing_inputs),
+        "swings": bool(found.oscillation),
         **sure(found),
-    }  # fmt: skip
+    }
 
 
 def _differs(of: Various, model: str) -> float:
@@ -144,8 +151,11 @@ def checked(seed: int) -> Counter[str]:
             counts += Counter({word: 1, f"{word}, said": found is not None})
             counts += Counter({f"{word}, within 2 %": 1}) if near and not stable else Counter()
             if stable != (found is None) or (not stable and not near):
-                print(f"WRONG {word}: {loop} {loop.frequencies} Hz, {loop.periods:.0f} periods, said "
-                      f"{found and found.frequency}", flush=True)  # fmt: skip
+                print(
+                    f"WRONG {word}: {loop} {loop.frequencies} Hz, {loop.periods:.0f} periods, said "
+                    f"{found and found.frequency}",
+                    flush=True,
+                )
     return counts
 
 

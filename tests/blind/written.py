@@ -24,7 +24,10 @@ def written(name: str) -> Effect:
     """The effect of that name."""
     place, equation, unit, upper = _TEXTS[name]
     definition: dict[str, Any] = {
-        "name": name, "place": place, "equation": equation,
-        "strength": {"symbol": "s", "unit": unit, "lower": 0, "upper": upper}, "meaning": f"{name}, written down",
-    }  # fmt: skip
+        "name": name,
+        "place": place,
+        "equation": equation,
+        "strength": {"symbol": "s", "unit": unit, "lower": 0, "upper": upper},
+        "meaning": f"{name}, written down",
+    }
     return read_effect(definition)

@@ -90,9 +90,14 @@ def test_a_backup_is_taken_by_a_button(page: Page, site: Process) -> None:
 
 @pytest.mark.parametrize(
     ("path", "shows"),
-    [("/workers", "servoident-1"), ("/statistics?parameter=Z0&batch=B", "Sets2"), ("/limits?model=qian2014", "Z0"),
-     ("/regressions", "Recheck"), ("/actuators/BESIDE", "verdict")],
-)  # fmt: skip
+    [
+        ("/workers", "servoident-1"),
+        ("/statistics?parameter=Z0&batch=B", "Sets2"),
+        ("/limits?model=qian2014", "Z0"),
+        ("/regressions", "Recheck"),
+        ("/actuators/BESIDE", "verdict"),
+    ],
+)
 def test_the_lines_pages_look_sound(page: Page, site: Process, old: str, screenshots, path: str, shows: str) -> None:
     """With two sets in force, their chart, a verdict, and who works."""
     assert old

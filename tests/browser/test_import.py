@@ -15,8 +15,11 @@ from tests.browser.looks import everywhere, on_a_phone
 from tests.browser.story import LONG
 
 KNOWN = {
-    "command": "AI0", "displacement": "AI1", "unit of command": "mm", "unit of displacement": "mm",
-}  # fmt: skip
+    "command": "AI0",
+    "displacement": "AI1",
+    "unit of command": "mm",
+    "unit of displacement": "mm",
+}
 """What a person knows of the third file, which states its sample rate, and neither its channels nor their units."""
 MOST = 12  # actions
 

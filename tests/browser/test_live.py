@@ -48,10 +48,12 @@ def streaming(site: Service, name: str) -> Iterator[None]:
 
 def inked(page: Page) -> bool:
     """Whether every canvas has something drawn on it."""
-    return bool(page.evaluate(
-        """() => [...document.querySelectorAll(".stream canvas")].every((one) =>
+    return bool(
+        page.evaluate(
+            """() => [...document.querySelectorAll(".stream canvas")].every((one) =>
              one.width && one.getContext("2d").getImageData(0, 0, one.width, one.height).data.some((value) => value))"""
-    ))  # fmt: skip
+        )
+    )
 
 
 def test_a_stream_is_drawn_marked_recorded_and_kept(page: Page, site: Service) -> None:

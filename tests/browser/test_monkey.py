@@ -50,12 +50,15 @@ class Seen:
 
     def listening(self, page: Page) -> AbstractContextManager[None]:
         """Hear everything that a page says."""
-        return hearing(page, {
-            "console": lambda message: self.said(message.type, message.text),
-            "pageerror": lambda error: self.fault(f"error in the page: {error}"),
-            "response": lambda answer: self.answers.append(answer),  # noqa: PLW0108 - a bound method cannot be marked
-            "dialog": lambda dialog: dialog.dismiss(),
-        })  # fmt: skip
+        return hearing(
+            page,
+            {
+                "console": lambda message: self.said(message.type, message.text),
+                "pageerror": lambda error: self.fault(f"error in the page: {error}"),
+                "response": lambda answer: self.answers.append(answer),  # noqa: PLW0108 - a bound method cannot be marked
+                "dialog": lambda dialog: dialog.dismiss(),
+            },
+        )
 
     def said(self, kind: str, text: str) -> None:
         """A line of the console; that an answer was a refusal is judged by the answer."""

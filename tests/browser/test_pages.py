@@ -24,9 +24,17 @@ SHORT = {"generations": 4, "population": 20, "elite": 3}  # of a search whose re
 SHOWN = [call for call in PAGES if call.method == "GET" and not re.search(r"\.svg|\.json", call.path)]
 """Every page of the service: the table of who may call what is complete, which tests/app/access holds."""
 OF_A_DAY = {
-    "/", "/actuators/{serial}", "/upload", "/matrices/{matrix}", "/jobs", "/fits/{fit}", "/fits/{fit}/use",
-    "/statistics", "/limits", "/regressions",
-}  # fmt: skip
+    "/",
+    "/actuators/{serial}",
+    "/upload",
+    "/matrices/{matrix}",
+    "/jobs",
+    "/fits/{fit}",
+    "/fits/{fit}/use",
+    "/statistics",
+    "/limits",
+    "/regressions",
+}
 """Those looked at by all rules; the other tests do so with those that need more than is here."""
 ELSEWHERE = {
     "/search", "/units", "/matrices/{matrix}/signals", "/live", "/jobs/{job}", "/compare", "/tokens", "/audit",
@@ -47,9 +55,15 @@ def addresses(site: Service, matrix: str, fitted: str) -> dict[str, str]:
     site.client.delete(f"/jobs/{job}")  # that of a finished fit leads to the fit
     site.ended(job)
     about = {
-        "serial": "SW/1%20%3Cb%3E", "matrix": matrix, "fit": fitted, "draft": draft, "regression": regression,
-        "job": job, "path": "nothing/here", "name": "cli",
-    }  # fmt: skip
+        "serial": "SW/1%20%3Cb%3E",
+        "matrix": matrix,
+        "fit": fitted,
+        "draft": draft,
+        "regression": regression,
+        "job": job,
+        "path": "nothing/here",
+        "name": "cli",
+    }
     return {call.path: f"{call.path.format(**about)}?{call.query.format(**about)}" for call in SHOWN}
 
 

@@ -61,8 +61,15 @@ def an_own_effect_is_tried(page, watch):
     own.get_by_label("Equation").fill("w = w - clip(w, -h, h)")
     own.get_by_role("button", name="Check").click()
     expect(own.locator("math")).to_have_count(1, timeout=story.LONG)
-    of_curve = {"symbol": "cv", "of the signal": "x", "knots with units": "-2 mm, 0 mm, 2 mm",
-                "values there": "1, 0, 1", "unit": "1", "lowest": "0", "largest": "2"}  # fmt: skip
+    of_curve = {
+        "symbol": "cv",
+        "of the signal": "x",
+        "knots with units": "-2 mm, 0 mm, 2 mm",
+        "values there": "1, 0, 1",
+        "unit": "1",
+        "lowest": "0",
+        "largest": "2",
+    }
     for label, text in of_curve.items():
         own.get_by_label(f"Curve, {label}", exact=True).fill(text)
     own.get_by_label("Equation").fill("w = w - h * cv")

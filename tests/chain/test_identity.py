@@ -26,7 +26,10 @@ def test_a_chain_that_was_hashed_here_is_found_among_those_of_another_process():
     assert pickle.loads(pickle.dumps(chain)) == chain
     seed = "2" if os.environ.get("PYTHONHASHSEED") == "1" else "1"  # another one than here
     told = subprocess.run(
-        [sys.executable, "-c", OTHER], input=pickle.dumps(chain), capture_output=True, check=False, env={
-            "PYTHONHASHSEED": seed, "PYTHONPATH": os.pathsep.join(filter(None, sys.path))},
-    )  # fmt: skip
+        [sys.executable, "-c", OTHER],
+        input=pickle.dumps(chain),
+        capture_output=True,
+        check=False,
+        env={"PYTHONHASHSEED": seed, "PYTHONPATH": os.pathsep.join(filter(None, sys.path))},
+    )
     assert told.stdout.decode().strip() == "known", told.stderr.decode()

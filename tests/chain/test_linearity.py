@@ -44,11 +44,20 @@ def test_an_effect_is_what_its_equations_are(name):
 @pytest.mark.parametrize(
     ("text", "linear"),
     [
-        ("x' = (u - x) / T", True), ("x' = u * k * c - 0 * x", True), ("x' = -(x + u)", True), ("x' = u + b", False),
-        ("x' = u * x", False), ("x' = u / x", False), ("x' = abs(u)", False), ("x' = sqrt(k) * u", True),
-        ("x' = x ** 2", False), ("x' = k ** 2 * x + u", True), ("x' = lag(u, T)", False), ("x' = u + t * k", False),
+        ("x' = (u - x) / T", True),
+        ("x' = u * k * c - 0 * x", True),
+        ("x' = -(x + u)", True),
+        ("x' = u + b", False),
+        ("x' = u * x", False),
+        ("x' = u / x", False),
+        ("x' = abs(u)", False),
+        ("x' = sqrt(k) * u", True),
+        ("x' = x ** 2", False),
+        ("x' = k ** 2 * x + u", True),
+        ("x' = lag(u, T)", False),
+        ("x' = u + t * k", False),
     ],
-)  # fmt: skip
+)
 def test_a_rate_is_linear_where_it_is_of_the_first_degree(text, linear):
     load = stage("load", (Quantity("x", "m", "position"),), (text, "its rate"))
     assert Chain((load,), {"displacement": "x"}).is_linear is linear

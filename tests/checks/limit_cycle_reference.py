@@ -22,8 +22,14 @@ def simulate(of, gain, command, rate, opening=np.inf):
     def slope(z, u):
         q, P, v, x = z
         e = np.clip(gain * (u - x), -opening, opening)
-        return np.array([(e - q) / p["tau"], (p["Z0"] / AREA * q - p["Cl"] * P - AREA * v) / p["Ka"],
-                         (AREA * P - p["c"] * v - p["k"] * x) / p["m"], v])  # fmt: skip
+        return np.array(
+            [
+                (e - q) / p["tau"],
+                (p["Z0"] / AREA * q - p["Cl"] * P - AREA * v) / p["Ka"],
+                (AREA * P - p["c"] * v - p["k"] * x) / p["m"],
+                v,
+            ]
+        )
 
     shown = np.zeros(command.shape)
     for n in range(len(command) - 1):

@@ -149,9 +149,17 @@ def sweep(machine: Rng, rng: Rng) -> tuple[Columns, dict[str, object]]:
 
 
 KINDS: dict[Draw, int] = {
-    ringing: 14, rectified: 14, resting: 14, slow_sine: 8, one_step: 8, staircase: 6, random_noise: 10, damper: 10,
-    quantised: 10, sweep: 6,
-}  # fmt: skip
+    ringing: 14,
+    rectified: 14,
+    resting: 14,
+    slow_sine: 8,
+    one_step: 8,
+    staircase: 6,
+    random_noise: 10,
+    damper: 10,
+    quantised: 10,
+    sweep: 6,
+}
 """How many of each."""
 
 

@@ -253,8 +253,15 @@ def test_a_machine_that_turns_is_asked_for_nothing_of_a_cylinder(faulty):
         )
         for run in faulty.matrix.runs
     ]
-    moved = [replace(run, output="force", units={"velocity": "m/s", "force": "N"},
-                     channels={"velocity": run.command, "force": run.measured}) for run in runs]  # fmt: skip
+    moved = [
+        replace(
+            run,
+            output="force",
+            units={"velocity": "m/s", "force": "N"},
+            channels={"velocity": run.command, "force": run.measured},
+        )
+        for run in runs
+    ]
     moved[1] = replace(moved[1], channels={**moved[1].channels, "velocity": moved[0].channels["velocity"]})
     for of in (runs, moved):
         bare = replace(faulty.matrix, runs=tuple(of), actuator=replace(faulty.matrix.actuator, piston_area=None))

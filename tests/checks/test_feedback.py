@@ -58,8 +58,15 @@ def motor(seed: int) -> Run:
         u[k] = 3.0 * (r[k] - out[k])
         d += -d / 20 + 3e-3 * random.standard_normal()
         w += (u[k] + d - w) / 12
-    return Run("one", "", 100.0, {"command": u, "velocity": out}, {"command": "V", "velocity": "rad/s"},
-               hold="zoh", output="velocity")  # fmt: skip
+    return Run(
+        "one",
+        "",
+        100.0,
+        {"command": u, "velocity": out},
+        {"command": "V", "velocity": "rad/s"},
+        hold="zoh",
+        output="velocity",
+    )
 
 
 def alone(run: Run) -> Matrix:

@@ -23,8 +23,14 @@ def servo(name: str, command: np.ndarray, seed: int) -> Run:
         for _ in range(50):
             y += np.clip(GAIN * (u - y), -LIMIT, LIMIT) / (50 * RATE)
     seen = np.round((np.array(went) + 1e-4 * np.random.default_rng(seed).standard_normal(len(went))) * 2048) / 2048
-    return Run(name, "", RATE, {"command": command, "displacement": seen},
-               {"command": "rad", "displacement": "rad"}, hold="zoh")  # fmt: skip
+    return Run(
+        name,
+        "",
+        RATE,
+        {"command": command, "displacement": seen},
+        {"command": "rad", "displacement": "rad"},
+        hold="zoh",
+    )
 
 
 @pytest.mark.parametrize("seed", short_form([8, 9, 10], 9))

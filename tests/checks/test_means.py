@@ -15,10 +15,17 @@ def cylinder(apart: float, **stated: bool) -> Matrix:
     """The friction of a moved cylinder under two pressures, whose means are so many deviations apart."""
     speed = np.cos(np.arange(2000) / 50.0)
     runs = (
-        Run(name, "", 100.0, {"velocity": speed, "force": np.sign(speed) + 0.3 * speed + level}, {"force": "N"},
-            output="force", zeroed=stated)
+        Run(
+            name,
+            "",
+            100.0,
+            {"velocity": speed, "force": np.sign(speed) + 0.3 * speed + level},
+            {"force": "N"},
+            output="force",
+            zeroed=stated,
+        )
         for name, level in (("low", 0.0), ("high", apart * 2.0 * float(np.std(np.sign(speed) + 0.3 * speed))))
-    )  # fmt: skip
+    )
     return Matrix(Actuator("A"), tuple(runs))
 
 

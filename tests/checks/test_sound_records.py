@@ -29,7 +29,7 @@ from .sound_records import (
     staircase,
     sweep,
     swing,
-)  # fmt: skip
+)
 
 
 def doubts(*runs: Run) -> set[tuple[str | None, str]]:

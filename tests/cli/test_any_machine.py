@@ -22,8 +22,16 @@ def folder(tmp_path_factory) -> Path:
         table = np.column_stack([run.channels["command"], 1e3 * run.channels["displacement"]])
         np.savetxt(place / f"{run.id}.csv", table, delimiter=",", header="u,x", comments="")
         channels = {"command": {"column": "u", "unit": "V"}, "displacement": {"column": "x", "unit": "mm"}}
-        entries.append({"id": run.id, "file": f"{run.id}.csv", "sample_rate": f"{RATE:g} Hz", "hold": "zoh",
-                        "use": run.use, "channels": channels})  # fmt: skip
+        entries.append(
+            {
+                "id": run.id,
+                "file": f"{run.id}.csv",
+                "sample_rate": f"{RATE:g} Hz",
+                "hold": "zoh",
+                "use": run.use,
+                "channels": channels,
+            }
+        )
     (place / "matrix.yaml").write_text(yaml.safe_dump({"actuator": {"serial": "ANY-1"}, "runs": entries}))
     return place
 

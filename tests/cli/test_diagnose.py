@@ -180,13 +180,16 @@ def test_the_commands_that_are_printed_run_as_they_stand(servoident, matrix, tmp
     assert (tmp_path / "next-run" / "command.csv").is_file()
 
 
-@pytest.mark.parametrize(("options", "said"), [
-    (("--model", "strano"), "--model cannot be given with a start"),
-    (("--seed", 3), "options of a search are given, and no search is made"),
-    (("--effect", "stiction"), "refitted no model with just stiction added; choose from dead_zone"),
-    (("--terms", 1), "1 term of 0"),
-    (("--bounds", "tau=1 ms:9 ms", "--load", "force"), "--bounds and --load cannot be"),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    ("options", "said"),
+    [
+        (("--model", "strano"), "--model cannot be given with a start"),
+        (("--seed", 3), "options of a search are given, and no search is made"),
+        (("--effect", "stiction"), "refitted no model with just stiction added; choose from dead_zone"),
+        (("--terms", 1), "1 term of 0"),
+        (("--bounds", "tau=1 ms:9 ms", "--load", "force"), "--bounds and --load cannot be"),
+    ],
+)
 def test_what_does_not_go_with_a_start_is_refused_in_a_line(servoident, matrix, told, tmp_path, options, said):
     diagnosis = tmp_path / "D.json"
     diagnosis.write_text(json.dumps(told[1]))

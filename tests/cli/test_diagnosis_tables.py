@@ -16,12 +16,17 @@ from ident.diagnosis.result import Diagnosis, Rung, Verdict
 
 STRENGTH = {"symbol": "s", "lower": -1e-10, "upper": 1e-10}
 LEAK = {
-    "name": "proposed_1", "place": "flow", "equation": ["Q = Q + s * abs(P)"],
+    "name": "proposed_1",
+    "place": "flow",
+    "equation": ["Q = Q + s * abs(P)"],
     "strength": {**STRENGTH, "unit": "m^3/(s*Pa)"},
-}  # fmt: skip
+}
 FORCE = {
-    "name": "proposed_2", "place": "load", "equation": ["R = R + s * P"], "strength": {**STRENGTH, "unit": "N/Pa"},
-}  # fmt: skip
+    "name": "proposed_2",
+    "place": "load",
+    "equation": ["R = R + s * P"],
+    "strength": {**STRENGTH, "unit": "N/Pa"},
+}
 
 
 def term(effect: dict, *beside: str) -> Proposal:
@@ -65,9 +70,14 @@ def test_what_is_printed_ends_with_the_command_that_makes_the_recommended_fit(ca
     assert "--start" not in printed(ladder=(first,))
 
 
-@pytest.mark.parametrize(("terms", "beside"), [
-    (None, ("specimen_hysteresis",)), (2, ("specimen_hysteresis",)), (1, ("specimen_hysteresis", "coulomb_friction")),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    ("terms", "beside"),
+    [
+        (None, ("specimen_hysteresis",)),
+        (2, ("specimen_hysteresis",)),
+        (1, ("specimen_hysteresis", "coulomb_friction")),
+    ],
+)
 def test_a_fit_with_proposed_terms_has_the_effects_that_they_were_found_beside(diagnosis, terms, beside):
     """A measured damper: without these the fit leaves 35 % where the diagnosis promised 12."""
     given = ("qian2014", ["dead_zone"], "ga", None, None, "none", 0, None, [diagnosis])

@@ -19,14 +19,22 @@ strength: {symbol: h, unit: mm, lower: 0, upper: 1}
 meaning: the lands overlap
 """
 LEAK = {
-    "name": "proposed_1", "place": "flow", "equation": ["Q = Q + s * (abs(P))"],
+    "name": "proposed_1",
+    "place": "flow",
+    "equation": ["Q = Q + s * (abs(P))"],
     "strength": {"symbol": "s", "unit": "m^3/(s*Pa)", "lower": -1e-10, "upper": 1e-10},
-    "meaning": "proposed by search", "source": "proposed by search",
-}  # fmt: skip
+    "meaning": "proposed by search",
+    "source": "proposed by search",
+}
 TERM = Proposal(
-    place=("flow",), equation="Q = Q + s * (abs(P))", effect=LEAK, nats=25.0, bar=17.0,
-    alike=("Q: max(P, 0)",), meaning="leakage in one direction: the leak differs with the sign of the pressure",
-)  # fmt: skip
+    place=("flow",),
+    equation="Q = Q + s * (abs(P))",
+    effect=LEAK,
+    nats=25.0,
+    bar=17.0,
+    alike=("Q: max(P, 0)",),
+    meaning="leakage in one direction: the leak differs with the sign of the pressure",
+)
 
 
 @pytest.fixture(autouse=True)

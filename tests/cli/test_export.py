@@ -33,9 +33,12 @@ def test_the_state_space_says_what_it_leaves_out(servoident, tmp_path):
 
 @pytest.mark.parametrize(
     ("options", "said"),
-    [(("--format", "dll"), "choose from c, mat, fmu"), (("--format", "c", "--gain", -1), "gain is -1"),
-     (("--format", "c", "--sample-rate", "4096"), "--sample-rate")],
-)  # fmt: skip
+    [
+        (("--format", "dll"), "choose from c, mat, fmu"),
+        (("--format", "c", "--gain", -1), "gain is -1"),
+        (("--format", "c", "--sample-rate", "4096"), "--sample-rate"),
+    ],
+)
 def test_what_cannot_be_is_refused_in_one_line(servoident, tmp_path, options, said):
     done = servoident("export", FIT, "--out", tmp_path / "machine", *options)
     assert done.returncode == 2

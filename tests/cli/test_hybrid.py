@@ -83,8 +83,11 @@ def test_what_the_feedforward_is_worth_is_told(servoident, tmp_path):
 
 def test_bad_input_is_one_line(servoident, tmp_path):
     """A case, a controller and a ground motion that are none: exit status 2, and what to do instead."""
-    for given in (("--case", "quian"), ("--case", "qian", "--controller", "pid"),
-                  ("--case", "qian", "--ground", tmp_path / "none.txt")):  # fmt: skip
+    for given in (
+        ("--case", "quian"),
+        ("--case", "qian", "--controller", "pid"),
+        ("--case", "qian", "--ground", tmp_path / "none.txt"),
+    ):
         done = servoident("hybrid", FIT, *given)
         assert done.returncode == 2, done.stderr
         assert len(done.stderr.splitlines()[-1].split(";")) >= 2
@@ -137,15 +140,30 @@ def test_two_actuators_are_taken_to_another_condition_with_an_isolator(servoiden
     case.write_text(BEAM.replace("left/controller.json", "none").replace("gain: 7", "gain: 16"))
     fits = [replace(one, conditions={"temperature": 293.15}) for one in (fitted(), fitted(tau=2e-3))]
     given = sets(np.random.default_rng(581), 40)
-    held.write_text(json.dumps([
-        {"model": "qian2014", "parameters": {name: {"value": value} for name, value in one.items()}} for one in given
-    ]))  # fmt: skip
+    held.write_text(
+        json.dumps(
+            [
+                {"model": "qian2014", "parameters": {name: {"value": value} for name, value in one.items()}}
+                for one in given
+            ]
+        )
+    )
     for name, one in zip(("fit.json", "other.json"), fits, strict=True):
         (tmp_path / name).write_text(json.dumps(one.to_json()))
     start = ("hybrid", tmp_path / "fit.json", "--case", case)
     wide = ("--spread", "5 %")
-    done = servoident(*start, "--at", "60 degC", "--sets", held, *(wide if full else ()),
-                      "--isolator", "stiffness=1 kN/m, part=left", "--json", tmp_path / "found.json")  # fmt: skip
+    done = servoident(
+        *start,
+        "--at",
+        "60 degC",
+        "--sets",
+        held,
+        *(wide if full else ()),
+        "--isolator",
+        "stiffness=1 kN/m, part=left",
+        "--json",
+        tmp_path / "found.json",
+    )
     data = json.loads((tmp_path / "found.json").read_text())
     assert any(one.startswith("Moved from 20 °C to 60 °C") for one in data["notes"])
     if full:
@@ -155,8 +173,12 @@ def test_two_actuators_are_taken_to_another_condition_with_an_isolator(servoiden
     of = read_system(case).with_isolator(Specimen(stiffness=1e3), "left")
     alone = simulate_coupled(moved, of, [no_controller(4096.0)] * 2)
     assert [one["scores"] for one in data["parts"]] == [asdict(one.scores) for one in alone.parts.values()]
-    for refused in (("--isolator", "mass=1 kg, part=middle"), ("--before-case", "qian"), ("--at", "60 degC"),
-                    (*wide, "--controller", "kalman")):  # fmt: skip
+    for refused in (
+        ("--isolator", "mass=1 kg, part=middle"),
+        ("--before-case", "qian"),
+        ("--at", "60 degC"),
+        (*wide, "--controller", "kalman"),
+    ):
         assert servoident(*start, *refused).returncode == 2
 
 

@@ -22,8 +22,18 @@ def data(tmp_path_factory) -> Path:
 @pytest.fixture(scope="module")
 def said(data) -> Iterator[str]:
     """The line that `servoident serve` prints, while it runs."""
-    arguments = ("--port", free_port(), "--data", data, "--allow-host", "lab.example",
-                 "--webhook-host", "127.0.0.1:9", "--keep-raw", "30")  # fmt: skip
+    arguments = (
+        "--port",
+        free_port(),
+        "--data",
+        data,
+        "--allow-host",
+        "lab.example",
+        "--webhook-host",
+        "127.0.0.1:9",
+        "--keep-raw",
+        "30",
+    )
     with command("serve", *arguments, until="token=") as line:
         yield line
 
@@ -189,9 +199,13 @@ def test_a_token_is_made_used_listed_and_revoked(service, data, servoident):
 
 @pytest.mark.parametrize(
     ("arguments", "where"),
-    [(("new", "--role", "boss", "--name", "x"), "--role"), (("new", "--role", "ci", "--name", "a\nb"), "--name"),
-     (("new", "--role", "ci", "--name", "x", "--expires", "soon"), "expires"), (("revoke", "nothing"), "token")],
-)  # fmt: skip
+    [
+        (("new", "--role", "boss", "--name", "x"), "--role"),
+        (("new", "--role", "ci", "--name", "a\nb"), "--name"),
+        (("new", "--role", "ci", "--name", "x", "--expires", "soon"), "expires"),
+        (("revoke", "nothing"), "token"),
+    ],
+)
 def test_a_token_that_cannot_be_is_one_line(servoident, tmp_path, arguments, where):
     done = servoident("token", *arguments, "--data", tmp_path)
     assert done.returncode == 2

@@ -38,23 +38,50 @@ def multisine(seconds: float, periods: int, seed: int) -> np.ndarray:
 
 def run_of(command: np.ndarray, measured: np.ndarray) -> Run:
     channels = {"command": command, "displacement": measured}
-    return Run("k17", "-", SAMPLE_RATE, channels, {"command": "m", "displacement": "m"},
-               specimen=Specimen(MASS, STIFFNESS), gain=GAIN, amplitude=1.27e-3)  # fmt: skip
+    return Run(
+        "k17",
+        "-",
+        SAMPLE_RATE,
+        channels,
+        {"command": "m", "displacement": "m"},
+        specimen=Specimen(MASS, STIFFNESS),
+        gain=GAIN,
+        amplitude=1.27e-3,
+    )
 
 
 def fit_of(effects: dict[str, float]) -> FitResult:
     """A fit that has found the truth, with standard errors of 1 % that are not correlated."""
-    values = {"Z0": ("m^4/s", PLANT.Z0), "tau": ("s", PLANT.tau), "Cl": ("m^3/(s*Pa)", PLANT.Cl),
-              "c0": ("N*s/m", PLANT.c0), "m0": ("kg", PLANT.m0), "Ka": ("m^3/Pa", PLANT.Ka)}  # fmt: skip
+    values = {
+        "Z0": ("m^4/s", PLANT.Z0),
+        "tau": ("s", PLANT.tau),
+        "Cl": ("m^3/(s*Pa)", PLANT.Cl),
+        "c0": ("N*s/m", PLANT.c0),
+        "m0": ("kg", PLANT.m0),
+        "Ka": ("m^3/Pa", PLANT.Ka),
+    }
     parameters = {n: Estimate(v, unit, 0.01 * v, v / 2, 2 * v, False) for n, (unit, v) in values.items()}
     parameters |= {n: Estimate(v, "1", None, 0.0, 1.0, False) for n, v in effects.items()}
     names = tuple(dict.fromkeys(name.partition(".")[0] for name in effects))
     return FitResult(
-        model="qian2014", effects=names, parameters=parameters,
-        correlation={n: {m: float(n == m) for m in values} for n in values}, determined=(), undetermined=(),
-        error={}, offset={}, noise_floor={}, runs=(), method="ga", seed=0, evaluations=1, seconds=1.0, version="0",
-        data_hash="", searched=tuple(values),
-    )  # fmt: skip
+        model="qian2014",
+        effects=names,
+        parameters=parameters,
+        correlation={n: {m: float(n == m) for m in values} for n in values},
+        determined=(),
+        undetermined=(),
+        error={},
+        offset={},
+        noise_floor={},
+        runs=(),
+        method="ga",
+        seed=0,
+        evaluations=1,
+        seconds=1.0,
+        version="0",
+        data_hash="",
+        searched=tuple(values),
+    )
 
 
 @pytest.fixture(scope="module")
@@ -137,8 +164,9 @@ def test_the_band_of_a_line_holds_what_other_parameters_would_give(linear):
 
 def test_a_lag_of_the_acquisition_shows_in_the_line_as_it_is(command, loops):
     """An effect that is linear has an exact frequency response, which the describing gain has to meet."""
-    found = compare(Matrix(ACTUATOR, (run_of(command, command.copy()),)),
-                    fit_of({"acquisition_lag.time_constant": LAG})).runs[0]  # fmt: skip
+    found = compare(
+        Matrix(ACTUATOR, (run_of(command, command.copy()),)), fit_of({"acquisition_lag.time_constant": LAG})
+    ).runs[0]
     frequency = np.geomspace(1.5, 75, 60)
     s = 2j * np.pi * frequency
     exact = loops[1](s) / (LAG * s + 1)

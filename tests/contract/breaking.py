@@ -47,9 +47,7 @@ class _Comparison:
         yield from self._answers(where, before["responses"], now["responses"])
 
     def _parameters(self, where: str, before: Json, now: Json) -> Iterator[str]:
-        old, new = (
-            {(each["in"], each["name"]): each for each in of.get("parameters", ())} for of in (before, now)
-        )  # fmt: skip
+        old, new = ({(each["in"], each["name"]): each for each in of.get("parameters", ())} for of in (before, now))
         for key, parameter in old.items():
             at = f"{where}, parameter {key[1]}"
             if key not in new:

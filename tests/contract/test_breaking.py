@@ -57,10 +57,10 @@ BREAKING: dict[str, Callable[[Json], object]] = {
     "answer 202.state: taken away": lambda d: schema(d, "JobView")["properties"].pop("state"),
     "current.serial: may now be missing": lambda d: schema(d, "ParameterSetView")["required"].remove("serial"),
     "value: number is now string": lambda d: schema(d, "ValueView")["properties"]["value"].update(type="string"),
-    "std_error: null or number is now null or number or string": lambda d: (
-        schema(d, "ValueView")["properties"]["std_error"]["anyOf"].append({"type": "string"})
-    ),
-}  # fmt: skip
+    "std_error: null or number is now null or number or string": lambda d: schema(d, "ValueView")["properties"][
+        "std_error"
+    ]["anyOf"].append({"type": "string"}),
+}
 
 
 @pytest.mark.parametrize("told", BREAKING)

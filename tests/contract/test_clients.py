@@ -22,8 +22,17 @@ from tests.conftest import ROOT
 from tests.running import ENDED, WAIT, Process, process
 
 DOCUMENT = ROOT / "docs" / "openapi.json"
-PYTHON = (sys.executable, "-m", "uv", "tool", "run", "--system-certs", "--from", "openapi-python-client==0.29.1",
-          "openapi-python-client")  # fmt: skip
+PYTHON = (
+    sys.executable,
+    "-m",
+    "uv",
+    "tool",
+    "run",
+    "--system-certs",
+    "--from",
+    "openapi-python-client==0.29.1",
+    "openapi-python-client",
+)
 TYPESCRIPT = ("npx", "--yes", "openapi-typescript@7.13.0")
 
 

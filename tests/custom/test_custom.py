@@ -159,9 +159,16 @@ def test_what_an_effect_calls_like_a_channel_is_its_own():
 
 @pytest.mark.parametrize(
     ("text", "value"),
-    [("sign(-3)", -1), ("2 if 1 < x <= 3 else 5", 2), ("max(1, x, 2)", 3), ("(x > 1) + (x > 2) - (x > 9)", 2),
-     ("not x > 2 or x < 1", 0), ("1 < x and x < 4", 1), ("sin(pi / 2) + cos(0) + tanh(0)", 2)],
-)  # fmt: skip
+    [
+        ("sign(-3)", -1),
+        ("2 if 1 < x <= 3 else 5", 2),
+        ("max(1, x, 2)", 3),
+        ("(x > 1) + (x > 2) - (x > 9)", 2),
+        ("not x > 2 or x < 1", 0),
+        ("1 < x and x < 4", 1),
+        ("sin(pi / 2) + cos(0) + tanh(0)", 2),
+    ],
+)
 def test_the_grammar_means_what_it_says(text, value):
     """In numbers, and by the compiled kernel."""
     assert Equation(f"y = {text}").value({"x": np.float64(3.0)}) == pytest.approx(value)

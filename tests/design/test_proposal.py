@@ -66,8 +66,15 @@ def recorded(experiment: Experiment, seed: int) -> Run:
     cell = linear.Cell(s.mass, s.stiffness, s.damping, experiment.gain)
     x = reference.respond(linear.Plant(), reference.named({"coulomb_friction.Fc": FRICTION}), cell, u).displacement
     x = x + NOISE * x.std() * np.random.default_rng(seed).standard_normal(len(x))
-    return Run(f"new-{seed}", "", experiment.sample_rate, {"command": u, "displacement": x}, specimen=s,
-               gain=experiment.gain, kind="other")  # fmt: skip
+    return Run(
+        f"new-{seed}",
+        "",
+        experiment.sample_rate,
+        {"command": u, "displacement": x},
+        specimen=s,
+        gain=experiment.gain,
+        kind="other",
+    )
 
 
 @cache
@@ -152,13 +159,20 @@ def diagnosis() -> dict:
     """The JSON of a diagnosis that cannot tell the two apart, as far as it is read."""
     _, models = confused()
     candidates_ = [
-        {"effect": model.effects[0].name,
-         "parameters": {name.replace("__", "."): {"value": value} for name, value in values.items()}}
+        {
+            "effect": model.effects[0].name,
+            "parameters": {name.replace("__", "."): {"value": value} for name, value in values.items()},
+        }
         for model, values in models
-    ]  # fmt: skip
+    ]
     group = [entry["effect"] for entry in candidates_]
-    return {"model": "qian2014", "noise_floor": {"fit": NOISE, "verify": None}, "candidates": candidates_,
-            "ladder": [], "verdict": {"effects": [], "indistinguishable": [group]}}  # fmt: skip
+    return {
+        "model": "qian2014",
+        "noise_floor": {"fit": NOISE, "verify": None},
+        "candidates": candidates_,
+        "ladder": [],
+        "verdict": {"effects": [], "indistinguishable": [group]},
+    }
 
 
 def test_a_diagnosis_says_what_is_in_question(diagnosis):
@@ -180,8 +194,12 @@ def test_what_a_diagnosis_settled_on_is_not_in_question(diagnosis):
 def test_the_command_writes_the_signals(servoident, diagnosis, tmp_path):
     """CSV and MAT hold the same command; a file that is no diagnosis is refused."""
     (tmp_path / "d.json").write_text(json.dumps(diagnosis))
-    few = linear.write(tmp_path / "matrix", linear.measure_all(linear.Plant(), linear.trials()[2:9:6], seconds=0.5,
-                       noise=NOISE, seed=1), "linear", linear.Plant())  # fmt: skip
+    few = linear.write(
+        tmp_path / "matrix",
+        linear.measure_all(linear.Plant(), linear.trials()[2:9:6], seconds=0.5, noise=NOISE, seed=1),
+        "linear",
+        linear.Plant(),
+    )
     done = servoident("next", few, "--diagnosis", tmp_path / "d.json", "--out", tmp_path / "out", "--json", "-")
     assert done.returncode == 0, done.stderr
     told = json.loads(done.stdout)

@@ -55,10 +55,13 @@ class Damper:
         cut = 2 * len(v) // 3
         parts = {"fit": slice(0, cut), "verify": slice(cut, None)}
         units = {"velocity": "m/s", "force": "N"}
-        return Matrix(Actuator("DAMPER"), tuple(
-            Run(use, "", self.rate, {"velocity": v[part], "force": noisy[part]}, units, output="force", use=use)
-            for use, part in parts.items()
-        ))  # fmt: skip
+        return Matrix(
+            Actuator("DAMPER"),
+            tuple(
+                Run(use, "", self.rate, {"velocity": v[part], "force": noisy[part]}, units, output="force", use=use)
+                for use, part in parts.items()
+            ),
+        )
 
 
 @dataclass(frozen=True)

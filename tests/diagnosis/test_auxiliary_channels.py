@@ -41,8 +41,12 @@ def pushed(bar: float, seed: int, use: str = "fit") -> Run:
     v = np.cos(np.outer(t, w) + phase) @ (amplitude * w)
     pressure = bar * BAR + 10.0 * rng.standard_normal(len(t))
     force = 5e-4 * bar * BAR + DAMPING * v + (LEAST + BY_PRESSURE * bar * BAR) * np.sign(v)
-    channels = {"displacement": x, "velocity": v, "pressure_a": pressure,
-                "force": force + NOISE * rng.standard_normal(len(t))}  # fmt: skip
+    channels = {
+        "displacement": x,
+        "velocity": v,
+        "pressure_a": pressure,
+        "force": force + NOISE * rng.standard_normal(len(t)),
+    }
     units = {"displacement": "m", "velocity": "m/s", "pressure_a": "Pa", "force": "N"}
     return Run(f"{bar:g} bar {seed}", "", RATE, channels, units, output="force", use=use)
 

@@ -66,8 +66,12 @@ def test_a_fit_alone_refuses_what_it_would_not_use():
 
 
 def test_a_users_own_effect_is_bounded_too():
-    own = {"name": "drag", "place": "load", "equation": "R = R + c * v * abs(v)",
-           "strength": {"symbol": "c", "unit": "N*s^2/m^2", "lower": 0, "upper": 1e3}}  # fmt: skip
+    own = {
+        "name": "drag",
+        "place": "load",
+        "equation": "R = R + c * v * abs(v)",
+        "strength": {"symbol": "c", "unit": "N*s^2/m^2", "lower": 0, "upper": 1e3},
+    }
     model = with_candidates(preset("specimen"), ("drag",), (own,))
     assert model.parameter("drag").name == "drag.c"
     settings = Settings("specimen", custom=(own,), bounds={"drag": (0.0, 1.0), "cS": (1.0, 2.0)})

@@ -36,9 +36,11 @@ def test_longer_windows_have_to_make_the_records_more_likely_beyond_chance(monke
     base, other = SimpleNamespace(effects=(), values={}, fitness=None, point=None), SimpleNamespace(effects=("a",))
     likely = {id(base): 0.0, id(other): gain}
     for name, made in {
-        "longer": lambda *_: [3.0], "may_hide_an_effect": lambda *_: True, "_refitted": lambda *_: [other],
+        "longer": lambda *_: [3.0],
+        "may_hide_an_effect": lambda *_: True,
+        "_refitted": lambda *_: [other],
         "_log_likelihood": lambda one, _memory: likely[id(one)],
-    }.items():  # fmt: skip
+    }.items():
         monkeypatch.setattr(prediction_horizon, name, made)
     models = SimpleNamespace(effects={"a": None}, memory=None, over_windows=lambda *_: None)
     ranking = SimpleNamespace(ranking=())
@@ -110,8 +112,9 @@ def test_an_effect_is_contradicted_where_the_error_rises_by_two_standard_errors(
 
 @pytest.mark.parametrize(("last", "told"), [(0.1085, False), (0.1115, True)])
 def test_a_smaller_error_on_the_way_is_told_where_the_last_is_a_tenth_larger(last, told):
-    steps: Any = [(name, SimpleNamespace(errors={"verify": error}))
-                  for name, error in ((None, 0.3), ("a", 0.1), ("b", last))]  # fmt: skip
+    steps: Any = [
+        (name, SimpleNamespace(errors={"verify": error})) for name, error in ((None, 0.3), ("a", 0.1), ("b", last))
+    ]
     assert (better_with_fewer(steps) == (0.1, ("b",))) is told
 
 
@@ -128,9 +131,15 @@ def test_up_to_twelve_runs_are_fitted_alone(runs, asked):
     assert bool(alone) is asked
 
 
-@pytest.mark.parametrize(("ratio", "square", "differ"), [
-    (1.25, 100.0, False), (1.35, 100.0, True), (1.5, 10.55, False), (1.5, 11.2, True),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    ("ratio", "square", "differ"),
+    [
+        (1.25, 100.0, False),
+        (1.35, 100.0, True),
+        (1.5, 10.55, False),
+        (1.5, 11.2, True),
+    ],
+)
 def test_two_runs_differ_by_a_third_and_beyond_a_chance_of_one_in_a_thousand(ratio, square, differ):
     """χ² of one degree of freedom exceeds 10.83 with that probability."""
     error = float((ratio - 1.0) / np.sqrt(2.0 * square))
@@ -142,8 +151,11 @@ def test_two_runs_differ_by_a_third_and_beyond_a_chance_of_one_in_a_thousand(rat
 def test_terms_alone_come_first_up_to_an_error_five_per_cent_larger(monkeypatch, error, alone):
     """Than that of terms in addition to an effect; without terms it leaves more."""
     named: Any = SimpleNamespace(
-        complete=True, proposals=(), instead=lambda *_: named, error_with_terms=lambda *_: error,
-    )  # fmt: skip
+        complete=True,
+        proposals=(),
+        instead=lambda *_: named,
+        error_with_terms=lambda *_: error,
+    )
     further: Any = SimpleNamespace(complete=True, error_with_terms=lambda *_: 1.0, or_rejected=lambda _: further)
     monkeypatch.setattr(discover, "_search", lambda *_: further)
     monkeypatch.setattr(discover, "replace", lambda of, **_: of)

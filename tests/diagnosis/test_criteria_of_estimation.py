@@ -101,8 +101,10 @@ def test_a_model_of_unknown_place_is_begun_from_the_four_best_of_128_points():
 def test_a_refit_one_per_cent_better_is_at_another_optimum(error, is_another):
     found = SimpleNamespace(effects=(), values={}, local=SimpleNamespace(error=error))
     models: Any = SimpleNamespace(
-        trial_error=lambda _refit: 1.0, multistart=lambda *_: found, refit=lambda *_: found,
-    )  # fmt: skip
+        trial_error=lambda _refit: 1.0,
+        multistart=lambda *_: found,
+        refit=lambda *_: found,
+    )
     given: Any = SimpleNamespace(effects=(), local=SimpleNamespace(error=1.0))
     assert (CandidateModels.better_optimum(models, given, []) is found) is is_another
 
@@ -111,9 +113,7 @@ def test_a_refit_is_continued_five_times_at_most():
     """Each time it falls by two per cent."""
 
     def refit(_effects: Any, count: int, *_: Any) -> Any:
-        return SimpleNamespace(
-            effects=(), values=count + 1, finite=True, local=SimpleNamespace(error=0.98**count)
-        )  # fmt: skip
+        return SimpleNamespace(effects=(), values=count + 1, finite=True, local=SimpleNamespace(error=0.98**count))
 
     models: Any = SimpleNamespace(refit=refit)
     assert CandidateModels.converged(models, refit((), 0)).values == 6

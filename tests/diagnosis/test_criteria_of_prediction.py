@@ -86,9 +86,11 @@ def test_three_effects_are_refitted_with_free_widths(monkeypatch):
     refitted: list[str] = []
     predictions = [SimpleNamespace(effect=name, after=SimpleNamespace(error=0.1)) for name in "abcde"]
     for name, made in {
-        "with_widths": lambda _models, names: list(names), "with_free_shapes": lambda models, *_: models,
-        "predict": lambda *_: predictions, "freed_refit": lambda _m, _b, one, _aim: refitted.append(one.effect),
-    }.items():  # fmt: skip
+        "with_widths": lambda _models, names: list(names),
+        "with_free_shapes": lambda models, *_: models,
+        "predict": lambda *_: predictions,
+        "freed_refit": lambda _m, _b, one, _aim: refitted.append(one.effect),
+    }.items():
         monkeypatch.setattr(free_shapes, name, made)
     models: Any = SimpleNamespace(trial_error=lambda _: 1.0)
     free_shapes.with_free_widths(models, *[SimpleNamespace()] * 2, list("abcde"))  # type: ignore[arg-type]
@@ -140,9 +142,7 @@ def test_a_part_behind_a_spring_begins_within_a_third_of_its_frequency(monkeypat
 
 def test_an_effect_in_the_place_of_a_spring_begins_with_a_quarter_to_three_quarters_of_it():
     """It yields at first at the amplitude of a sine of the deviation of the motion."""
-    base: Any = SimpleNamespace(
-        values={"k0": 1.0}, fitness=SimpleNamespace(runs=(SimpleNamespace(motion=1.0),))
-    )  # fmt: skip
+    base: Any = SimpleNamespace(values={"k0": 1.0}, fitness=SimpleNamespace(runs=(SimpleNamespace(motion=1.0),)))
     hysteresis = next(effect for effect in EFFECTS if effect.name == "specimen_hysteresis")
     spring = next(iter(hysteresis.takes_over))
     base.values = {spring: 1.0}

@@ -64,11 +64,15 @@ def test_the_best_two_finalists_are_begun_again(monkeypatch):
     names = list("abcd")
     predictions = [
         SimpleNamespace(
-            effect=name, remaining=0.5, reduction=0.5, offset_likelihood_gain=0.0,
-            after=SimpleNamespace(score=0.5, error=0.5), before=SimpleNamespace(offset=0.0),
+            effect=name,
+            remaining=0.5,
+            reduction=0.5,
+            offset_likelihood_gain=0.0,
+            after=SimpleNamespace(score=0.5, error=0.5),
+            before=SimpleNamespace(offset=0.0),
         )
         for name in names
-    ]  # fmt: skip
+    ]
 
     def tried(_models: Any, _base: Any, prediction: Any, *_: Any) -> Candidate:
         found: Any = SimpleNamespace(local=SimpleNamespace(error=0.1 + 0.01 * names.index(prediction.effect)))
@@ -79,14 +83,19 @@ def test_the_best_two_finalists_are_begun_again(monkeypatch):
         return one
 
     for name, made in {
-        "_predictions": lambda *_: predictions, "_tried": tried, "_multistart": multistart,
-        "_confirmed": lambda _models, _base, one, _best: one, "_few": lambda *_: 12,
-    }.items():  # fmt: skip
+        "_predictions": lambda *_: predictions,
+        "_tried": tried,
+        "_multistart": multistart,
+        "_confirmed": lambda _models, _base, one, _best: one,
+        "_few": lambda *_: 12,
+    }.items():
         monkeypatch.setattr(ranking, name, made)
     models: Any = SimpleNamespace(
-        simplicity=lambda name: (1, name), trial_error=lambda _: 1.0, is_quick=lambda _: False,
+        simplicity=lambda name: (1, name),
+        trial_error=lambda _: 1.0,
+        is_quick=lambda _: False,
         is_called_for=lambda _: False,
-    )  # fmt: skip
+    )
     rank_each(models, [(SimpleNamespace(effects=()), names)], lambda _: None)  # type: ignore[list-item]
     assert again == ["a", "b"]
 
@@ -180,8 +189,10 @@ def test_the_search_continues_from_the_two_next_best_sets():
     tried: list[str] = []
     sets = SimpleNamespace(as_probable=lambda _: list("abcd"))
     moves: Any = SimpleNamespace(
-        most=4, refitted_sets=sets, _rank=lambda other, thorough: tried.append(other) or []  # noqa: ARG005
-    )  # fmt: skip
+        most=4,
+        refitted_sets=sets,
+        _rank=lambda other, thorough: tried.append(other) or [],  # noqa: ARG005
+    )
     Moves.runner_up(moves, a_selection())
     assert tried == ["a", "b"]
 

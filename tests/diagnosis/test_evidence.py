@@ -31,9 +31,12 @@ def common(bands: EnergyBands, models: Sequence[Sequence[Array]]) -> Disturbance
 
 
 def compared(
-    before: Sequence[Array], after: Sequence[Array], records: Sequence[Record], spectrum: Disturbance | None = None,
+    before: Sequence[Array],
+    after: Sequence[Array],
+    records: Sequence[Record],
+    spectrum: Disturbance | None = None,
     criteria: EvidenceCriteria = EVIDENCE_CRITERIA,
-) -> Evidence:  # fmt: skip
+) -> Evidence:
     """Two models by their residuals of each run."""
     bands = spectrum.bands if spectrum else EnergyBands(tuple(records), tuple(map(len, before)), criteria)
     return compare(Residuals(tuple(before), bands), Residuals(tuple(after), bands), spectrum, criteria)
@@ -51,9 +54,7 @@ def slow(rng: np.random.Generator, n: int, keeps: float = 0.9) -> Array:
     return found
 
 
-def periodic(
-    periods: int, missing: float, left: float = 0.0, per: float = 87.3, seed: int = 1
-) -> tuple[Array, Array]:  # fmt: skip
+def periodic(periods: int, missing: float, left: float = 0.0, per: float = 87.3, seed: int = 1) -> tuple[Array, Array]:
     """Residuals of a test of so many periods: of a model that lacks a square wave, and of one that has most of it.
 
     The second one leaves the square wave's third harmonic, `left` times as strong.
@@ -290,8 +291,11 @@ def test_what_helps_one_condition_and_harms_another_does_not_generalise() -> Non
     late = [np.concatenate([np.zeros(750), r[750:]]) for r in wrong]
     early = [2 * np.concatenate([r[:750], np.zeros(750)]) for r in wrong]
     one = [replace(WHITE, condition="")] * 2
-    assert not generalises(compared([n + e for n, e in zip(noise, early, strict=True)],
-                                   [n + e for n, e in zip(noise, late, strict=True)], one))  # fmt: skip
+    assert not generalises(
+        compared(
+            [n + e for n, e in zip(noise, early, strict=True)], [n + e for n, e in zip(noise, late, strict=True)], one
+        )
+    )
 
 
 def test_two_models_whose_outputs_the_noise_hides_are_indistinguishable() -> None:

@@ -73,10 +73,15 @@ def test_of_first_steps_the_eight_that_leave_least_go_on():
     """From where they are; what is unstable, or does not keep what it promises, makes room for the next."""
     errors, lying = [0.9, np.inf, 0.5, 0.1, 0.8, 0.2, 0.7, 0.3, 0.6, 0.4, 1.0], 0.2
     steps = [
-        SimpleNamespace(effects=("e",), values={"s": error}, local=SimpleNamespace(error=error),
-                        stable=np.isfinite(error), finite=np.isfinite(error) and error != lying)
+        SimpleNamespace(
+            effects=("e",),
+            values={"s": error},
+            local=SimpleNamespace(error=error),
+            stable=np.isfinite(error),
+            finite=np.isfinite(error) and error != lying,
+        )
         for error in errors
-    ]  # fmt: skip
+    ]
     family = SimpleNamespace(continued=lambda step, way, _samples: (step.values["s"], way.aim))
     found = CandidateModels.leading(family, steps, 0.45)
     assert [aim for _, aim in found] == 8 * [0.45]
@@ -136,11 +141,18 @@ def test_a_rung_at_which_the_model_is_unstable_tells_no_error_and_the_next_one_n
 @pytest.mark.parametrize(("at_floor", "error"), [(False, 0.2), (True, 0.3)])
 def test_a_better_optimum_is_sought_unless_what_is_left_is_known_to_be_noise(at_floor, error):
     """Where no floor is known a residual may lack memory, though the model rings where the machine does not."""
-    found, other = (SimpleNamespace(effects=(), values={}, stable=True, finite=True, local=SimpleNamespace(error=of))
-                    for of in (0.3, 0.2))  # fmt: skip
+    found, other = (
+        SimpleNamespace(effects=(), values={}, stable=True, finite=True, local=SimpleNamespace(error=of))
+        for of in (0.3, 0.2)
+    )
     models = SimpleNamespace(
-        is_short=lambda _refit: True, at_floor=lambda _refit: at_floor, residual_above_noise=lambda _refit: False,
-        trial_error=lambda refit: refit.local.error, global_starts=lambda _effects: [other],
-        leading=lambda starts, _aim: starts, refit=lambda _effects, _values: other, converged=lambda refit: refit,
-    )  # fmt: skip
+        is_short=lambda _refit: True,
+        at_floor=lambda _refit: at_floor,
+        residual_above_noise=lambda _refit: False,
+        trial_error=lambda refit: refit.local.error,
+        global_starts=lambda _effects: [other],
+        leading=lambda starts, _aim: starts,
+        refit=lambda _effects, _values: other,
+        converged=lambda refit: refit,
+    )
     assert CandidateModels.best_optimum(models, found).local.error == error

@@ -199,9 +199,14 @@ def test_a_width_is_searched_over_decades():
         assert scale.logarithmic
 
 
-@pytest.mark.parametrize("name", [
-    "presliding_friction__displacement", "specimen_hysteresis__yield_displacement", "specimen_free_play__half_width",
-])  # fmt: skip
+@pytest.mark.parametrize(
+    "name",
+    [
+        "presliding_friction__displacement",
+        "specimen_hysteresis__yield_displacement",
+        "specimen_free_play__half_width",
+    ],
+)
 def test_a_way_may_be_as_long_as_the_motion(name):
     """A specimen that yields near the end of a sine was searched up to a third of it, and other effects were named."""
     effect = freed(next(effect for effect in CATALOGUE if effect.name == name.partition("__")[0]))

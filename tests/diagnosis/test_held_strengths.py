@@ -28,8 +28,16 @@ def counted(seed: int, use: str) -> Run:
             now = after - stop if after > stop else after + stop if after < -stop else 0.0
         w[k] = now
     seen = np.abs(w) + NOISE * rng.standard_normal(COUNT)
-    return Run(use, "", RATE, {"command": u, "velocity": seen}, {"command": "V", "velocity": "rad/s"}, hold="zoh",
-               use=use, output="velocity")  # fmt: skip
+    return Run(
+        use,
+        "",
+        RATE,
+        {"command": u, "velocity": seen},
+        {"command": "V", "velocity": "rad/s"},
+        hold="zoh",
+        use=use,
+        output="velocity",
+    )
 
 
 @pytest.fixture(scope="module")

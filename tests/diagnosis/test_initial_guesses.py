@@ -85,8 +85,10 @@ def test_a_part_behind_a_spring_begins_below_the_resonance_of_the_record():
     rate, omega, damping = 200.0, 40.0, 0.1
     t, u = np.arange(2000) / rate, np.repeat(np.random.default_rng(3).uniform(-1, 1, 50), 40)
     steps = [(k / rate, step) for k, step in enumerate(np.diff(u, prepend=0.0)) if step]
-    y = sum(step * np.where(t > at, 1 - np.exp(-damping * omega * (t - at)) * np.cos(omega * (t - at)), 0.0)
-            for at, step in steps)  # fmt: skip
+    y = sum(
+        step * np.where(t > at, 1 - np.exp(-damping * omega * (t - at)) * np.cos(omega * (t - at)), 0.0)
+        for at, step in steps
+    )
     run = Run("run", "", rate, {"command": u, "velocity": y}, output="velocity", hold="zoh")
     name = "elastic_load__frequency"
     space: Any = SimpleNamespace(names=(name,), bounds=lambda _: {name: (1.0, 35.0)})

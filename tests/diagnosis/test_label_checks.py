@@ -21,8 +21,14 @@ def test_a_run_as_it_is_labelled_leaves_the_error_of_the_fit():
     matrix = Machine(PLANT, {}, 0.0, small=True, seed=31).measured(every=8)
     models = CandidateModels.of(matrix, Settings())
     fitness = models.fitness(())
-    values = {"Z0": PLANT.Z0, "tau": 0.125 / matrix.runs[0].sample_rate, "Cl": PLANT.Cl, "c0": PLANT.c0,
-              "m0": PLANT.m0, "Ka": PLANT.Ka}  # fmt: skip
+    values = {
+        "Z0": PLANT.Z0,
+        "tau": 0.125 / matrix.runs[0].sample_rate,
+        "Cl": PLANT.Cl,
+        "c0": PLANT.c0,
+        "m0": PLANT.m0,
+        "Ka": PLANT.Ka,
+    }
     run = matrix.of_use("fit")[0]
     left = run.measured - fitness.outputs_at(values)[run.id]
     expected = np.std(left) / np.std(run.measured)

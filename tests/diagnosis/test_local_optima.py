@@ -19,9 +19,12 @@ from ident.diagnosis.selection_loop import add_and_exchange
 def refit(*effects: str, error: float) -> Any:
     """A refit of which the effects and the error count."""
     found = SimpleNamespace(
-        effects=effects, error=error, local=SimpleNamespace(error=error), finite=True,
+        effects=effects,
+        error=error,
+        local=SimpleNamespace(error=error),
+        finite=True,
         held_out=SimpleNamespace(score=error, error=error),
-    )  # fmt: skip
+    )
     found.reordered = lambda order: SimpleNamespace(**{**vars(found), "effects": order})
     return found
 
@@ -30,10 +33,14 @@ def refit(*effects: str, error: float) -> Any:
 def models():
     """A family of models in which nothing is at the noise, each effect as simple as the others."""
     return SimpleNamespace(
-        floor=0.1, at_floor=lambda _refit: False, residual_above_noise=lambda _refit: True,
-        simplicity=lambda name: (1, name), converged=lambda one: one, trial_error=lambda one: one.error,
+        floor=0.1,
+        at_floor=lambda _refit: False,
+        residual_above_noise=lambda _refit: True,
+        simplicity=lambda name: (1, name),
+        converged=lambda one: one,
+        trial_error=lambda one: one.error,
         is_shown=lambda _effect: False,
-    )  # fmt: skip
+    )
 
 
 @pytest.mark.parametrize(("anew", "error"), [(0.7, 0.7), (0.99, 1.0), (1.2, 1.0)])
@@ -47,11 +54,13 @@ def test_a_model_that_is_known_is_found_anew_where_that_leads_to_a_better_optimu
         return Candidate(prediction, refit(*effects, error=ends[prediction.effect]))
 
     for name, made in {
-        "_predictions": lambda *_: predictions, "_near": lambda *_: predictions, "_overlooked": lambda *_: [],
+        "_predictions": lambda *_: predictions,
+        "_near": lambda *_: predictions,
+        "_overlooked": lambda *_: [],
         "_tried": tried,
         "_confirmed": lambda models, base, one, _best: one.refitted(models, base, one.trial),
         "_multistart": lambda _models, _asked, _base, one: one,
-    }.items():  # fmt: skip
+    }.items():
         monkeypatch.setattr(ranking, name, made)
     monkeypatch.setattr(candidate, "evidence", lambda *_: None)
     monkeypatch.setattr(rule, "worth_adding", lambda *_: True)
@@ -88,10 +97,11 @@ def test_what_replaces_an_effect_stands_on_its_rung_and_is_weighed_until_nothing
 
     def ranked(found: Any, **instead: Any) -> list[list[Any]]:
         return [
-            [SimpleNamespace(effect=one[0], refit=one[1])] if (one := instead.get(name)) is not None
+            [SimpleNamespace(effect=one[0], refit=one[1])]
+            if (one := instead.get(name)) is not None
             else [SimpleNamespace(effect=name, refit=found)]
             for name in found.effects
-        ]  # fmt: skip
+        ]
 
     second = other.reordered(("a", "b", "e", "d"))
     rounds = [ranked(first, c=("e", other)), ranked(second, d=("d", better)), ranked(better)]

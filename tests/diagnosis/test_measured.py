@@ -46,10 +46,12 @@ def test_the_ladder_of_a_measured_actuator_helps_on_the_run_held_back(data, full
 
 
 ONE_SIDED = {
-    "name": "one_sided_limit", "place": "spool", "equation": "w = max(w, -1 / max(lim, 1e-9))",
+    "name": "one_sided_limit",
+    "place": "spool",
+    "equation": "w = max(w, -1 / max(lim, 1e-9))",
     "strength": {"symbol": "lim", "unit": "1/m", "lower": 0, "upper": 5},
     "meaning": "the opening is limited on one side",
-}  # fmt: skip
+}
 
 
 @pytest.mark.full

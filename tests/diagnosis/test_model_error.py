@@ -13,8 +13,10 @@ from tests.short_form import short_form
 
 N = 3000
 COLOURS = {
-    "white": ([1.0], [1.0]), "brown": ([1.0], [1.0, -0.99]), "ringing": ([1.0], [1.0, -1.9 * np.cos(0.3), 0.9]),
-}  # fmt: skip
+    "white": ([1.0], [1.0]),
+    "brown": ([1.0], [1.0, -0.99]),
+    "ringing": ([1.0], [1.0, -1.9 * np.cos(0.3), 0.9]),
+}
 
 
 def moved(rng: np.random.Generator, n: int = N) -> tuple[np.ndarray, np.ndarray]:

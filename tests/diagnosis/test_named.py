@@ -10,13 +10,21 @@ from ident.diagnosis.result import Diagnosis, Ranked, Verdict
 from ident.errors import Unusable
 from ident.fit.settings import Settings
 
-OWN = {"name": "overlap", "place": "spool", "equation": "w = w - clip(w, -h, h)",
-       "strength": {"symbol": "h", "unit": "mm", "lower": 0, "upper": 1}}  # fmt: skip
+OWN = {
+    "name": "overlap",
+    "place": "spool",
+    "equation": "w = w - clip(w, -h, h)",
+    "strength": {"symbol": "h", "unit": "mm", "lower": 0, "upper": 1},
+}
 TERMS = tuple(
-    {"name": f"proposed_{power}", "place": "spool", "equation": [f"w = w - s * w**{power}"],
-     "strength": {"symbol": "s", "unit": f"1/m^{power - 1}", "lower": -1.0, "upper": 1.0}}
+    {
+        "name": f"proposed_{power}",
+        "place": "spool",
+        "equation": [f"w = w - s * w**{power}"],
+        "strength": {"symbol": "s", "unit": f"1/m^{power - 1}", "lower": -1.0, "upper": 1.0},
+    }
     for power in (2, 3)
-)  # fmt: skip
+)
 FOUND = Diagnosis(
     effects=("sensor_lag",),
     candidates=(Ranked(effect="dead_zone"), Ranked(effect="overlap")),

@@ -129,11 +129,15 @@ def test_where_the_boldest_promise_is_not_kept_more_is_tried(monkeypatch, kept, 
     promises = {"friction": 0.3, "dead zone": 0.5, "noise": 0.999}
     predictions = [
         SimpleNamespace(
-            effect=name, remaining=share, reduction=1.0 - share, offset_likelihood_gain=0.0,
-            after=SimpleNamespace(score=share, error=share), before=SimpleNamespace(offset=0.0),
+            effect=name,
+            remaining=share,
+            reduction=1.0 - share,
+            offset_likelihood_gain=0.0,
+            after=SimpleNamespace(score=share, error=share),
+            before=SimpleNamespace(offset=0.0),
         )
         for name, share in promises.items()
-    ]  # fmt: skip
+    ]
     asked: list[str] = []
 
     def refitted(_models: Any, _base: Any, prediction: Any, _aim: float, _strong: bool) -> Candidate:
@@ -142,9 +146,12 @@ def test_where_the_boldest_promise_is_not_kept_more_is_tried(monkeypatch, kept, 
         return Candidate(prediction, found)
 
     for name, made in {
-        "_predictions": lambda *_: predictions, "_tried": refitted, "_few": lambda *_: 12,
-        "_confirmed": lambda _models, _base, one, _best: one, "_multistart": lambda _models, _asked, _base, one: one,
-    }.items():  # fmt: skip
+        "_predictions": lambda *_: predictions,
+        "_tried": refitted,
+        "_few": lambda *_: 12,
+        "_confirmed": lambda _models, _base, one, _best: one,
+        "_multistart": lambda _models, _asked, _base, one: one,
+    }.items():
         monkeypatch.setattr(f"ident.diagnosis.ranking.{name}", made)
     models: Any = SimpleNamespace(simplicity=lambda name: (1, name), trial_error=lambda _base: 1.0)
     base: Any = SimpleNamespace(effects=())

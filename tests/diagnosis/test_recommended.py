@@ -161,10 +161,14 @@ def test_a_start_where_the_model_is_unstable_is_refused():
         identify(data, wild)
 
 
-@pytest.mark.parametrize(("chosen", "said"), [
-    ({"effects": ("stiction",)}, "refitted no model with just stiction added; choose from "),
-    ({"terms": 4}, "4 terms of "), ({"effects": ("dead_zone",), "terms": 1}, "give one of the two"),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    ("chosen", "said"),
+    [
+        ({"effects": ("stiction",)}, "refitted no model with just stiction added; choose from "),
+        ({"terms": 4}, "4 terms of "),
+        ({"effects": ("dead_zone",), "terms": 1}, "give one of the two"),
+    ],
+)
 def test_what_a_diagnosis_did_not_refit_is_refused_with_what_it_did(chosen, said):
     _, found = stored(STORED[-1])
     with pytest.raises(Unusable) as refused:
@@ -175,9 +179,12 @@ def test_what_a_diagnosis_did_not_refit_is_refused_with_what_it_did(chosen, said
 def definition_with(shape: dict) -> dict:
     """The definition of an effect with that shape."""
     return {
-        "name": "proposed_1", "place": "spool", "equation": ["w = w + s * w * d"], "shape": shape,
+        "name": "proposed_1",
+        "place": "spool",
+        "equation": ["w = w + s * w * d"],
+        "shape": shape,
         "strength": {"symbol": "s", "unit": "1", "lower": -1, "upper": 1},
-    }  # fmt: skip
+    }
 
 
 def test_a_definition_that_a_refit_wrote_is_read_again():

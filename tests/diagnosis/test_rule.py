@@ -41,10 +41,15 @@ def test_means_of_three_in_ten_thousand_of_the_deviation_matter(level, is_enough
     assert rule.matters(evidence(level=level, level_share=BlockMean(0.5, 0.0, 20))) is is_enough
 
 
-@pytest.mark.parametrize(("gain", "most", "bar", "improves"), [
-    (2.9, 1e3, 0.0, False), (3.9, 1e3, 0.0, True),  # an effect has to gain 3.4 nats whatever the bar
-    (43.0, 100.0, 1e3, False), (57.0, 100.0, 1e3, True),  # and half of the largest gain, or more than the bar
-])  # fmt: skip
+@pytest.mark.parametrize(
+    ("gain", "most", "bar", "improves"),
+    [
+        (2.9, 1e3, 0.0, False),
+        (3.9, 1e3, 0.0, True),  # an effect has to gain 3.4 nats whatever the bar
+        (43.0, 100.0, 1e3, False),
+        (57.0, 100.0, 1e3, True),  # and half of the largest gain, or more than the bar
+    ],
+)
 def test_a_gain_improves_that_is_worth_a_parameter_and_passes_the_bar_or_half_of_what_can_be_gained(
     gain, most, bar, improves
 ):

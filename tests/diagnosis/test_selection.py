@@ -69,8 +69,13 @@ class Judged:
         values = dict.fromkeys(effects, 1.0)
         here = self.met.setdefault(frozenset(effects), SimpleNamespace(error=score))
         found = Refit(
-            effects=tuple(effects), values=values, finite=True, held_out=held_out, local=here, error=score,
-        )  # fmt: skip
+            effects=tuple(effects),
+            values=values,
+            finite=True,
+            held_out=held_out,
+            local=here,
+            error=score,
+        )
         found.reordered = lambda order: Refit(**{**vars(found), "effects": order})
         return found
 
@@ -444,9 +449,12 @@ def test_a_selected_set_is_extended_by_strong_effects_before_other_sets_are_look
 
     farther = ("exchange_pass", "joint_refit", "strong_starts", "runner_up", "pair_search")
     found = SimpleNamespace(
-        above_floor=lambda _: True, may_lack_width=over, latest=begun, with_what_was_met=lambda latest: latest,
+        above_floor=lambda _: True,
+        may_lack_width=over,
+        latest=begun,
+        with_what_was_met=lambda latest: latest,
         **{name: lambda _, name=name: called.append(name) for name in farther},
-    )  # fmt: skip
+    )
     assert select(found, begun) is begun  # type: ignore[arg-type]
     assert called.index("strong_starts") < called.index("runner_up")
     assert sorted(called) == sorted(farther)

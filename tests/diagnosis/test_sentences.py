@@ -49,8 +49,16 @@ def test_a_part_that_nobody_described_is_named_by_what_it_does():
 
 def test_an_effect_of_a_group_is_said_with_the_others_and_the_probability_of_the_group():
     groups, single = [("backlash", "spool_stiction")], {"spool_stiction": 0.6, "backlash": 0.36, "dead_zone": 0.97}
-    text = verdict_text(("spool_stiction", "dead_zone"), groups, (), False, {"fit": 0.01}, 0.2, probabilities=single,
-                        group_probabilities=[0.96])  # fmt: skip
+    text = verdict_text(
+        ("spool_stiction", "dead_zone"),
+        groups,
+        (),
+        False,
+        {"fit": 0.01},
+        0.2,
+        probabilities=single,
+        group_probabilities=[0.96],
+    )
     assert "lacks spool stiction or backlash (one of them: probability 96 %) and dead zone (probability 97 %)" in text
     assert ": with spool stiction and dead zone the error falls" in text
     doubtful = {"dead_zone": 0.04, "nothing": 0.95, "unlisted": 0.01}
@@ -73,11 +81,25 @@ def test_an_error_above_its_floor_is_drift_rather_than_something_unlisted_where_
 def test_effects_that_are_nearly_as_probable_as_the_named_one_are_said():
     """Dry friction of two forms explains nearly as much: whoever reads one name alone would think that it is sure."""
     probable = {"presliding_friction": 0.11, "coulomb_friction": 0.1, "backlash": 0.09, "dead_zone": 0.05}
-    text = verdict_text(("presliding_friction",), [("presliding_friction", "backlash")], (), False, {"fit": 0.1}, 0.2,
-                        probabilities=probable | {"nothing": 0.2, "unlisted": 0.4})  # fmt: skip
+    text = verdict_text(
+        ("presliding_friction",),
+        [("presliding_friction", "backlash")],
+        (),
+        False,
+        {"fit": 0.1},
+        0.2,
+        probabilities=probable | {"nothing": 0.2, "unlisted": 0.4},
+    )
     assert "Nearly as probable: Coulomb friction (probability 10 %)." in text
-    text = verdict_text(("presliding_friction", "dead_zone"), (), (), False, {"fit": 0.1}, 0.2,
-                        probabilities={**probable, "dead_zone": 0.002, "free_play": 0.001})  # fmt: skip
+    text = verdict_text(
+        ("presliding_friction", "dead_zone"),
+        (),
+        (),
+        False,
+        {"fit": 0.1},
+        0.2,
+        probabilities={**probable, "dead_zone": 0.002, "free_play": 0.001},
+    )
     assert "Nearly as probable: Coulomb friction (probability 10 %) and backlash (probability 9 %)." in text
     sure = probable | {"presliding_friction": 0.8}
     text = verdict_text(("presliding_friction",), (), (), False, {"fit": 0.1}, 0.2, probabilities=sure)
@@ -154,9 +176,16 @@ def test_nothing_is_missing_on_estimation_data_alone_where_validation_data_have_
 
 def test_what_is_by_chance_is_said_with_the_error_with_it():
     text = verdict_text(
-        (), (), (), False, {"fit": 0.0123}, 0.0123, floor=0.012, probabilities={"nothing": 0.62},
+        (),
+        (),
+        (),
+        False,
+        {"fit": 0.0123},
+        0.0123,
+        floor=0.012,
+        probabilities={"nothing": 0.62},
         by_chance=(("lag",), 0.0121),
-    )  # fmt: skip
+    )
     assert text.startswith(
         "Probably nothing is missing (probability 62 %). The error on estimation data falls from 1.23 % to 1.21 % with "
     )
@@ -168,8 +197,16 @@ def test_a_verdict_says_what_an_effect_does_once(against):
     models = family(matrix(Actuator("ANY")))
     rises = [Contradiction("cubic_stiffness", 0.1, 0.2, 3.0)] if against else []
     added = ("dead_zone", "cubic_stiffness", "spool_stiction")
-    text = verdict_text(added, [("spool_stiction", "backlash")], (), False, {"fit": 0.01}, 0.2, against=rises,
-                        described=models.described)  # fmt: skip
+    text = verdict_text(
+        added,
+        [("spool_stiction", "backlash")],
+        (),
+        False,
+        {"fit": 0.01},
+        0.2,
+        against=rises,
+        described=models.described,
+    )
     assert text.count("stiffness that changes with position") == 1
     assert text.count("(the spool moves only above a breakaway signal, at the valve)") == 1
     assert text.count("spool stiction") == 2
@@ -204,9 +241,19 @@ def found(share: float, losing: bool = False) -> Evidence:
     """An effect that takes a share of what is above the noise, and loses in one span of the records or in none."""
     sure, lost = BlockMean(share, 0.02, 20), BlockMean(-0.5, 0.01, 20)
     return Evidence(
-        gain=20.0, without=20.0, most=100.0, distinct=50.0, before=0.01, after=0.008, noise=0.0001, difference=sure,
-        share=sure, by_part=lambda: {LAST: lost if losing else sure}, apart=0.001, resolved=1e-6,
-    )  # fmt: skip
+        gain=20.0,
+        without=20.0,
+        most=100.0,
+        distinct=50.0,
+        before=0.01,
+        after=0.008,
+        noise=0.0001,
+        difference=sure,
+        share=sure,
+        by_part=lambda: {LAST: lost if losing else sure},
+        apart=0.001,
+        resolved=1e-6,
+    )
 
 
 @pytest.mark.parametrize(

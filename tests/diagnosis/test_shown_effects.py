@@ -24,9 +24,15 @@ def counted(seed: int, use: str) -> Matrix:
     _, speed, _ = lsim(([8.0], [LAG, 1.0]), volts, np.arange(len(volts)))
     speed = np.abs(speed) + NOISE * speed.std() * rng.standard_normal(len(speed))
     return from_arrays(
-        {"command": volts, "velocity": speed}, units={"command": "V", "velocity": "rad/s"}, output="velocity",
-        sample_rate="100 Hz", id=f"{use}-{seed}", use=use, hold="linear", actuator={"serial": "COUNTER"},
-    )  # fmt: skip
+        {"command": volts, "velocity": speed},
+        units={"command": "V", "velocity": "rad/s"},
+        output="velocity",
+        sample_rate="100 Hz",
+        id=f"{use}-{seed}",
+        use=use,
+        hold="linear",
+        actuator={"serial": "COUNTER"},
+    )
 
 
 @pytest.mark.full

@@ -57,8 +57,10 @@ def test_the_catalogues_verdict_stands_whatever_fails_later(monkeypatch, caplog)
     before = heard[-1]  # told before the terms were searched for, and with all that was known by then
     assert TERMS in before.not_looked_at
     assert (before.verdict.effects, before.candidates, before.ladder) == (
-        found.verdict.effects, found.candidates, found.ladder,
-    )  # fmt: skip
+        found.verdict.effects,
+        found.candidates,
+        found.ladder,
+    )
 
 
 @pytest.mark.usefixtures("few_effects", "survives")

@@ -90,7 +90,7 @@ class Counted:
 
     def diagnosis(
         self, last: int | None = None, propose: bool = True, fit: FitResult | None = None
-    ) -> tuple[Diagnosis, Events]:  # fmt: skip
+    ) -> tuple[Diagnosis, Events]:
         """A diagnosis whose time is over at the `last` batch, and its batches."""
         self.events = events = Events(last)
         found = diagnose(matrix(), fit, most=1, propose=propose, report=events.report, budget=events.budget)

@@ -34,13 +34,22 @@ LEAD = Findings(added=("lead",), residual=NOISE, verify=(FALLS,))
         (replace(LEAD, verify=(VerifyChange("lead", 0.1, None),)), "contradicted", False),  # unstable with it
         (replace(LEAD, at_bound=("lead",)), "found", False),
         (replace(LEAD, at_bound=("lead",), residual=Residual(0.01, None, correlation=0.1)), "stand_in", False),
-        (replace(LEAD, added=("lead", "lag"), dispensable=("lag",), at_bound=("lag",),
-                 residual=Residual(0.01, None, correlation=0.1)), "found", False),
+        (
+            replace(
+                LEAD,
+                added=("lead", "lag"),
+                dispensable=("lag",),
+                at_bound=("lag",),
+                residual=Residual(0.01, None, correlation=0.1),
+            ),
+            "found",
+            False,
+        ),
         (Findings(residual=NOISE), "nothing", False),
         (Findings(residual=FAR), "nothing", True),
         (replace(LEAD, dispensable=("lead",)), "nothing", False),
     ],
-)  # fmt: skip
+)
 def test_how_a_verdict_stands(found, standing, unexplained):
     verdict = conclude(found)
     assert (verdict.standing, verdict.unexplained) == (standing, unexplained)
@@ -174,9 +183,11 @@ def test_other_criteria_lead_to_another_verdict():
 def test_a_group_is_told_once_and_never_with_what_is_dispensable():
     """Lag and delay stand in a group each and in a pair: the pair says it all."""
     found = Findings(
-        added=("lag", "delay", "play"), alternatives=(("lag", "lead"), ("delay",), ("play", "dead_zone")),
-        lag_pairs=(("lag", "delay", "lead"),), residual=FAR,
-    )  # fmt: skip
+        added=("lag", "delay", "play"),
+        alternatives=(("lag", "lead"), ("delay",), ("play", "dead_zone")),
+        lag_pairs=(("lag", "delay", "lead"),),
+        residual=FAR,
+    )
     assert conclude(found).indistinguishable == (("play", "dead_zone"), ("lag", "delay", "lead"))
     assert conclude(replace(found, dispensable=("play",))).indistinguishable == (("lag", "delay", "lead"),)
 
@@ -203,8 +214,11 @@ def test_the_numbers_of_a_group_stand_beside_it_and_those_of_no_group_are_left_o
     near = Separation(1.0, 12.3, 1e-6, 1e-5, 1e-6, 0.0, 3e-4, 1e-7, 1e-6)
     both = tuple(Alternative(other, name, near) for name, other in (("lag", "lead"), ("play", "dead_zone")))
     found = Findings(
-        added=("lag", "play"), alternatives=(("lag", "lead"), ("play", "dead_zone")), compared=both, residual=FAR,
-    )  # fmt: skip
+        added=("lag", "play"),
+        alternatives=(("lag", "lead"), ("play", "dead_zone")),
+        compared=both,
+        residual=FAR,
+    )
     assert conclude(found).alternatives == both
     assert conclude(replace(found, dispensable=("play",))).alternatives == both[:1]
     competing = replace(found, competing=both, dispensable=("play",))

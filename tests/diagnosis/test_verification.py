@@ -71,16 +71,18 @@ def test_a_run_that_cannot_be_followed_with_an_effect_is_a_contradiction_and_one
 def test_chance_contradicts_seldom():
     """Residuals of one size that know nothing of each other: two standard errors, on one side."""
     runs = [run_of(1)]
-    count = sum(judged("lead", runs, [residual(2 * i, 0.1)], [residual(2 * i + 1, 0.1)]) is not None
-                for i in range(200))  # fmt: skip
+    count = sum(
+        judged("lead", runs, [residual(2 * i, 0.1)], [residual(2 * i + 1, 0.1)]) is not None for i in range(200)
+    )
     assert count <= 12
 
 
 def test_what_acts_in_runs_to_verify_lowers_their_error_as_is_due_and_what_does_not_shows_nothing():
     """A part of the output that the effect makes, in noise: there as fitted, not at all, and half of it."""
     runs, made, noise = [run_of(1)], residual(1, 0.08), residual(2, 0.1)
-    acts, not_there, half = (verify_change("lead", runs, [noise + share * made], [noise + (share - 1.0) * made])
-                             for share in (1.0, 0.0, 0.5))  # fmt: skip
+    acts, not_there, half = (
+        verify_change("lead", runs, [noise + share * made], [noise + (share - 1.0) * made]) for share in (1.0, 0.0, 0.5)
+    )
     assert acts.shown == pytest.approx(0.08, rel=0.02)
     assert acts.due == pytest.approx(-acts.rise, rel=0.2)
     assert [shows_nothing(one) for one in (acts, not_there, half)] == [False, False, True]
@@ -98,8 +100,16 @@ def test_no_error_is_foretold_by_an_effect_that_changes_the_output_by_more_than_
 
 def test_what_acts_seldom_shows_nothing():
     runs = [run_of(1)]
-    found = [verify_change("lead", runs, [residual(2 * i, 0.1) + (made := residual(2 * i + 1, size))],
-                           [residual(2 * i, 0.1) + 0.1 * made]) for i in range(60) for size in (0.03, 0.1)]  # fmt: skip
+    found = [
+        verify_change(
+            "lead",
+            runs,
+            [residual(2 * i, 0.1) + (made := residual(2 * i + 1, size))],
+            [residual(2 * i, 0.1) + 0.1 * made],
+        )
+        for i in range(60)
+        for size in (0.03, 0.1)
+    ]
     assert sum(map(shows_nothing, found)) <= 2
 
 

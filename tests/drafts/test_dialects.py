@@ -39,7 +39,7 @@ def text(*head: str, delimiter: str = ";", comma: bool = True) -> str:
         (text("t\tu\tx", delimiter="\t"), Dialect(delimiter="tab", decimal="comma")),
         (text("t u x", delimiter="   ", comma=False), Dialect(delimiter="space")),
     ],
-)  # fmt: skip
+)
 def test_what_is_stated_is_read_and_stands_in_the_description(content, dialect):
     """The samples are those that were written, and the matrix that the description makes has them too."""
     file = read_raw(content.encode(), "run.csv", stated=dialect)
@@ -83,7 +83,7 @@ def test_the_head_says_the_dialect_that_was_found():
         (Dialect(header_rows=1, skip_rows=3), "bad-rows"),
         (Dialect(delimiter="pipe", decimal="point"), "no-columns"),
     ],
-)  # fmt: skip
+)
 def test_a_dialect_that_cannot_be_is_refused_and_shown_with_the_lines_of_the_file(dialect, code):
     """Where a person describes the file it is a question with the problem; everywhere else an error."""
     content = text("t;u;x").encode()

@@ -117,9 +117,12 @@ def answered(answers, key, folder, truth):
 
 @pytest.mark.parametrize(
     "head",
-    [("time [s],Command (V),Position [mm]",), ("time,command,position", "s,V,mm"),
-     ("Bench 4", "Operator: A", "time,cmd,disp", "(s),(V),(mm)")],
-)  # fmt: skip
+    [
+        ("time [s],Command (V),Position [mm]",),
+        ("time,command,position", "s,V,mm"),
+        ("Bench 4", "Operator: A", "time,cmd,disp", "(s),(V),(mm)"),
+    ],
+)
 def test_units_of_headers_and_of_a_row_below_them_are_found(head):
     """Nothing but the serial number is asked."""
     file = raw(table(*head))
@@ -157,11 +160,13 @@ def test_files_that_state_units_are_asked_only_what_a_column_is(form):
 
 @pytest.mark.parametrize(
     ("head", "asked"),
-    [("time,command,position", {"unit time", "unit command", "unit displacement"}),
-     ("time [s],cmd 1 [V],cmd 2 [V]", {"channel command", "channel displacement"}),
-     ("n,command [V],position [widget]", {"rate", "unit displacement"}),
-     ("time [s],command [V],position [1]", {"unit displacement"})],
-)  # fmt: skip
+    [
+        ("time,command,position", {"unit time", "unit command", "unit displacement"}),
+        ("time [s],cmd 1 [V],cmd 2 [V]", {"channel command", "channel displacement"}),
+        ("n,command [V],position [widget]", {"rate", "unit displacement"}),
+        ("time [s],command [V],position [1]", {"unit displacement"}),
+    ],
+)
 def test_what_could_be_another_thing_is_asked(head, asked):
     """Units that are not stated or not known, two columns of one name's kind, a time that is none."""
     assert {one.key for one in Draft([raw(table(head))], Answers(serial="x")).missing} == asked
@@ -349,9 +354,10 @@ def test_files_with_other_names_have_columns_units_and_clocks_of_their_own():
     files = [raw(IN_MS, "a.csv"), raw(OTHER_NAMES, "b.csv"), raw(OTHER_NAMES, "c.csv")]
     draft = Draft(files, Answers(serial="S", files={"a.csv": FileAnswers(SAID)}))
     assert {(one.key, one.files) for one in draft.missing} == {
-        ("channel command", ("b.csv", "c.csv")), ("channel displacement", ("b.csv", "c.csv")),
+        ("channel command", ("b.csv", "c.csv")),
+        ("channel displacement", ("b.csv", "c.csv")),
         ("rate", ("b.csv", "c.csv")),
-    }  # fmt: skip
+    }
     assert any(one.question.endswith(", of b.csv, c.csv") for one in draft.missing)
     with pytest.raises(Unusable, match=r"--channel command@b\.csv=COLUMN:UNIT"):
         draft.description()
@@ -419,10 +425,12 @@ def test_the_rate_and_the_units_of_a_tdms_are_found(tmp_path):
 
     with TdmsWriter(tmp_path / "run.tdms") as writer:
         of_all = {"wf_increment": 0.002}
-        writer.write_segment([
-            ChannelObject("g", name, np.sin(np.arange(40.0)), of_all | {"unit_string": unit})
-            for name, unit in (("command", "V"), ("position", "mm"))
-        ])  # fmt: skip
+        writer.write_segment(
+            [
+                ChannelObject("g", name, np.sin(np.arange(40.0)), of_all | {"unit_string": unit})
+                for name, unit in (("command", "V"), ("position", "mm"))
+            ]
+        )
     file = read_raw((tmp_path / "run.tdms").read_bytes(), "run.tdms")
     known = Draft([file], Answers()).known(file)
     assert (known.rate, known.channels["command"].unit, known.channels["displacement"].unit) == ("500 Hz", "V", "mm")

@@ -90,10 +90,12 @@ def test_a_labview_file_states_that_its_time_is_in_seconds_and_its_units_in_word
 
 @pytest.mark.parametrize(
     ("head", "command"),
-    [("time_s,commanded_deg_s,angle_deg,feedback_deg_s", "commanded_deg_s"),
-     ("time_s,velocity_setpoint_rad_s,velocity_rad_s", "velocity_setpoint_rad_s"),
-     ("time_s,target_velocity_mm_s,target_position_mm,position_mm", "target_position_mm")],
-)  # fmt: skip
+    [
+        ("time_s,commanded_deg_s,angle_deg,feedback_deg_s", "commanded_deg_s"),
+        ("time_s,velocity_setpoint_rad_s,velocity_rad_s", "velocity_setpoint_rad_s"),
+        ("time_s,target_velocity_mm_s,target_position_mm,position_mm", "target_position_mm"),
+    ],
+)
 def test_the_command_of_a_loop_of_speed_is_known_by_its_name(head, command):
     """A controller of a position logs both its targets: that of the position is the command."""
     names = head.split(",")

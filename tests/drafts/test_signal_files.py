@@ -32,28 +32,37 @@ def cosine(t):
 @pytest.mark.parametrize(
     ("names", "runs"),
     [
-        (("pos1_A.txt", "vel1_A.txt", "tau1_A.txt", "pos1_B.txt", "vel1_B.txt"),
-         {"1_A": ["pos", "vel", "tau"], "1_B": ["pos", "vel"]}),
+        (
+            ("pos1_A.txt", "vel1_A.txt", "tau1_A.txt", "pos1_B.txt", "vel1_B.txt"),
+            {"1_A": ["pos", "vel", "tau"], "1_B": ["pos", "vel"]},
+        ),
         (("command_mm.txt", "position_mm.txt"), {"run": ["command_mm", "position_mm"]}),
         (("A/pos.txt", "A/vel.txt", "B/pos.txt", "B/vel.txt"), {"A": ["pos", "vel"], "B": ["pos", "vel"]}),
         (("load_test_2_pos.csv", "load_test_2_vel.csv"), {"load_test_2": ["pos", "vel"]}),
-        (("current_A.csv", "vel_A.csv", "current_B.csv", "vel_B.csv"),
-         {"A": ["current", "vel"], "B": ["current", "vel"]}),
+        (
+            ("current_A.csv", "vel_A.csv", "current_B.csv", "vel_B.csv"),
+            {"A": ["current", "vel"], "B": ["current", "vel"]},
+        ),
         (("SCOPE_CH1.csv", "SCOPE_CH2.csv"), {"SCOPE": ["CH1", "CH2"]}),
         (("PositionRun1.csv", "VelocityRun1.csv"), {"Run1": ["Position", "Velocity"]}),
         (("est_pos1_05_exp1.txt", "est_q1_05_exp1.txt"), {"est_1_05_exp1": ["pos", "q"]}),
         (("run1_pos.csv", "run2_pos.csv"), {}),
         (("a.csv", "b.csv", "c.csv"), {}),
     ],
-)  # fmt: skip
+)
 def test_a_run_is_the_files_whose_names_differ_by_the_signal(names, runs):
     assert {run: list(signals.values()) for run, signals in named_runs(names).items()} == runs
 
 
 def test_several_runs_of_several_files_are_a_matrix():
     """Neither the order of the files nor a file that is a run by itself matters."""
-    files = [("vel1_B.txt", of(cosine)), ("pos1_A.txt", of(sine)), ("whole.csv", b"t,x,y\n0,1,2\n1,3,4\n"),
-             ("pos1_B.txt", of(sine)), ("vel1_A.txt", of(cosine))]  # fmt: skip
+    files = [
+        ("vel1_B.txt", of(cosine)),
+        ("pos1_A.txt", of(sine)),
+        ("whole.csv", b"t,x,y\n0,1,2\n1,3,4\n"),
+        ("pos1_B.txt", of(sine)),
+        ("vel1_A.txt", of(cosine)),
+    ]
     whole = with_runs_joined(files)
     assert [name for name, _ in whole] == ["1_B.csv", "1_A.csv", "whole.csv"]
     assert whole[2] == files[2]
@@ -82,8 +91,10 @@ def test_the_remark_that_tells_of_files_without_names_has_no_names_of_columns(si
 def test_signals_with_clocks_of_their_own_are_brought_to_the_fastest_and_it_is_said():
     """Over the time that all cover, in seconds where one clock counts milliseconds; sin and cos tell how well."""
     slow = 1000 * (np.arange(120) / 50 - 0.1)
-    files = [("pos.txt", of(sine, TIME + 0.0037, "time [s],value")),
-             ("vel.txt", of(lambda t: cosine(t / 1000), slow, "time [ms],value"))]  # fmt: skip
+    files = [
+        ("pos.txt", of(sine, TIME + 0.0037, "time [s],value")),
+        ("vel.txt", of(lambda t: cosine(t / 1000), slow, "time [ms],value")),
+    ]
     ((name, data),) = with_runs_joined(files)
     read = read_raw(data, name)
     assert "their times differ, so all signals were resampled to 100 Hz" in read.remarks[0]
@@ -109,7 +120,7 @@ def test_a_time_in_a_file_of_its_own_is_the_time():
         ([("pos.txt", of(sine)), ("vel.txt", b"1\n2\n")], "unequal-lengths"),
         ([("a.txt", b"1\n2\n"), ("a.txt", b"1\n2\n")], "duplicate-file"),
     ],
-)  # fmt: skip
+)
 def test_files_that_are_no_run_are_refused_in_a_line(files, code):
     with pytest.raises(Unusable) as refused:
         with_runs_joined(files)
@@ -126,13 +137,20 @@ def test_everything_that_is_missing_is_asked_in_one_command_that_names_what_can_
     """The column of times that has no name, and the one column that is left for the command."""
     rows = "\n".join(f"{n / 100},{n % 7},{n % 5}" for n in range(50))
     plain = Draft([read_raw(rows.encode(), "a.csv")], Answers())
-    assert plain.options == ("--serial SERIAL", "--channel command=COLUMN:UNIT", "--channel displacement=COLUMN:UNIT",
-                             "--time 0:UNIT")  # fmt: skip
-    named = Draft([read_raw(f"t,x pos,the drive\n{rows}".encode(), "a.csv")],
-                  Answers("S", {"displacement": Answer("x pos")}))  # fmt: skip
+    assert plain.options == (
+        "--serial SERIAL",
+        "--channel command=COLUMN:UNIT",
+        "--channel displacement=COLUMN:UNIT",
+        "--time 0:UNIT",
+    )
+    named = Draft(
+        [read_raw(f"t,x pos,the drive\n{rows}".encode(), "a.csv")], Answers("S", {"displacement": Answer("x pos")})
+    )
     assert named.options == ("--channel command='the drive':UNIT", "--channel displacement=:UNIT", "--time :UNIT")
-    stated = Draft([read_raw(f"t [s],x pos [mm],the drive [V]\n{rows}".encode(), "a.csv")],
-                   Answers("S", {"displacement": Answer("x pos [mm]")}))  # fmt: skip
+    stated = Draft(
+        [read_raw(f"t [s],x pos [mm],the drive [V]\n{rows}".encode(), "a.csv")],
+        Answers("S", {"displacement": Answer("x pos [mm]")}),
+    )
     assert stated.options == ("--channel command='the drive [V]'",)
     assert [one.is_whole for one in (plain, named, stated)] == [False, False, True]
 
@@ -145,7 +163,9 @@ def test_one_column_that_is_left_is_not_named_for_two_channels():
 
 def test_what_is_missing_of_some_files_is_asked_of_each_of_them():
     rows = "\n".join(f"{n},{n % 7}" for n in range(50))
-    files = [read_raw(f"{names}\n{rows}".encode(), name) for names, name in
-             (("cmd [mm],pos", "a.csv"), ("cmd [mm],pos", "b.csv"), ("cmd [mm],pos [mm]", "c.csv"))]  # fmt: skip
+    files = [
+        read_raw(f"{names}\n{rows}".encode(), name)
+        for names, name in (("cmd [mm],pos", "a.csv"), ("cmd [mm],pos", "b.csv"), ("cmd [mm],pos [mm]", "c.csv"))
+    ]
     draft = Draft(files, Answers("S", rate="1 kHz"))
     assert draft.options == ("--channel displacement@a.csv=:UNIT", "--channel displacement@b.csv=:UNIT")

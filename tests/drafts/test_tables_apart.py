@@ -29,8 +29,10 @@ def test_each_table_is_a_file_of_its_own(name, first, ending):
     for number, (part, data) in enumerate(parts, 1):
         file = read_raw(data, part)
         assert [(one.meaning, one.unit) for one in file.columns] == [
-            ("Time", "Sec"), ("Displacement", "mm"), ("Force", "kN")
-        ]  # fmt: skip
+            ("Time", "Sec"),
+            ("Displacement", "mm"),
+            ("Force", "kN"),
+        ]
         np.testing.assert_allclose(file.samples(0), 20 * number + np.arange(12) / 500, atol=1e-9)
         np.testing.assert_allclose(file.samples(1), np.sin(np.arange(12) + 100 * number), atol=1e-6)
         assert f"{part} is cut from {name}, table {number} of 3" in file.remarks

@@ -41,13 +41,26 @@ def command(seed: int) -> np.ndarray:
 
 
 def ours(
-    model: Preset, values: Mapping[str, float], cell: linear.Cell, u: np.ndarray, hold: str,
-    output: str = "displacement", steps: int | None = None,
-) -> np.ndarray:  # fmt: skip
+    model: Preset,
+    values: Mapping[str, float],
+    cell: linear.Cell,
+    u: np.ndarray,
+    hold: str,
+    output: str = "displacement",
+    steps: int | None = None,
+) -> np.ndarray:
     """The program's output for a machine of Table 4 with some values changed."""
     specimen = Specimen(cell.mass, cell.stiffness, cell.damping)
-    run = Run("run", "", linear.SAMPLE_RATE, {"command": u, output: np.zeros_like(u)}, specimen=specimen,
-              gain=cell.gain, hold=hold, output=output)  # fmt: skip
+    run = Run(
+        "run",
+        "",
+        linear.SAMPLE_RATE,
+        {"command": u, output: np.zeros_like(u)},
+        specimen=specimen,
+        gain=cell.gain,
+        hold=hold,
+        output=output,
+    )
     known = {p.in_equations: p.value for p in model.parameters} | conditions(run, Actuator("", piston_area=PLANT.A))
     known |= {model.parameter(name).in_equations: value for name, value in values.items()}
     batch = {name: np.array([[value]]) for name, value in known.items()}
@@ -195,10 +208,12 @@ def test_an_effect_that_redefines_a_state_is_refused_and_told_what_it_may_redefi
 def test_a_new_effect_is_one_definition():
     """What a user would add is simulated as it is written, without touching anything else."""
     sag = Effect(
-        name="sag", place="spool", meaning="gain falls with the square of the opening",
+        name="sag",
+        place="spool",
+        meaning="gain falls with the square of the opening",
         strength=Parameter("depth", "d", "1/m^2", 0.0, 1e3, 0.0, "relative fall for each square metre"),
         texts=("w = w * (1 - d * w**2)",),
-    )  # fmt: skip
+    )
     model = PRESETS["qian2014"].with_effects((sag,))
     off = ours(model, {"sag": 0.0}, CELLS[0], command(0), "linear")
     on = ours(model, {"sag": 500.0}, CELLS[0], command(0), "linear")

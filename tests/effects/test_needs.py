@@ -205,73 +205,140 @@ def bent(curvature: float) -> np.ndarray:
 CASES = {
     "speed_asymmetry": Case("first_order", {"speed_asymmetry.asymmetry": 0.5}, lambda k: lag(turned=0.5 * k), {}),
     "progressive_drive": Case(
-        "first_order", {"progressive_drive.inverse_command": 2.0}, lambda k: lag(squared=2.0 * k), {}),
+        "first_order", {"progressive_drive.inverse_command": 2.0}, lambda k: lag(squared=2.0 * k), {}
+    ),
     "drive_hysteresis": Case(
-        "first_order", {"drive_hysteresis.share": 0.6, "drive_hysteresis.inverse_way": 4.0},
-        lambda k: driven_with_hysteresis(0.6 * k, 4.0), {}),
+        "first_order",
+        {"drive_hysteresis.share": 0.6, "drive_hysteresis.inverse_way": 4.0},
+        lambda k: driven_with_hysteresis(0.6 * k, 4.0),
+        {},
+    ),
     "second_capacity": Case(
-        "first_order", {"second_capacity.exchange": 0.7, "second_capacity.time": 0.9},
-        lambda k: two_capacities(0.7 * k, 0.9), {}),
+        "first_order",
+        {"second_capacity.exchange": 0.7, "second_capacity.time": 0.9},
+        lambda k: two_capacities(0.7 * k, 0.9),
+        {},
+    ),
     "root_outflow": Case(
-        "first_order", {"root_outflow.share": 0.7, "root_outflow.level": 0.6},
-        lambda k: lag(lambda x: x + 0.7 * k * (np.sign(x) * np.sqrt(0.6 * abs(x)) - x)), {}),
+        "first_order",
+        {"root_outflow.share": 0.7, "root_outflow.level": 0.6},
+        lambda k: lag(lambda x: x + 0.7 * k * (np.sign(x) * np.sqrt(0.6 * abs(x)) - x)),
+        {},
+    ),
     "overflow": Case(
-        "first_order", {"overflow.inverse_level": 1.0, "overflow.ratio": 30.0},
-        lambda k: lag(lambda x: x + 30.0 * x * max(k * x - 1.0, 0.0)), {}),
+        "first_order",
+        {"overflow.inverse_level": 1.0, "overflow.ratio": 30.0},
+        lambda k: lag(lambda x: x + 30.0 * x * max(k * x - 1.0, 0.0)),
+        {},
+    ),
     "upper_overflow": Case(
         "two_tanks",
         {"upper_overflow.inverse_level": 1.25, "upper_overflow.ratio": 30.0, "upper_overflow.caught": CAUGHT},
-        lambda k: tanks(0.8 / k if k else 0.0), {}),
+        lambda k: tanks(0.8 / k if k else 0.0),
+        {},
+    ),
     "sensor_curve": Case(
-        "first_order", {"sensor_curve.curvature": 0.3, "sensor_curve.end": RANGE}, lambda k: bent(0.3 * k), {}),
+        "first_order", {"sensor_curve.curvature": 0.3, "sensor_curve.end": RANGE}, lambda k: bent(0.3 * k), {}
+    ),
     "normal_force_friction": Case(
-        "drive", {"normal_force_friction.coefficient": 0.6},
-        lambda k: mass(lambda t, _x, v: 0.6 * k * at(SQUEEZE, t) * dry(v)), {"vertical_load": SQUEEZE}, 1e-2),
+        "drive",
+        {"normal_force_friction.coefficient": 0.6},
+        lambda k: mass(lambda t, _x, v: 0.6 * k * at(SQUEEZE, t) * dry(v)),
+        {"vertical_load": SQUEEZE},
+        1e-2,
+    ),
     "pressure_friction": Case(
-        "drive", {"pressure_friction.area": 5e-3},
-        lambda k: mass(lambda t, _x, v: 0.5 * k * at(SQUEEZE, t) * dry(v)), {"load_pressure": 1e2 * SQUEEZE}, 1e-2),
+        "drive",
+        {"pressure_friction.area": 5e-3},
+        lambda k: mass(lambda t, _x, v: 0.5 * k * at(SQUEEZE, t) * dry(v)),
+        {"load_pressure": 1e2 * SQUEEZE},
+        1e-2,
+    ),
     "damping_asymmetry": Case(
-        "drive", {"damping_asymmetry.coefficient": 1.5}, lambda k: mass(lambda _t, _x, v: 1.5 * k * abs(v)), {}),
+        "drive", {"damping_asymmetry.coefficient": 1.5}, lambda k: mass(lambda _t, _x, v: 1.5 * k * abs(v)), {}
+    ),
     "friction_behind_play": Case(
         "specimen",
-        {"friction_behind_play.force": 25.0, "friction_behind_play.half_width": 0.2,
-         "friction_behind_play.contact": 0.1},
-        lambda k: played(25.0 * k), {"velocity": SPEED}, output="force"),
+        {
+            "friction_behind_play.force": 25.0,
+            "friction_behind_play.half_width": 0.2,
+            "friction_behind_play.contact": 0.1,
+        },
+        lambda k: played(25.0 * k),
+        {"velocity": SPEED},
+        output="force",
+    ),
     "current_friction": Case(
-        "specimen", {"current_friction.force": 5.0, "current_friction.lag": 0.1},
+        "specimen",
+        {"current_friction.force": 5.0, "current_friction.lag": 0.1},
         lambda k: moved() + 5.0 * k * behind(SQUEEZE, 0.1) * np.sign(SPEED),
-        {"velocity": SPEED, "current": SQUEEZE}, 2e-2, output="force"),
+        {"velocity": SPEED, "current": SQUEEZE},
+        2e-2,
+        output="force",
+    ),
     "pressure_force": Case(
-        "specimen", {"pressure_force.area": 5e-3},
-        lambda k: moved() - 5.0 * k * SQUEEZE, {"velocity": SPEED, "load_pressure": 1e3 * SQUEEZE}, output="force"),
+        "specimen",
+        {"pressure_force.area": 5e-3},
+        lambda k: moved() - 5.0 * k * SQUEEZE,
+        {"velocity": SPEED, "load_pressure": 1e3 * SQUEEZE},
+        output="force",
+    ),
     "degrading_hysteresis": Case(
         "specimen",
-        {"degrading_hysteresis.force": 25.0, "degrading_hysteresis.yield_displacement": 0.3,
-         "degrading_hysteresis.degradation": 0.2, "degrading_hysteresis.pinching": 0.6},
-        lambda k: degraded(25.0 * k), {"velocity": SPEED}, output="force"),
+        {
+            "degrading_hysteresis.force": 25.0,
+            "degrading_hysteresis.yield_displacement": 0.3,
+            "degrading_hysteresis.degradation": 0.2,
+            "degrading_hysteresis.pinching": 0.6,
+        },
+        lambda k: degraded(25.0 * k),
+        {"velocity": SPEED},
+        output="force",
+    ),
     "relaxation": Case(
-        "specimen", {"relaxation.stiffness": 60.0, "relaxation.time": 0.2},
-        lambda k: relaxed(60.0 * k), {"velocity": SPEED}, output="force"),
+        "specimen",
+        {"relaxation.stiffness": 60.0, "relaxation.time": 0.2},
+        lambda k: relaxed(60.0 * k),
+        {"velocity": SPEED},
+        output="force",
+    ),
     "bilinear_stiffness": Case(
-        "specimen", {"bilinear_stiffness.stiffness": -25.0, "bilinear_stiffness.displacement": 0.4},
-        lambda k: kinked(-25.0 * k, 0.4), {"velocity": SPEED}, output="force"),
+        "specimen",
+        {"bilinear_stiffness.stiffness": -25.0, "bilinear_stiffness.displacement": 0.4},
+        lambda k: kinked(-25.0 * k, 0.4),
+        {"velocity": SPEED},
+        output="force",
+    ),
     "arm_gravity": Case(
-        "drive", {"arm_gravity.torque": 30.0, "arm_gravity.hanging": 0.5},
-        lambda k: mass(lambda _t, x, _v: 30.0 * k * np.sin(x - 0.5)), {}),
+        "drive",
+        {"arm_gravity.torque": 30.0, "arm_gravity.hanging": 0.5},
+        lambda k: mass(lambda _t, x, _v: 30.0 * k * np.sin(x - 0.5)),
+        {},
+    ),
     "load_friction": Case(
-        "drive", {"load_friction.coefficient": 0.4},
-        lambda k: mass(lambda _t, x, v: 0.4 * k * abs(STIFFNESS * x) * dry(v)), {}, 1e-2),
+        "drive",
+        {"load_friction.coefficient": 0.4},
+        lambda k: mass(lambda _t, x, v: 0.4 * k * abs(STIFFNESS * x) * dry(v)),
+        {},
+        1e-2,
+    ),
     "rectified_sensor": Case(
-        "motor", {"rectified_sensor.share": 0.8}, lambda k: counted(0.8 * k), {}, output="velocity"),
+        "motor", {"rectified_sensor.share": 0.8}, lambda k: counted(0.8 * k), {}, output="velocity"
+    ),
     "speed_sensor_lag": Case(
-        "motor", {"speed_sensor_lag.time_constant": 0.1}, lambda k: counted_late(0.1 * k), {}, output="velocity"),
+        "motor", {"speed_sensor_lag.time_constant": 0.1}, lambda k: counted_late(0.1 * k), {}, output="velocity"
+    ),
     **{
         name: Case(
-            "motor", {f"{name}.share": 0.4, f"{name}.frequency": 5.0, f"{name}.damping": 0.1},
-            partial(behind_a_spring, seen), {}, output="velocity")
+            "motor",
+            {f"{name}.share": 0.4, f"{name}.frequency": 5.0, f"{name}.damping": 0.1},
+            partial(behind_a_spring, seen),
+            {},
+            output="velocity",
+        )
         for seen, name in enumerate(("elastic_load", "elastic_coupling"))
     },
-}  # fmt: skip
+}
 
 
 def test_each_of_them_has_a_machine_here():

@@ -38,8 +38,15 @@ FAR = {
 def deviations(cell: linear.Cell, number: int, hold: str, pairs: Pairs) -> dict[frozenset[str], float]:
     """For each pair the kernel of the whole catalogue against the reference, over the output's deviation."""
     u, model = command(number)[:SAMPLES], preset("qian2014", tuple(effect.name for effect in EFFECTS))
-    run = Run("run", "", linear.SAMPLE_RATE, {"command": u, "displacement": np.zeros_like(u)}, gain=cell.gain,
-              specimen=Specimen(cell.mass, cell.stiffness, cell.damping), hold=hold)  # fmt: skip
+    run = Run(
+        "run",
+        "",
+        linear.SAMPLE_RATE,
+        {"command": u, "displacement": np.zeros_like(u)},
+        gain=cell.gain,
+        specimen=Specimen(cell.mass, cell.stiffness, cell.damping),
+        hold=hold,
+    )
     known = {p.in_equations: p.value for p in model.parameters} | conditions(run, Actuator("", piston_area=PLANT.A))
     batch = {name: np.full((1, len(pairs)), value) for name, value in known.items()}
     strengths = {e.name: (e.added[0].in_equations, e.strength.symbol, SHARE * strength(e)) for e in EFFECTS}

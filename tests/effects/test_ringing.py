@@ -62,8 +62,11 @@ def steps(seed: int) -> np.ndarray:
 def loaded(seed: int, share: float = 0.4) -> Run:
     """The speed of a drive of which a share of the mass is behind a spring, at 0.3 rad a sample alone."""
     k, d = share * 0.09, 0.03 * share
-    rates = [[-(0.04 + d) / (1.0 - share), d / (1.0 - share), -k / (1.0 - share)],
-             [d / share, -d / share, k / share], [1.0, -1.0, 0.0]]  # fmt: skip
+    rates = [
+        [-(0.04 + d) / (1.0 - share), d / (1.0 - share), -k / (1.0 - share)],
+        [d / share, -d / share, k / share],
+        [1.0, -1.0, 0.0],
+    ]
     driven = ([[0.1 / (1.0 - share)], [0.0], [0.0]], [[1.0, 0.0, 0.0]], [[0.0]])
     held = scipy.signal.cont2discrete(tuple(np.array(of) for of in (rates, *driven)), 1.0)
     return noisy(steps(seed), scipy.signal.dlsim(held, steps(seed))[1][:, 0], seed, f"{seed}")
@@ -128,8 +131,14 @@ def springs(model: str, one: Run) -> dict[str, bool]:
 
 def test_a_spring_is_always_tried_where_a_record_rings_and_offered_where_there_is_no_oil():
     run = matrix(0, 0).runs[0]
-    still = Run("still", "", run.sample_rate, {"command": run.command, "velocity": np.cumsum(run.command) / 100.0},
-                run.units, output="velocity")  # fmt: skip
+    still = Run(
+        "still",
+        "",
+        run.sample_rate,
+        {"command": run.command, "velocity": np.cumsum(run.command) / 100.0},
+        run.units,
+        output="velocity",
+    )
     assert springs("motor", run) == dict.fromkeys(SEEN, True)
     assert springs("motor", still) == dict.fromkeys(SEEN, False)
     assert not springs("open_valve", run)

@@ -22,10 +22,12 @@ _OTHERWISE = {
 ROOMS = ("diagnosis", "fit", "bench", "presets", "design")
 _NAMES = {parameter.name for effect in CATALOGUE for parameter in effect.parameters}
 OWN = {
-    "name": "pulse", "place": "flow", "equation": "Q = Q * (1 + dep * sin(2 * pi * fp * t))",
+    "name": "pulse",
+    "place": "flow",
+    "equation": "Q = Q * (1 + dep * sin(2 * pi * fp * t))",
     "strength": {"symbol": "dep", "unit": "1", "lower": 0, "upper": 0.5},
     "shape": {"fp": {"unit": "Hz", "lower": 1, "upper": 100, "value": 10, "start": "spectral lines"}},
-}  # fmt: skip
+}
 
 
 def decisions(source: str) -> Iterator[str]:
@@ -77,9 +79,14 @@ def test_no_general_room_decides_by_a_unit_or_the_name_of_a_parameter(room):
 
 @pytest.mark.parametrize(
     "line",
-    ['parameter.unit == "1/s"', 'p.unit in ("s", "m")', 'p.name == "phase"', '{"Pa": 1.0}.get(p.unit)',
-     'ANGLE = "1"\nfound = p.unit == ANGLE'],
-)  # fmt: skip
+    [
+        'parameter.unit == "1/s"',
+        'p.unit in ("s", "m")',
+        'p.name == "phase"',
+        '{"Pa": 1.0}.get(p.unit)',
+        'ANGLE = "1"\nfound = p.unit == ANGLE',
+    ],
+)
 def test_such_a_decision_would_be_found(line):
     assert list(decisions(line))
 
@@ -87,10 +94,17 @@ def test_such_a_decision_would_be_found(line):
 def test_what_an_effect_states_is_of_its_kind():
     """A phase is a plain number, a frequency 1/s, a time s, an end of the stroke 1/m; what is known has any."""
     units = {
-        Starts.PHASE: "1", Starts.SPECTRAL_LINES: "1/s", Starts.STROKE_END: "1/m", Starts.STROKE_MIDDLE: "m",
-        Starts.TIME: "s", Starts.FRICTION: "Pa", Starts.FRICTION_GRADIENT: "Pa/m",
-        Starts.FINELY: "m", Starts.RESONANCE: "1/s", Starts.RELAXATION: "s",
-    }  # fmt: skip
+        Starts.PHASE: "1",
+        Starts.SPECTRAL_LINES: "1/s",
+        Starts.STROKE_END: "1/m",
+        Starts.STROKE_MIDDLE: "m",
+        Starts.TIME: "s",
+        Starts.FRICTION: "Pa",
+        Starts.FRICTION_GRADIENT: "Pa/m",
+        Starts.FINELY: "m",
+        Starts.RESONANCE: "1/s",
+        Starts.RELAXATION: "s",
+    }
     any_unit = (Starts.ALONG_RANGE, Starts.AS_KNOWN)
     stated = [(p.start, p.unit) for e in CATALOGUE for p in e.parameters if p.start not in any_unit]
     assert {start for start, _ in stated} == units.keys()
@@ -111,6 +125,10 @@ def test_a_users_own_effect_states_where_its_search_begins():
 
 
 def test_the_time_of_a_users_own_lag_begins_with_the_machines():
-    lag = {"name": "slow", "place": "sensor", "equation": "y = lag(y, Ts)",
-           "strength": {"symbol": "Ts", "unit": "ms", "lower": 0, "upper": 3}}  # fmt: skip
+    lag = {
+        "name": "slow",
+        "place": "sensor",
+        "equation": "y = lag(y, Ts)",
+        "strength": {"symbol": "Ts", "unit": "ms", "lower": 0, "upper": 3},
+    }
     assert read_effect(lag, model="qian2014").strength.start is Starts.TIME

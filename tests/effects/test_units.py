@@ -21,17 +21,35 @@ from tests.effects import dimensions
 MODELS = {**PRESETS, "drive under control": UNDER_CONTROL}
 COMMAND = {"current": "1", "drive_force": "N", "command": "m", "velocity": "m/s"}
 OTHER_UNIT = {
-    "first_order": {"second_lag"}, "two_tanks": {"second_lag"}, "force_loop": {"second_lag"},
+    "first_order": {"second_lag"},
+    "two_tanks": {"second_lag"},
+    "force_loop": {"second_lag"},
     "qian2014": {"second_lag"},
     "open_valve": {"second_lag"},
-    "motor": {"second_lag"}, "sprung_motor": {"second_lag"}, "pressure_drive": {"second_lag"},
+    "motor": {"second_lag"},
+    "sprung_motor": {"second_lag"},
+    "pressure_drive": {"second_lag"},
     "position_servo": {"second_lag"},
-    "kononykhin": {"command_limit", "integral_action", "lead", "pressure_feedback", "valve_second_order",
-                   "valve_rate_limit", "spool_stiction", "backlash", "null_bias", "dead_zone", "underlap",
-                   "gain_asymmetry", "flow_saturation", "progressive_drive", "flow_force"},
+    "kononykhin": {
+        "command_limit",
+        "integral_action",
+        "lead",
+        "pressure_feedback",
+        "valve_second_order",
+        "valve_rate_limit",
+        "spool_stiction",
+        "backlash",
+        "null_bias",
+        "dead_zone",
+        "underlap",
+        "gain_asymmetry",
+        "flow_saturation",
+        "progressive_drive",
+        "flow_force",
+    },
     "strano": {"second_lag"},
     "drive under control": {"command_limit", "integral_action", "lead", "pressure_feedback", "flow_force"},
-}  # fmt: skip
+}
 """What has a signal to act on there, but in rated currents or newtons where the effect is of metres."""
 NULL_BIAS: Effect = next(effect for effect in CATALOGUE if effect.name == "null_bias")
 EACH = pytest.mark.parametrize("name", MODELS)
@@ -102,8 +120,12 @@ def test_the_refusal_names_signal_and_units():
 
 def test_an_effect_of_the_user_is_of_the_model_that_it_was_written_for():
     """The same text for metres and for rated currents; neither model takes the other's."""
-    text = {"name": "bias", "place": "spool", "equation": "w = w + b",
-            "strength": {"symbol": "b", "unit": "1", "lower": 0, "upper": 1}}  # fmt: skip
+    text = {
+        "name": "bias",
+        "place": "spool",
+        "equation": "w = w + b",
+        "strength": {"symbol": "b", "unit": "1", "lower": 0, "upper": 1},
+    }
     of = {name: read_effect(text, model=name) for name in ("qian2014", "kononykhin")}
     assert {name: dict(effect.units) for name, effect in of.items()} == {
         "qian2014": {"w": "m"},

@@ -51,8 +51,25 @@ def reference(u: np.ndarray, truth: Truth = TRUTH) -> tuple[np.ndarray, np.ndarr
     out = np.empty((2, len(u)))
     for k, value in enumerate(100 * u):
         out[:, k] = (state[2] - 0.5 * STROKE) / 1000, 1e6 * state[3]
-        _advance(state, value, value, 1 / RATE, truth.T, truth.B, truth.I0, truth.kp, truth.dPfr, truth.Ps, truth.G,
-                 truth.asymmetry, 0.0, 0.0, 0.0, 0.0, 64)  # fmt: skip
+        _advance(
+            state,
+            value,
+            value,
+            1 / RATE,
+            truth.T,
+            truth.B,
+            truth.I0,
+            truth.kp,
+            truth.dPfr,
+            truth.Ps,
+            truth.G,
+            truth.asymmetry,
+            0.0,
+            0.0,
+            0.0,
+            0.0,
+            64,
+        )
     return out[0], out[1]
 
 
@@ -100,9 +117,12 @@ def test_the_unit_of_a_bench_is_written():
 
 @pytest.mark.parametrize(
     ("given", "code"),
-    [({"gain": 2.0}, "no-export"), ({"specimen": Specimen(mass=1.0)}, "no-export"),
-     ({"specimen": Specimen(stiffness=1e5)}, "not-stated")],
-)  # fmt: skip
+    [
+        ({"gain": 2.0}, "no-export"),
+        ({"specimen": Specimen(mass=1.0)}, "no-export"),
+        ({"specimen": Specimen(stiffness=1e5)}, "not-stated"),
+    ],
+)
 def test_what_an_actuator_of_a_bench_has_not_is_refused(given, code):
     with pytest.raises(Unusable) as refused:
         exported(of_bench(), **given)

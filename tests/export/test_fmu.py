@@ -57,9 +57,11 @@ def test_a_step_that_is_no_whole_number_of_samples_is_refused(unit):
     folder = fmpy.extract(str(unit))
     try:
         slave = fmpy.fmi2.FMU2Slave(
-            guid=description.guid, unzipDirectory=folder, instanceName="one",
+            guid=description.guid,
+            unzipDirectory=folder,
+            instanceName="one",
             modelIdentifier=description.coSimulation.modelIdentifier,
-        )  # fmt: skip
+        )
         slave.instantiate()
         slave.setReal([0], [5e-3])
         slave.doStep(0.0, 2 / RATE)

@@ -86,8 +86,15 @@ def test_conditions_that_cannot_be_are_refused(conditions, what):
     assert refused.value.code == "out-of-range"
 
 
-MEASURED_LOAD = {"controller": "p", "of": "displacement", "valve": "first", "flow": "linear",
-                 "pressure": "compressible", "load": "measured_force", "sensor": "displacement"}  # fmt: skip
+MEASURED_LOAD = {
+    "controller": "p",
+    "of": "displacement",
+    "valve": "first",
+    "flow": "linear",
+    "pressure": "compressible",
+    "load": "measured_force",
+    "sensor": "displacement",
+}
 
 
 @pytest.mark.parametrize(

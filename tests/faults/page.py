@@ -9,9 +9,16 @@ from typing import Any
 COUNTED = Path(__file__).with_name("counted")
 PAGE = Path(__file__).parents[2] / "docs" / "faults.md"
 NOTHING = (
-    "lost", "uploads_lost", "failed", "stored_twice", "differing", "in_force_twice", "approved_and_not_in_force",
-    "orphaned", "wrongly_answered",
-)  # fmt: skip
+    "lost",
+    "uploads_lost",
+    "failed",
+    "stored_twice",
+    "differing",
+    "in_force_twice",
+    "approved_and_not_in_force",
+    "orphaned",
+    "wrongly_answered",
+)
 HEAD = """# Fault tolerance
 
 Written by `python -m tests.faults.page` from what was counted by

@@ -44,9 +44,16 @@ class Reckoning:
     def holds(self) -> bool:
         """Whether nothing was lost, stored twice or changed."""
         bad = (
-            self.lost, self.uploads_lost, self.failed, self.stored_twice, self.differing, self.in_force_twice,
-            self.approved_and_not_in_force, self.orphaned, self.wrongly_answered,
-        )  # fmt: skip
+            self.lost,
+            self.uploads_lost,
+            self.failed,
+            self.stored_twice,
+            self.differing,
+            self.in_force_twice,
+            self.approved_and_not_in_force,
+            self.orphaned,
+            self.wrongly_answered,
+        )
         return not any(bad) and max(self.moved, default=0.0) <= 15.0
 
     def to_json(self) -> dict[str, Any]:

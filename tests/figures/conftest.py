@@ -33,11 +33,17 @@ def make_run(mass: float, stiffness: float, kp: float, amplitude: float, seed: i
     command *= amplitude / command.std()
     channels = {"command": command}
     run = Run(
-        id=f"m{mass:g}-k{stiffness / 1000:g}-kp{kp:g}-a{1000 * amplitude:g}", file="-", sample_rate=RATE,
-        channels=channels, units={"command": "m", "displacement": "m"},
-        specimen=Specimen(mass, stiffness), gain=kp, amplitude=amplitude, kind="blwn",
+        id=f"m{mass:g}-k{stiffness / 1000:g}-kp{kp:g}-a{1000 * amplitude:g}",
+        file="-",
+        sample_rate=RATE,
+        channels=channels,
+        units={"command": "m", "displacement": "m"},
+        specimen=Specimen(mass, stiffness),
+        gain=kp,
+        amplitude=amplitude,
+        kind="blwn",
         use="verify" if kp == 6 else "fit",
-    )  # fmt: skip
+    )
     clean = np.fft.irfft(np.fft.rfft(command) * second_order(run, frequency))
     channels["displacement"] = clean + 0.005 * clean.std() * rng.standard_normal(1024)
     return run
@@ -119,7 +125,8 @@ def fit(matrix: Matrix) -> FitResult:
             Generation(index, float(errors.min()), float(errors.mean()), population, tuple(errors.tolist()))
         )
     return FitResult(
-        model="qian2014", effects=(),
+        model="qian2014",
+        effects=(),
         parameters={
             "Z0": Estimate(2.592e-6, "m^4/s", 1e-9, 1.751e-6, 3.503e-6, False),
             "c0": Estimate(3200.0, "N*s/m", 2.0, 800.0, 5000.0, False),
@@ -128,11 +135,20 @@ def fit(matrix: Matrix) -> FitResult:
             "m0": Estimate(4.25, "kg", 0.001, 1.0, 10.0, False),
             "Ka": Estimate(1.39e-13, "m^3/Pa", 1e-16, 2e-15, 2e-13, False),
         },
-        correlation={}, determined=(), undetermined=(),
-        error={"fit": 0.00512, "held_out": None, "verify": 0.00507}, offset={"fit": 0.001, "verify": 0.001},
+        correlation={},
+        determined=(),
+        undetermined=(),
+        error={"fit": 0.00512, "held_out": None, "verify": 0.00507},
+        offset={"fit": 0.001, "verify": 0.001},
         noise_floor={"fit": 0.005, "verify": 0.005},
         runs=tuple(RunError(run.id, run.use, 0.005, 0.0) for run in matrix.runs),
-        method="paper-ga", seed=0, evaluations=12000, seconds=1.0, version="0", data_hash="0" * 64,
-        searched=("Z0", "c0"), evolution=tuple(generations),
+        method="paper-ga",
+        seed=0,
+        evaluations=12000,
+        seconds=1.0,
+        version="0",
+        data_hash="0" * 64,
+        searched=("Z0", "c0"),
+        evolution=tuple(generations),
         starts=Starts(3, 2, (0.005, 0.005, 0.02), {"Z0": (2.6e-6, 2.6e-6, 3e-6), "c0": (3200.0, 3201.0, 900.0)}),
-    )  # fmt: skip
+    )

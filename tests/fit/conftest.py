@@ -9,9 +9,14 @@ import pytest
 from tests.conftest import short_searches
 
 USUAL = {
-    "test_criteria_of_search.py", "test_ends.py", "test_fifth_order.py", "test_far_bounds.py", "test_paper_search.py",
-    "test_recovery.py", "test_wider_bounds.py",
-}  # fmt: skip
+    "test_criteria_of_search.py",
+    "test_ends.py",
+    "test_fifth_order.py",
+    "test_far_bounds.py",
+    "test_paper_search.py",
+    "test_recovery.py",
+    "test_wider_bounds.py",
+}
 """Files about the search itself: what it finds, and where it ends."""
 
 

@@ -17,9 +17,13 @@ LOAD = 1e5  # N, vertical
 NOISE = {"displacement": 1.2e-4, "pressure": 1e5, "spool": 0.02, "load": 230.0}
 """Standard deviations, m, Pa, V and N: the uncertainties that the paper prints; 20 mV for the spool."""
 UNITS = {
-    "command": "m", "displacement": "m", "load_pressure": "Pa", "spool": "V", "supply_pressure": "Pa",
+    "command": "m",
+    "displacement": "m",
+    "load_pressure": "Pa",
+    "spool": "V",
+    "supply_pressure": "Pa",
     "vertical_load": "N",
-}  # fmt: skip
+}
 ALL = ("displacement", "load_pressure", "spool")
 
 
@@ -43,19 +47,27 @@ def columns(of: reference.Machine, seed: int, seconds: float = SECONDS, vertical
     noise = {name: size * rng.standard_normal((3, len(r))) for name, size in NOISE.items()}
     half = 0.5 * shown.load_pressure
     return {
-        "r": r, "y": shown.displacement + noise["displacement"][0], "pa": 0.5 * Ps + half + noise["pressure"][0],
-        "pb": 0.5 * Ps - half + noise["pressure"][1], "ve": shown.spool + noise["spool"][0],
-        "ps": Ps + noise["pressure"][2], "n": vertical + noise["load"][0],
-    }  # fmt: skip
+        "r": r,
+        "y": shown.displacement + noise["displacement"][0],
+        "pa": 0.5 * Ps + half + noise["pressure"][0],
+        "pb": 0.5 * Ps - half + noise["pressure"][1],
+        "ve": shown.spool + noise["spool"][0],
+        "ps": Ps + noise["pressure"][2],
+        "n": vertical + noise["load"][0],
+    }
 
 
 def matrix(of: reference.Machine, seed: int, outputs=ALL, seconds: float = SECONDS, vertical=LOAD) -> Matrix:
     """One record of a machine with these outputs."""
     told = columns(of, seed, seconds, vertical)
     channels = {
-        "command": told["r"], "displacement": told["y"], "load_pressure": told["pa"] - told["pb"],
-        "spool": told["ve"], "supply_pressure": told["ps"], "vertical_load": told["n"],
-    }  # fmt: skip
+        "command": told["r"],
+        "displacement": told["y"],
+        "load_pressure": told["pa"] - told["pb"],
+        "spool": told["ve"],
+        "supply_pressure": told["ps"],
+        "vertical_load": told["n"],
+    }
     run = Run("rig", "", reference.RATE, channels, UNITS, gain=GAIN, output=outputs[0])
     return Matrix(Actuator("RIG", piston_area=reference.AREA), run.of_outputs(outputs))
 
@@ -66,13 +78,22 @@ def written(folder: Path, of: reference.Machine, seed: int, seconds: float = SEC
     told |= {name: 1e-5 * told[name] for name in ("pa", "pb", "ps")}
     np.savez(folder / "rig.npz", **told)
     channel = {
-        "command": ("r", "m"), "displacement": ("y", "m"), "load_pressure": ("pa - pb", "bar"), "spool": ("ve", "V"),
-        "supply_pressure": ("ps", "bar"), "vertical_load": ("n", "N"),
-    }  # fmt: skip
+        "command": ("r", "m"),
+        "displacement": ("y", "m"),
+        "load_pressure": ("pa - pb", "bar"),
+        "spool": ("ve", "V"),
+        "supply_pressure": ("ps", "bar"),
+        "vertical_load": ("n", "N"),
+    }
     run = {
-        "id": "rig", "file": "rig.npz", "sample_rate": "1000 Hz", "gain": GAIN, "output": list(ALL),
-        "channels": {name: {"column": column, "unit": unit} for name, (column, unit) in channel.items()}, **described,
-    }  # fmt: skip
+        "id": "rig",
+        "file": "rig.npz",
+        "sample_rate": "1000 Hz",
+        "gain": GAIN,
+        "output": list(ALL),
+        "channels": {name: {"column": column, "unit": unit} for name, (column, unit) in channel.items()},
+        **described,
+    }
     actuator = {"serial": "RIG", "piston_area": f"{reference.AREA} m^2"}
     (folder / "matrix.yaml").write_text(yaml.safe_dump({"actuator": actuator, "runs": [run]}), encoding="utf-8")
     return folder

@@ -32,11 +32,20 @@ from tests.rounding import perturbed_run
 
 RATE = 50.0
 SATURATED = Settings(
-    model="qian2014", effects=("command_limit",), seed=3,
+    model="qian2014",
+    effects=("command_limit",),
+    seed=3,
     fixed={"m0": 1.0, "c0": 6.829, "Ka/A^2": 2.615e-6},
-)  # fmt: skip
-SERVO = {"Z0/A^2": 9.004, "tau": 0.02998, "m0": 1.0, "c0": 6.829, "Ka/A^2": 2.615e-6, "Cl/A^2": 1.805e-5,
-         "command_limit.inverse_limit": 7.144}  # fmt: skip
+)
+SERVO = {
+    "Z0/A^2": 9.004,
+    "tau": 0.02998,
+    "m0": 1.0,
+    "c0": 6.829,
+    "Ka/A^2": 2.615e-6,
+    "Cl/A^2": 1.805e-5,
+    "command_limit.inverse_limit": 7.144,
+}
 """Values of that machine, of which a search ends in one with such a c0 and Ka or another: rounding decides."""
 
 
@@ -72,8 +81,10 @@ def motor(seed: int, first: float, drag: float = 0.0) -> Matrix:
         x = 3.5 * abs(u)
         return float(np.sign(u) * (x if drag == 0 else (np.sqrt(1 + 4 * drag * x) - 1) / (2 * drag)))
 
-    runs = [run_of(staircase(seed + i, level), rates, [standing(level)], 0, "velocity", use)
-            for i, (level, use) in enumerate(((first, "fit"), (-first, "verify")))]  # fmt: skip
+    runs = [
+        run_of(staircase(seed + i, level), rates, [standing(level)], 0, "velocity", use)
+        for i, (level, use) in enumerate(((first, "fit"), (-first, "verify")))
+    ]
     return Matrix(Actuator("MOTOR"), tuple(runs))
 
 
@@ -83,8 +94,17 @@ def cylinder(seed: int, neutral: float, place: float = 0.0) -> Matrix:
     for i, use in enumerate(("fit", "verify")):
         command = neutral + staircase(seed + i, 0.0)
         command[-int(1.5 * RATE) :] = neutral
-        runs.append(run_of(command, lambda z, u: [z[1], (0.02 * (u - neutral) - z[1]) / 0.1], [place, 0.0], 0,
-                           "displacement", use, 0.005))  # fmt: skip
+        runs.append(
+            run_of(
+                command,
+                lambda z, u: [z[1], (0.02 * (u - neutral) - z[1]) / 0.1],
+                [place, 0.0],
+                0,
+                "displacement",
+                use,
+                0.005,
+            )
+        )
     return Matrix(Actuator("CYLINDER"), tuple(runs))
 
 
@@ -188,8 +208,10 @@ def test_a_command_is_counted_from_where_it_is_held_while_the_cylinder_stands(ne
 def test_a_lag_far_below_the_sample_time_is_not_searched_and_the_diagnosis_follows_the_fit():
     """The time constant went to microseconds at a sample of milliseconds; then no simulation followed the fit."""
     matrix = motor(6, 3.0)
-    quick = [replace(run, channels={**run.channels, "velocity": 3.5 * np.append(run.command[:1], run.command[:-1])})
-             for run in matrix.runs]  # fmt: skip
+    quick = [
+        replace(run, channels={**run.channels, "velocity": 3.5 * np.append(run.command[:1], run.command[:-1])})
+        for run in matrix.runs
+    ]
     for model in ("first_order", "open_valve"):
         fit = identify(replace(matrix, runs=tuple(quick)), Settings(model=model))
         assert fit.values["tau"] >= 0.99 / (FASTEST * RATE)
@@ -203,8 +225,15 @@ def servo(cut: int = 0, late: int = 0, noise: float = 0.004) -> Matrix:
     for i, (size, hold) in enumerate(((0.1, 12), (0.3, 25), (0.6, 18), (0.6, 30))):
         command = np.repeat(np.where(np.arange(9) % 2, -size, size), hold)
         acts = np.concatenate([np.zeros(late), command])[: len(command)]
-        run = run_of(acts, lambda z, u: [z[1], (9 * np.clip(u - z[0], -0.14, 0.14) - z[1]) / 0.03], [0.0, 0.0], 0,
-                     "displacement", "fit" if i < 3 else "verify", noise)  # fmt: skip
+        run = run_of(
+            acts,
+            lambda z, u: [z[1], (9 * np.clip(u - z[0], -0.14, 0.14) - z[1]) / 0.03],
+            [0.0, 0.0],
+            0,
+            "displacement",
+            "fit" if i < 3 else "verify",
+            noise,
+        )
         channels, units = {**run.channels, "command": command}, {"command": "m", "displacement": "m"}
         run = replace(run, id=str(i), channels=channels, units=units)
         runs.append(run.part(cut + i, run.length) if cut else run)
@@ -263,8 +292,10 @@ def test_of_two_guesses_that_lead_as_far_the_one_without_an_offset_counts():
 
     def end(left: float, offset: float) -> Least:
         blocks = np.array([[[1.0, 0.0], [0.0, left]]])
-        return Least(np.zeros(1), NormalMatrices(np.zeros((1, 1)), np.zeros((1, 0)), 1.0, offset, blocks=blocks,
-                                                 remove=np.ones((2, 1))))  # fmt: skip
+        return Least(
+            np.zeros(1),
+            NormalMatrices(np.zeros((1, 1)), np.zeros((1, 0)), 1.0, offset, blocks=blocks, remove=np.ones((2, 1))),
+        )
 
     for ends, which in (
         ([end(0.01, 0.9), end(0.01 * (1 + 1e-9), -0.1)], 1),

@@ -12,9 +12,11 @@ from tests.diagnosis.test_held_commands import RATE, late
 
 QUICK = {"population": 24, "generations": 6, "elite": 3}
 OWN = {
-    "name": "slow", "place": "spool", "equation": "w = lag(w, T)",
+    "name": "slow",
+    "place": "spool",
+    "equation": "w = lag(w, T)",
     "strength": {"symbol": "T", "unit": "s", "lower": 0, "upper": 0.3},
-}  # fmt: skip
+}
 
 
 def test_the_bound_of_an_own_effect_holds_on_a_machine_of_any_size():

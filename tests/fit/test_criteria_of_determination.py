@@ -105,10 +105,12 @@ def test_the_interval_of_a_free_run_holds_95_of_100_draws(monkeypatch):
     run = SimpleNamespace(id="r", share=1.0)
     moments = SimpleNamespace(error=0.1, share=1.0, errors_beside=lambda scatter: scatter)
     fitness: Any = Fitness(
-        horizon=1.0, memory=None, matrix=SimpleNamespace(of_use=lambda use: (run,) if use == "fit" else ()),
+        horizon=1.0,
+        memory=None,
+        matrix=SimpleNamespace(of_use=lambda use: (run,) if use == "fit" else ()),
         preset=SimpleNamespace(display=SimpleNamespace(recorded=SimpleNamespace(clock="s"))),
         exact=lambda *_, **__: SimpleNamespace(runs=(moments,)),
-    )  # fmt: skip
+    )
     fitness.fresh, fitness.whole = lambda _: fitness, lambda: fitness
     monkeypatch.setattr(summary, "SimulatedFitness", Fitness)
     window = summary._window(fitness, np.ones(1), SimpleNamespace(drawn=lambda count: np.arange(float(count))), ())
@@ -127,9 +129,10 @@ def lag_is_read_at(monkeypatch: pytest.MonkeyPatch, *poles: float) -> float:
     model = SimpleNamespace(A=np.diag(-np.array(poles))[None], frequency_response=response)
     core = SimpleNamespace(symbols=(), linearise=lambda *_: model)
     objective: Any = SimpleNamespace(
-        preset=SimpleNamespace(core=core, chain=None), space=SimpleNamespace(values=lambda _: {}),
+        preset=SimpleNamespace(core=core, chain=None),
+        space=SimpleNamespace(values=lambda _: {}),
         matrix=SimpleNamespace(actuator=None),
-    )  # fmt: skip
+    )
     monkeypatch.setattr(slow_answer, "conditions", lambda *_: {})
     monkeypatch.setattr(slow_answer, "_times", lambda *_: ())
     slow_answer.lags(objective, SimpleNamespace(output="displacement"), np.ones((1, 1)))

@@ -113,18 +113,26 @@ def test_a_first_state_is_moved_by_a_thousandth_of_its_size():
     run = record("r", np.tile([-3.0, 3.0], 8))
     chain = SimpleNamespace(begun=["x", "other"])
     of: Any = SimpleNamespace(
-        chain=chain, runs=(run,), preset=SimpleNamespace(core=SimpleNamespace(states=["x"])), _of_effects=["other"],
-        sizes=np.array([2.0]), _sized=lambda: np.zeros(1),
-    )  # fmt: skip
+        chain=chain,
+        runs=(run,),
+        preset=SimpleNamespace(core=SimpleNamespace(states=["x"])),
+        _of_effects=["other"],
+        sizes=np.array([2.0]),
+        _sized=lambda: np.zeros(1),
+    )
     assert SimulatedRuns._reach.func(of) == pytest.approx([2e-3, 3e-3])
 
 
 def test_an_effect_begins_with_three_times_what_the_run_gives_it_at_most():
     """A mass that is next to nothing would begin behind a spring stretched without bounds, and move the machine."""
     of: Any = SimpleNamespace(
-        chain=SimpleNamespace(begun=["x", "stretch", "unseen"]), _of_effects=["stretch", "unseen"],
-        _sized=lambda: np.array([2.0, 0.0]), starts={}, _free=lambda _: np.arange(3), _reach=np.ones(3),
-    )  # fmt: skip
+        chain=SimpleNamespace(begun=["x", "stretch", "unseen"]),
+        _of_effects=["stretch", "unseen"],
+        _sized=lambda: np.array([2.0, 0.0]),
+        starts={},
+        _free=lambda _: np.arange(3),
+        _reach=np.ones(3),
+    )
     of._most = SimulatedRuns._most.fget(of)
     SimulatedRuns._follow(of, record("r", START), np.zeros(3), np.array([9.0, -9.0, 9.0]))
     assert of.starts["r"] == pytest.approx([9.0, -6.0, 9.0])

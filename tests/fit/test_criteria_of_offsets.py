@@ -29,10 +29,13 @@ def test_an_offset_is_told_by_the_samples_that_no_first_state_explains(share, de
 def test_the_offset_of_a_speed_is_told_by_a_ten_thousandth_of_the_samples(monkeypatch, share, told):
     monkeypatch.setattr(normal_matrices, "normal_matrices_of", lambda *_: ["without"])
     found: Any = SimpleNamespace(
-        release=np.ones(1), informing=share, length=1, _offset_determined=True,
+        release=np.ones(1),
+        informing=share,
+        length=1,
+        _offset_determined=True,
         begun_at_zero=lambda: np.zeros((1, 1, 1)),
         remove=np.zeros((2, 2)),
-    )  # fmt: skip
+    )
     found.tells_offset = lambda least: NormalMatrices.tells_offset(found, least)
     run: Any = SimpleNamespace(output="velocity")
     assert (normal_matrices._separated(run, found) is found) is told

@@ -177,10 +177,14 @@ def test_eight_runs_of_many_are_examined_for_a_controller(monkeypatch):
 
 
 LIMITS = {
-    "ga": {"population": (10.0, 100_000.0), "generations": (None, 10_000.0), "elite": (None, 10_000.0),
-           "starts": (None, 1000.0)},
+    "ga": {
+        "population": (10.0, 100_000.0),
+        "generations": (None, 10_000.0),
+        "elite": (None, 10_000.0),
+        "starts": (None, 1000.0),
+    },
     "paper-ga": {"keep": (0.05, 0.99), "survivors": (None, 1000.0)},
-}  # fmt: skip
+}
 
 
 @pytest.mark.parametrize(

@@ -94,10 +94,18 @@ def drifting(gain, seed: int = 3) -> Matrix:
     noisy = clean + NOISE * clean.std(axis=1, keepdims=True) * rng.standard_normal(clean.shape)
     pressure = supply(np.arange(n) / qian_reference.SAMPLE_RATE)
     runs = tuple(
-        Run(t.id, "", qian_reference.SAMPLE_RATE, {"command": u, "displacement": x, "supply_pressure": pressure},
-            specimen=Specimen(t.cell.mass, t.cell.stiffness, t.cell.damping), gain=t.cell.gain, kind="blwn", use=t.use)
+        Run(
+            t.id,
+            "",
+            qian_reference.SAMPLE_RATE,
+            {"command": u, "displacement": x, "supply_pressure": pressure},
+            specimen=Specimen(t.cell.mass, t.cell.stiffness, t.cell.damping),
+            gain=t.cell.gain,
+            kind="blwn",
+            use=t.use,
+        )
         for t, u, x in zip(trials, commands, noisy, strict=True)
-    )  # fmt: skip
+    )
     return Matrix(Actuator("REFERENCE-1", piston_area=qian_reference.Plant().A), runs)
 
 

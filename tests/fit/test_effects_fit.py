@@ -74,10 +74,12 @@ def test_an_unstable_vector_costs_and_is_counted(data):
 def test_an_effect_defined_here_is_fitted(data):
     """The dead zone again, under another name and in other words, without touching anything else."""
     own = Effect(
-        name="overlap", place="spool", meaning="the lands overlap",
+        name="overlap",
+        place="spool",
+        meaning="the lands overlap",
         strength=Parameter("width", "b", "m", 0.0, 1e-3, 0.0, "half of the overlap"),
         texts=("w = where(abs(w) < b, 0, w - b * sgn(w))",),
-    )  # fmt: skip
+    )
     model = PRESETS["qian2014"].with_effects((own,))
     space = search_space(model, data, Settings(), 500.0)
     fitness = SimulatedFitness(model, data, data.of_use("fit"), 500.0, space)

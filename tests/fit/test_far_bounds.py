@@ -62,11 +62,15 @@ def test_a_unit_that_fits_the_machine_is_proposed(settings, said):
 @pytest.mark.parametrize(
     "settings",
     [
-        Settings(bounds={"tau": (1e-4, 1e-2)}), Settings(bounds={"tau": (5e-2, 1e-1)}), Settings(fixed={"m0": 20.0}),
-        Settings(bounds={"tau": (1e-3, 1e3)}), Settings(bounds={"dead_zone": (0.0, 1e-3)}, effects=("dead_zone",)),
-        Settings(fixed={"dead_zone": 0.0}, effects=("dead_zone",)), Settings(),
+        Settings(bounds={"tau": (1e-4, 1e-2)}),
+        Settings(bounds={"tau": (5e-2, 1e-1)}),
+        Settings(fixed={"m0": 20.0}),
+        Settings(bounds={"tau": (1e-3, 1e3)}),
+        Settings(bounds={"dead_zone": (0.0, 1e-3)}, effects=("dead_zone",)),
+        Settings(fixed={"dead_zone": 0.0}, effects=("dead_zone",)),
+        Settings(),
     ],
-)  # fmt: skip
+)
 def test_what_a_user_may_well_want_is_no_cause(settings):
     """Somewhat elsewhere, wide enough to hold the machine's own range, or off."""
     assert not list(far_from(settings, preset("qian2014", settings.effects), {}))

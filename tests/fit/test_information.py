@@ -18,9 +18,26 @@ def fit(errors, criterion=0.0, left_out=(), data="d"):
     """A fit with these errors on its runs, and one that validates."""
     runs = tuple(RunError(str(n), "fit", error, 0.0, error) for n, error in enumerate(errors))
     return FitResult(
-        "m", (), {}, {}, (), (), {"fit": 0.1, "verify": 0.2}, {}, {}, (*runs, RunError("v", "verify", 0.2, 0.1, 0.25)),
-        "ga", 0, 0, 0.0, "1", data, left_out=left_out, aic=criterion, error_with_mean={"fit": 0.1, "verify": 0.25},
-    )  # fmt: skip
+        "m",
+        (),
+        {},
+        {},
+        (),
+        (),
+        {"fit": 0.1, "verify": 0.2},
+        {},
+        {},
+        (*runs, RunError("v", "verify", 0.2, 0.1, 0.25)),
+        "ga",
+        0,
+        0,
+        0.0,
+        "1",
+        data,
+        left_out=left_out,
+        aic=criterion,
+        error_with_mean={"fit": 0.1, "verify": 0.25},
+    )
 
 
 def test_it_is_that_of_least_squares_but_for_what_all_models_share():

@@ -40,8 +40,16 @@ def pushed(seed: int, noise: float = 1e-6, seconds: float = 8.0, stiffness: floa
                 x += v / RATE / 10
         y += noise * rng.standard_normal(n)
         channels = {"drive_force": force[1:], "displacement": y[1:]}
-        runs.append(Run(f"r{number}", "", RATE, channels, {"drive_force": "N", "displacement": "m"},
-                        use="verify" if number else "fit"))  # fmt: skip
+        runs.append(
+            Run(
+                f"r{number}",
+                "",
+                RATE,
+                channels,
+                {"drive_force": "N", "displacement": "m"},
+                use="verify" if number else "fit",
+            )
+        )
     return Matrix(Actuator("MASS"), tuple(runs))
 
 

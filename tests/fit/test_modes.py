@@ -50,16 +50,19 @@ def test_modes_of_runs_are_those_of_the_fastest_of_them_by_its_own_sample_rate()
     chain = preset("qian2014").chain
     cells = [(0.5, 3.0, "displacement", 4096.0), (20.0, 9.0, "displacement", 1024.0), (2.0, 6.0, "load_pressure", 1e3)]
     quiet = {"command": np.zeros(4), "displacement": np.zeros(4), "load_pressure": np.zeros(4)}
-    runs = [Run(f"r{i}", "", rate, quiet, specimen=Specimen(mass=m), gain=gain, output=output)
-            for i, (m, gain, output, rate) in enumerate(cells)]  # fmt: skip
+    runs = [
+        Run(f"r{i}", "", rate, quiet, specimen=Specimen(mass=m), gain=gain, output=output)
+        for i, (m, gain, output, rate) in enumerate(cells)
+    ]
     actuator = Actuator("A", piston_area=5e-4)
     Z0, tau, Cl, c0, m0, Ka = 2.6e-6, np.array([3.6e-3, 1.2e-3]), 1e-11, 3200.0, 4.25, 1.4e-13
-    values = {name: np.broadcast_to(value, 2) for name, value in
-              {"Z0": Z0, "tau": tau, "Cl": Cl, "c0": c0, "m0": m0, "Ka": Ka}.items()}  # fmt: skip
+    values = {
+        name: np.broadcast_to(value, 2)
+        for name, value in {"Z0": Z0, "tau": tau, "Cl": Cl, "c0": c0, "m0": m0, "Ka": Ka}.items()
+    }
     alone = []
     for m, gain, _, rate in cells:
-        jacobian = [[-Cl / Ka, -5e-4 / Ka, -gain * Z0 / 5e-4 / Ka],
-                    [5e-4 / (m0 + m), -c0 / (m0 + m), 0], [0, 1, 0]]  # fmt: skip
+        jacobian = [[-Cl / Ka, -5e-4 / Ka, -gain * Z0 / 5e-4 / Ka], [5e-4 / (m0 + m), -c0 / (m0 + m), 0], [0, 1, 0]]
         alone.append(np.broadcast_to(np.abs(np.linalg.eigvals(np.array(jacobian))).max() / rate, tau.shape))
     assert np.abs(fastest(chain, runs, actuator, values)) == pytest.approx(np.max(alone, axis=0), rel=1e-6)
     assert np.abs(fastest(chain, runs[:2], actuator, values)) == pytest.approx(np.max(alone[:2], axis=0), rel=1e-6)

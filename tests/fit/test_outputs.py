@@ -40,13 +40,19 @@ def folder(tmp_path_factory) -> Path:
             columns[name] = columns[name] + share * columns[name].std() * rng.standard_normal(len(command))
         np.savez(where / f"run-{number}.npz", **columns)
         units = {"command": "m", "displacement": "m", "force": "N"}
-        entries.append({
-            "id": f"run-{number}", "file": f"run-{number}.npz", "sample_rate": "4096 Hz", "kind": "blwn",
-            "gain": cell.gain, "use": "verify" if number == 5 else "fit",
-            "specimen": {"mass": f"{cell.mass} kg", "stiffness": f"{cell.stiffness} N/m"},
-            "channels": {name: {"column": name, "unit": unit} for name, unit in units.items()},
-            "output": "displacement" if number == 0 else ["displacement", "force"],
-        })  # fmt: skip
+        entries.append(
+            {
+                "id": f"run-{number}",
+                "file": f"run-{number}.npz",
+                "sample_rate": "4096 Hz",
+                "kind": "blwn",
+                "gain": cell.gain,
+                "use": "verify" if number == 5 else "fit",
+                "specimen": {"mass": f"{cell.mass} kg", "stiffness": f"{cell.stiffness} N/m"},
+                "channels": {name: {"column": name, "unit": unit} for name, unit in units.items()},
+                "output": "displacement" if number == 0 else ["displacement", "force"],
+            }
+        )
     described = {"actuator": {"serial": "REFERENCE-1", "piston_area": f"{PLANT.A} m^2"}, "runs": entries}
     (where / "matrix.yaml").write_text(yaml.safe_dump(described), encoding="utf-8")
     return where
@@ -106,9 +112,14 @@ def test_a_diagnosis_of_both_names_what_is_hidden(matrix):
 
 @pytest.mark.parametrize(
     ("output", "code"),
-    [(["displacement", "torque"], "unknown-output"), (["displacement", "command"], "unknown-output"),
-     (["force", "force"], "not-text"), ([], "not-text"), ([["force"]], "not-text")],
-)  # fmt: skip
+    [
+        (["displacement", "torque"], "unknown-output"),
+        (["displacement", "command"], "unknown-output"),
+        (["force", "force"], "not-text"),
+        ([], "not-text"),
+        ([["force"]], "not-text"),
+    ],
+)
 def test_outputs_that_are_none_are_refused(folder, tmp_path, output, code):
     described = yaml.safe_load((folder / "matrix.yaml").read_text(encoding="utf-8"))
     described["runs"][1]["output"] = output

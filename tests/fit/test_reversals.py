@@ -18,8 +18,9 @@ from tests.reference.periodic_reference import Law, driven
 from tests.short_form import short_form
 
 WAY, FORCE = "presliding_friction.displacement", "presliding_friction.force"
-LOW_RATE = Damper(damping=500.0, stiffness=0.0, friction=60.0, amplitude=0.02, frequency=1.5, rate=50.0, noise=0.005,
-                  cycles=20.0)  # fmt: skip
+LOW_RATE = Damper(
+    damping=500.0, stiffness=0.0, friction=60.0, amplitude=0.02, frequency=1.5, rate=50.0, noise=0.005, cycles=20.0
+)
 
 
 def fitted(damper: Damper):

@@ -36,9 +36,12 @@ def points(count: int) -> list[dict[str, float]]:
     for number in range(count):
         of = SERVO | {"tau": 0.03 / (1 + number % 3), "Ka/A^2": (1e-4, 2.6e-6)[number // 2 % 2]}
         machine = {MODEL.parameter(name).in_equations: value for name, value in of.items()}
-        effects = {"dead_zone__half_width": 0.05 * (number % 3), "specimen_hysteresis__force": 3.0,
-                   "specimen_hysteresis__yield_displacement": 0.3,
-                   "specimen_hysteresis__exponent": (1.0, 3.0, 2.5, 1.5)[number % 4]}  # fmt: skip
+        effects = {
+            "dead_zone__half_width": 0.05 * (number % 3),
+            "specimen_hysteresis__force": 3.0,
+            "specimen_hysteresis__yield_displacement": 0.3,
+            "specimen_hysteresis__exponent": (1.0, 3.0, 2.5, 1.5)[number % 4],
+        }
         usual = {p.in_equations: p.value for p in MODEL.parameters}
         drawn.append(usual | machine | effects)
     return drawn

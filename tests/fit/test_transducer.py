@@ -27,8 +27,14 @@ RATE, SMALL = 200.0, {"population": 20.0, "generations": 6.0, "elite": 3.0}
 GAIN, TAU = 0.8, 0.05
 
 
-def lag(seed: int, offset: float, zeroed: bool | None = None, levels: tuple[float, ...] = (0.3,), noise: float = 0.02,
-        verify: bool = True) -> Matrix:  # fmt: skip
+def lag(
+    seed: int,
+    offset: float,
+    zeroed: bool | None = None,
+    levels: tuple[float, ...] = (0.3,),
+    noise: float = 0.02,
+    verify: bool = True,
+) -> Matrix:
     """A first-order lag of gain 0.8 under held commands about other levels, with a transducer that is off.
 
     The command is held: the answer to it is exact, y[k+1] = a y[k] + K (1 − a) u[k], a = exp(−1/(rate τ)).
@@ -44,8 +50,18 @@ def lag(seed: int, offset: float, zeroed: bool | None = None, levels: tuple[floa
             {} if zeroed is None else {"displacement": zeroed},
             dict.fromkeys(("command", "displacement"), "m"),
         )
-        runs.append(Run(f"r{number}", "", RATE, {"command": u, "displacement": y}, units, hold="zoh", zeroed=known,
-                        use="verify" if number == len(levels) else "fit"))  # fmt: skip
+        runs.append(
+            Run(
+                f"r{number}",
+                "",
+                RATE,
+                {"command": u, "displacement": y},
+                units,
+                hold="zoh",
+                zeroed=known,
+                use="verify" if number == len(levels) else "fit",
+            )
+        )
     return Matrix(Actuator("LAG"), tuple(runs))
 
 

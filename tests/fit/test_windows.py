@@ -25,9 +25,13 @@ MOTOR = Settings(model="motor", options={"population": 24.0, "generations": 6.0,
 
 
 def cylinder(
-    seed: int, wander: float, dead: float = 0.0, seconds: float = 120.0, uses: tuple[str, ...] = ("fit", "verify"),
+    seed: int,
+    wander: float,
+    dead: float = 0.0,
+    seconds: float = 120.0,
+    uses: tuple[str, ...] = ("fit", "verify"),
     skew: float = 0.0,
-) -> Matrix:  # fmt: skip
+) -> Matrix:
     """LAG q̇ + q = GAIN u, x[k+1] = x[k] + q dt + wander: exact for held commands. The noise is 0.2 mm.
 
     By `skew` the gain is larger one way and smaller the other.

@@ -47,8 +47,10 @@ def bench_rows() -> Iterator[tuple[str, list[OwnAnswer]]]:
 def table(rows: Sequence[tuple[str, list[OwnAnswer]]]) -> str:
     """Medians over the seeds; the time as a multiple of that of `ga`."""
     usual = next(np.median([one.seconds for one in found]) for method, found in rows if method == "ga")
-    lines = ["| method | error of its own answer | worst parameter off by | evaluations | time, `ga` = 1 |",
-             "|---|---|---|---|---|"]  # fmt: skip
+    lines = [
+        "| method | error of its own answer | worst parameter off by | evaluations | time, `ga` = 1 |",
+        "|---|---|---|---|---|",
+    ]
     for method, found in rows:
 
         def of(value: Callable[[OwnAnswer], float], found: list[OwnAnswer] = found) -> float:

@@ -39,12 +39,16 @@ def el_centro(case: Case, seconds: float | None = None) -> Case:
 
 def of_fifth_order(seconds: float) -> Case:
     """A large rig for the fifth-order actuator: one storey of 20 t under a sine, so long."""
-    return case_of({
-        "structure": {"mass": "20 t", "stiffness": "0.8 MN/m", "damping": {"ratio": "20 %"}},
-        "physical": {"mass": "500 kg", "stiffness": "10 %"},
-        "gain": 100, "piston_area": "9050 mm^2", "supply_pressure": "210 bar",
-        "ground": {"kind": "sine", "frequency": "0.8 Hz", "amplitude": "0.1 g", "duration": f"{seconds} s"},
-    })  # fmt: skip
+    return case_of(
+        {
+            "structure": {"mass": "20 t", "stiffness": "0.8 MN/m", "damping": {"ratio": "20 %"}},
+            "physical": {"mass": "500 kg", "stiffness": "10 %"},
+            "gain": 100,
+            "piston_area": "9050 mm^2",
+            "supply_pressure": "210 bar",
+            "ground": {"kind": "sine", "frequency": "0.8 Hz", "amplitude": "0.1 g", "duration": f"{seconds} s"},
+        }
+    )
 
 
 def of_qian(seconds: float = 3.0, **changed: object) -> Case:

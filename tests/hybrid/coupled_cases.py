@@ -27,19 +27,30 @@ def rows(matrix: np.ndarray, unit: str) -> dict[str, Any]:
     return {"matrix": matrix.tolist(), "unit": unit}
 
 
-def beam(seconds: float = 1.0, joined: bool = True, ratio: float = 0.05, gains: tuple[float, float] = (16.0, 10.0),
-         delays: tuple[int, int] = (1, 2)) -> tuple[CoupledCase, Loop]:  # fmt: skip
+def beam(
+    seconds: float = 1.0,
+    joined: bool = True,
+    ratio: float = 0.05,
+    gains: tuple[float, float] = (16.0, 10.0),
+    delays: tuple[int, int] = (1, 2),
+) -> tuple[CoupledCase, Loop]:
     """Two actuators on the first and the third of three masses, with a specimen each or one that joins them."""
     damping = modal_damping(BEAM_MASS, BEAM_STIFFNESS, ratio)
     mass, damper, spring = JOINED if joined else (np.diag([8.0, 6.0]), np.zeros((2, 2)), np.diag([17.5e3, 10e3]))
     places = [0, 2]
     data: dict[str, Any] = {
-        "structure": {"mass": rows(BEAM_MASS, "kg"), "stiffness": rows(BEAM_STIFFNESS, "N/m"),
-                      "damping": rows(damping, "N*s/m")},
-        "physical": [{"name": "left", "storey": 1, "gain": gains[0], "delay": delays[0]},
-                     {"name": "right", "storey": 3, "gain": gains[1], "delay": delays[1]}],
-        "piston_area": "497 mm^2", "ground": GROUND | {"duration": f"{seconds} s"},
-    }  # fmt: skip
+        "structure": {
+            "mass": rows(BEAM_MASS, "kg"),
+            "stiffness": rows(BEAM_STIFFNESS, "N/m"),
+            "damping": rows(damping, "N*s/m"),
+        },
+        "physical": [
+            {"name": "left", "storey": 1, "gain": gains[0], "delay": delays[0]},
+            {"name": "right", "storey": 3, "gain": gains[1], "delay": delays[1]},
+        ],
+        "piston_area": "497 mm^2",
+        "ground": GROUND | {"duration": f"{seconds} s"},
+    }
     if joined:
         whole = np.zeros((3, 3, 3))
         whole[np.ix_(range(3), places, places)] = mass, damper, spring
@@ -48,8 +59,19 @@ def beam(seconds: float = 1.0, joined: bool = True, ratio: float = 0.05, gains: 
     else:
         for number, part in enumerate(data["physical"]):
             part |= {"mass": f"{mass[number, number]} kg", "stiffness": f"{spring[number, number]} N/m"}
-    loop = Loop(BEAM_MASS, damping, BEAM_STIFFNESS, np.ones(3), np.eye(3)[places], mass, damper, spring,
-                (Actuator(), Actuator(**FAST)), gains, delays)  # fmt: skip
+    loop = Loop(
+        BEAM_MASS,
+        damping,
+        BEAM_STIFFNESS,
+        np.ones(3),
+        np.eye(3)[places],
+        mass,
+        damper,
+        spring,
+        (Actuator(), Actuator(**FAST)),
+        gains,
+        delays,
+    )
     return coupled_of(data, None, "beam"), loop
 
 
@@ -60,12 +82,18 @@ def table(seconds: float = 1.0) -> tuple[CoupledCase, Loop]:
     inverse = np.linalg.inv(TABLE)
     physical = np.diag([60.0, 15, 15]), np.zeros((3, 3)), 1e3 * np.diag([60.0, 30, 20])
     data: dict[str, Any] = {
-        "structure": {"mass": ["300 kg", "80 kg", "80 kg"], "stiffness": ["300 kN/m", "150 kN/m", "120 kN/m"],
-                      "damping": rows(damping, "N*s/m"), "direction": [1, 0.3, 0]},
+        "structure": {
+            "mass": ["300 kg", "80 kg", "80 kg"],
+            "stiffness": ["300 kN/m", "150 kN/m", "120 kN/m"],
+            "damping": rows(damping, "N*s/m"),
+            "direction": [1, 0.3, 0],
+        },
         "specimen": {"mass": ["60 kg", "15 kg", "15 kg"], "stiffness": ["60 kN/m", "30 kN/m", "20 kN/m"]},
         "physical": [{"name": f"leg {i}", "place": row.tolist()} for i, row in enumerate(TABLE, 1)],
-        "gain": 7, "piston_area": "497 mm^2", "ground": GROUND | {"duration": f"{seconds} s"},
-    }  # fmt: skip
+        "gain": 7,
+        "piston_area": "497 mm^2",
+        "ground": GROUND | {"duration": f"{seconds} s"},
+    }
     Ms, Cs, Ks = (inverse.T @ of @ inverse for of in physical)
     loop = Loop(
         mass, damping, stiffness, np.array([1, 0.3, 0]), TABLE, Ms, Cs, Ks, (Actuator(),) * 3, (7.0,) * 3, (1,) * 3

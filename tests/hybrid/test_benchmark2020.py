@@ -95,9 +95,12 @@ def test_the_right_structure_finds_the_plant(identified):
     assert identified.error["fit"] <= 1.05 * floor
     assert floor == pytest.approx(NOISE, rel=0.05)
     found = {
-        "a1b0": of["Z0"] / of["Ka"] * of["wv"] ** 2, "a2": 1 / of["Ka"], "a3": of["Cl"] / of["Ka"],
-        "b1": 2 * of["zv"] * of["wv"], "b2": of["wv"] ** 2,
-    }  # fmt: skip
+        "a1b0": of["Z0"] / of["Ka"] * of["wv"] ** 2,
+        "a2": 1 / of["Ka"],
+        "a3": of["Cl"] / of["Ka"],
+        "b1": 2 * of["zv"] * of["wv"],
+        "b2": of["wv"] ** 2,
+    }
     for name in ("a1b0", "a2", "b1"):
         assert found[name] == pytest.approx(NOMINAL[name], rel=0.02), name
     assert np.sqrt(found["b2"]) == pytest.approx(np.sqrt(NOMINAL["b2"]), rel=0.02)

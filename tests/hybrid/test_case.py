@@ -38,8 +38,7 @@ def test_the_built_in_cases_are_read_by_name():
     assert read_case("qian").physical == qian().physical == Specimen(8.75, 17.5e3)
     for number, ratio, mass in ((1, 0.05, 1000), (2, 0.04, 1100), (3, 0.03, 1300), (4, 0.03, 1000)):
         case = benchmark2020(number)
-        A = np.block([[np.zeros((3, 3)), np.eye(3)],
-                      [-case.stiffness / mass, -case.damping / mass]])  # fmt: skip
+        A = np.block([[np.zeros((3, 3)), np.eye(3)], [-case.stiffness / mass, -case.damping / mass]])
         poles = scipy.linalg.eigvals(A)
         assert np.allclose(-poles.real / np.abs(poles), ratio)
 

@@ -31,9 +31,16 @@ UNITS = {
     "acceleration": {"m/s^2": 1.0, "g": constants.g, "G": constants.g, "cm/s^2": 1e-2, "mm/s^2": MM, "in/s^2": INCH},
     "dimensionless": {"": 1.0, "%": 1e-2, "percent": 1e-2},
     "loop gain": {
-        "": 1.0, "V/m": 1.0, "V/mm": 1e3, "mV/mm": 1.0, "kV/m": 1e3, "mV/um": 1e3, "V/in": 1 / INCH, "volts/m": 1.0,
+        "": 1.0,
+        "V/m": 1.0,
+        "V/mm": 1e3,
+        "mV/mm": 1.0,
+        "kV/m": 1e3,
+        "mV/um": 1e3,
+        "V/in": 1 / INCH,
+        "volts/m": 1.0,
     },
-}  # fmt: skip
+}
 """What each dimension may be written in, and the SI value of one."""
 
 QUANTITIES: dict[str, tuple[str, float, Callable[[Case], float]]] = {

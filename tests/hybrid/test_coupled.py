@@ -48,8 +48,10 @@ def assert_alike(found, loop):
     d, x, f = reference.simulate(loop, found.first.ground, 4096.0)
     for p, one in enumerate(found.parts.values()):
         for shown, truth, within in (
-            (one.numerical, d[:, p], 1e-4), (one.measured, x[:, p], 1e-4), (one.force, f[:, p], 1e-3),
-        ):  # fmt: skip
+            (one.numerical, d[:, p], 1e-4),
+            (one.measured, x[:, p], 1e-4),
+            (one.force, f[:, p], 1e-3),
+        ):
             assert np.std(shown - truth) < within * np.std(truth)
 
 
@@ -89,16 +91,23 @@ def test_actuators_of_other_equations_and_controllers_run_beside_each_other():
     Where the structure does not join them, nothing does.
     """
     data = {
-        "structure": {"mass": ["87.5 kg", "87.5 kg"], "stiffness": ["87.5 kN/m", "87.5 kN/m"],
-                      "damping": ["3.5 kN*s/m", "3.5 kN*s/m"]},
+        "structure": {
+            "mass": ["87.5 kg", "87.5 kg"],
+            "stiffness": ["87.5 kN/m", "87.5 kN/m"],
+            "damping": ["3.5 kN*s/m", "3.5 kN*s/m"],
+        },
         "physical": [{"storey": 1, "mass": "8 kg", "stiffness": "17 kN/m"}, {"storey": 2, "stiffness": "17 kN/m"}],
-        "gain": 5, "piston_area": "497 mm^2", "ground": GROUND | {"duration": "0.5 s"},
-    }  # fmt: skip
+        "gain": 5,
+        "piston_area": "497 mm^2",
+        "ground": GROUND | {"duration": "0.5 s"},
+    }
     case, slow = coupled_of(data, None, "two"), fitted("first_order", gain=1.0, tau=0.02)
     on = {"dead_zone.half_width": 1e-5}
     found = simulate_coupled((fitted(), slow), case, (Compensation(4096.0), NONE), {})
-    alone = [simulate_hybrid(fit, one, acting) for fit, one, acting in
-             zip((fitted(), slow), case.cases, (Compensation(4096.0), NONE), strict=True)]  # fmt: skip
+    alone = [
+        simulate_hybrid(fit, one, acting)
+        for fit, one, acting in zip((fitted(), slow), case.cases, (Compensation(4096.0), NONE), strict=True)
+    ]
     for one, single in zip(found.parts.values(), alone, strict=True):
         assert np.std(one.measured - single.measured) < 1e-9 * np.std(single.measured)
     assert simulate_coupled((fitted(), fitted()), case, (NONE, NONE), on).first.radius is None
@@ -130,7 +139,7 @@ def test_two_degrees_of_freedom_bring_both_actuators_to_the_reference():
         ({"specimen": {"stiffness": "5 N/m"}}, "1 rows"),
         ({"specimen": {}, "physical": [{"storey": 1, "mass": "1 kg"}]}, "stated twice"),
     ],
-)  # fmt: skip
+)
 def test_what_makes_no_case_of_several_parts_is_refused(change, where):
     """Each in one line that names the part or the field."""
     structure = {"mass": ["9 kg", "9 kg"], "stiffness": ["9 kN/m", "9 kN/m"], "damping": ["1 N*s/m", "1 N*s/m"]}
@@ -156,8 +165,10 @@ def test_a_loop_that_one_gain_makes_unstable_is_told_that_gain():
     assert (judged.state, first.name) == ("unstable", "left.Kp")
     assert "left.Kp" in judged.text[-1]
     assert judged.mode.frequency == pytest.approx(50.8, rel=0.01)
-    radii = [reference.radius(loop._replace(Kp=(60.0 * first.factor * 10 ** (level / 20), 16.0)), 4096.0)
-             for level in (0.0, 3.0, 5.0)]  # fmt: skip
+    radii = [
+        reference.radius(loop._replace(Kp=(60.0 * first.factor * 10 ** (level / 20), 16.0)), 4096.0)
+        for level in (0.0, 3.0, 5.0)
+    ]
     assert radii[0] < 1.0
     assert radii[1] < 1.0
     assert radii[2] > 1.0

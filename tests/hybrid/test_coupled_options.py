@@ -105,8 +105,9 @@ def test_an_isolator_stands_in_the_laboratory_and_in_the_reference(name):
     on = np.diag([float(name is None), 1.0])
     case, loop = beam(0.5, delays=(1, 1))
     found = simulate_coupled(TWO, case.with_isolator(isolator, name), (NONE, NONE))
-    whole = {of: getattr(loop, of) + loop.R.T @ on @ loop.R * value
-             for of, value in (("M", 2.0), ("K", 8e3), ("C", 60.0))}  # fmt: skip
+    whole = {
+        of: getattr(loop, of) + loop.R.T @ on @ loop.R * value for of, value in (("M", 2.0), ("K", 8e3), ("C", 60.0))
+    }
     own = {f"{of}s": getattr(loop, f"{of}s") + on * value for of, value in (("M", 2.0), ("K", 8e3), ("C", 60.0))}
     moved = loop._replace(**whole, **own)
     assert_alike(found, moved)

@@ -37,8 +37,9 @@ def test_figures_are_drawn_also_of_what_ran_away(theme):
         assert "NaN" not in text
     case, alone = LOOSE, {"it": shown["mostly physical"]}
     assert [set(drawings(Simulated(of, case))) for of in (shown, alone)] == [
-        {"displacement", "response"}, {"displacement"},
-    ]  # fmt: skip
+        {"displacement", "response"},
+        {"displacement"},
+    ]
     found = share_map(FIT, LOOSE, masses=[0.0, 0.5], stiffnesses=[0.0, 0.9])
     assert "unstable" in render(share_map_chart(found, LOOSE, "none", look(theme)), "svg").decode()
 

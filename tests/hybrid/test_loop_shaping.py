@@ -111,8 +111,9 @@ def test_the_reduced_controller_is_as_good_as_the_whole_one(specimen, structure)
     whole = SampledLoop(made.plant, made.full, made.delay)
     assert made.controller.order < made.full.order
     for found, wanted in (
-        (channels(made.controller, z), channels(made.full, z)), (made.loop.response(f), whole.response(f)),
-    ):  # fmt: skip
+        (channels(made.controller, z), channels(made.full, z)),
+        (made.loop.response(f), whole.response(f)),
+    ):
         in_decibel, in_degrees = deviation(found, wanted)
         assert in_decibel <= 0.1
         assert in_degrees <= 1.0
@@ -171,9 +172,7 @@ def test_a_plant_with_a_zero_on_the_right_is_not_cancelled_there(structure):
     late = Rational(np.array([2 / T], complex), np.array([-2 / T], complex), -1.0).realised()
     A, B, C = plant.A, plant.B[:, None], plant.C[None, :]
     system = np.block([[A, B @ late.C], [np.zeros((1, 4)), late.A]])
-    model = LinearModel.of(
-        system, np.vstack([B @ late.D, late.B])[:, 0], np.hstack([C, [[0.0]]])[0], np.array(0.0)
-    )  # fmt: skip
+    model = LinearModel.of(system, np.vstack([B @ late.D, late.B])[:, 0], np.hstack([C, [[0.0]]])[0], np.array(0.0))
     made = design(model, RATE, 1, QIAN2014_TARGET, structure)
     f = np.linspace(0.1, 25, 100)
     assert np.abs(np.linalg.eigvals(made.controller.A)).max() < 1
@@ -193,8 +192,12 @@ def test_the_benchmark_of_2020_is_followed_with_the_same_target():
     assert decibel(T).max() <= 12.0
     rng = np.random.default_rng(1)
     for _ in range(20):
-        b1, b2, a3, k = 425 + 3.3 * rng.standard_normal(), 9.9976e4 + 3300 * rng.standard_normal(), \
-            3.3 + 1.3 * rng.standard_normal(), 1190e3 + 5e4 * rng.standard_normal()  # fmt: skip
+        b1, b2, a3, k = (
+            425 + 3.3 * rng.standard_normal(),
+            9.9976e4 + 3300 * rng.standard_normal(),
+            3.3 + 1.3 * rng.standard_normal(),
+            1190e3 + 5e4 * rng.standard_normal(),
+        )
         other = as_model(reference.benchmark_2020(b1=b1, b2=b2, a3=a3, k=k))
         assert SampledLoop(other, made.controller, 1).stable
 

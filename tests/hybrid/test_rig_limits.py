@@ -43,8 +43,9 @@ def test_a_case_states_the_rig_and_counts_before_the_fit():
 
 def test_a_controller_runs_its_case_within_the_limits():
     case = of_qian(1.0, rig=RigLimits(speed=1e-4))
-    made = design_controller(FIT, case.physical, sample_rate=case.sample_rate, gain=case.gain,
-                             piston_area=case.piston_area, draws=2)  # fmt: skip
+    made = design_controller(
+        FIT, case.physical, sample_rate=case.sample_rate, gain=case.gain, piston_area=case.piston_area, draws=2
+    )
     held = on_case(made, FIT, case)
     assert "speed" in held.beyond[0]
     assert held.to_json()["design"]["notes"][0] == held.beyond[0]

@@ -62,9 +62,10 @@ def test_draws_scatter_as_the_fit_says(fit):
 def test_a_fit_that_knows_little_is_told_so(fit):
     """Standard errors a hundred times as large: fewer draws are within the limits, and some loops may be lost."""
     vague = replace(
-        fit, parameters={name: replace(one, std_error=0.3 * one.value) for name, one in fit.parameters.items()},
+        fit,
+        parameters={name: replace(one, std_error=0.3 * one.value) for name, one in fit.parameters.items()},
         correlation={},
-    )  # fmt: skip
+    )
     made = design_controller(vague, SPECIMEN, structure="two-degree", **CASE)
     assert made.robustness.within < 95
 
@@ -130,7 +131,7 @@ def test_a_valve_of_second_order_is_part_of_the_plant(fit):
     Tn, zeta, f = 2e-3, 0.6, np.array([1.0, 10.0, 30.0])
     found = linear_plant(
         with_effect(fit, "valve_second_order", inverse_frequency=Tn, damping=zeta), SPECIMEN, 2.0, reference.AREA
-    ).model.frequency_response(f)  # fmt: skip
+    ).model.frequency_response(f)
     A, B, C = reference.servo_loop(8.75, 17.5e3, 2.0, values=fit.values)
     s = 2j * np.pi * f
     closed = np.array([C @ np.linalg.solve(one * np.eye(4) - A, B) for one in s])

@@ -24,9 +24,15 @@ RATE, FIT = 4096.0, fitted()
 
 def shaken(ground: dict, **stated: object):
     """A table with 8.75 kg on Qian's machine."""
-    return case_of({
-        "payload": {"mass": "8.75 kg"}, "gain": 7, "piston_area": "497 mm^2", "ground": ground, **stated,
-    })  # fmt: skip
+    return case_of(
+        {
+            "payload": {"mass": "8.75 kg"},
+            "gain": 7,
+            "piston_area": "497 mm^2",
+            "ground": ground,
+            **stated,
+        }
+    )
 
 
 def true_acceleration(command: np.ndarray, gain: float, mass: float) -> np.ndarray:
@@ -93,9 +99,14 @@ def test_effects_of_the_fit_are_known_to_the_command():
     """A dead zone: improved on the model, the command leaves a fifth of what the linear inverse leaves."""
     case = shaken({"kind": "blwn", "band": "10 Hz", "amplitude": "0.05 g", "duration": "2 s"})
     zone = {"dead_zone.half_width": 5e-5}
-    knowing = replace(FIT, effects=("dead_zone",), parameters={
-        **FIT.parameters, "dead_zone.half_width": replace(FIT.parameters["tau"], value=5e-5, unit="m"),
-    })  # fmt: skip
+    knowing = replace(
+        FIT,
+        effects=("dead_zone",),
+        parameters={
+            **FIT.parameters,
+            "dead_zone.half_width": replace(FIT.parameters["tau"], value=5e-5, unit="m"),
+        },
+    )
     left = simulate_hybrid(FIT, case, controller_called("feedforward", FIT, case), zone)
     best = simulate_hybrid(knowing, case, controller_called("feedforward", knowing, case))
     assert best.scores.tracking_rms < left.scores.tracking_rms / 5
@@ -103,10 +114,15 @@ def test_effects_of_the_fit_are_known_to_the_command():
 
 def test_the_fifth_order_machine_shakes_by_its_own_inverse():
     """Known ahead by the delay of the loop: a twentieth of the error of the feedback alone."""
-    case = case_of({
-        "payload": {"mass": "500 kg"}, "gain": 160, "piston_area": "9050 mm^2", "supply_pressure": "210 bar",
-        "ground": {"kind": "blwn", "band": "5 Hz", "amplitude": "0.05 g", "duration": "3 s"},
-    })  # fmt: skip
+    case = case_of(
+        {
+            "payload": {"mass": "500 kg"},
+            "gain": 160,
+            "piston_area": "9050 mm^2",
+            "supply_pressure": "210 bar",
+            "ground": {"kind": "blwn", "band": "5 Hz", "amplitude": "0.05 g", "duration": "3 s"},
+        }
+    )
     fit = fitted("strano")
     alone, helped = (simulate_hybrid(fit, case, controller_called(one, fit, case)) for one in ("none", "feedforward"))
     assert helped.scores.tracking_rms < alone.scores.tracking_rms / 20

@@ -122,9 +122,14 @@ def test_a_feedforward_over_a_spread_is_worth_less():
     """± 20 % of each parameter leaves more of the error than ± 1 %, and the result says over what."""
     fit = fitted("strano")
     case = replace(
-        qian(), ground=replace(noise(0.5), kind="sine", frequency=2.0), piston_area=9.05e-3, supply_pressure=210e5,
-        gain=100.0, physical=Specimen(0.0, 0.0), sample_rate=500.0,
-    )  # fmt: skip
+        qian(),
+        ground=replace(noise(0.5), kind="sine", frequency=2.0),
+        piston_area=9.05e-3,
+        supply_pressure=210e5,
+        gain=100.0,
+        physical=Specimen(0.0, 0.0),
+        sample_rate=500.0,
+    )
     narrow, wide = (followed_in(fit, case, spread=Spread(share)) for share in (0.01, 0.2))
     assert wide.drawn_both_rms > 3 * narrow.drawn_both_rms
     assert "drawn from ± 20 % of each parameter" in wide.said[-1]

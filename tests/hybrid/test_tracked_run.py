@@ -125,9 +125,14 @@ def test_a_loop_that_does_not_hold_has_no_standard_error():
 
 
 @pytest.mark.parametrize(
-    "given", [{"bounds": {"tau": (1e-3, 1.0)}}, {"fixed": {"tau": 1e-2}}, {"effects": ("command_delay",)},
-              {"model": "qian2014"}],
-)  # fmt: skip
+    "given",
+    [
+        {"bounds": {"tau": (1e-3, 1.0)}},
+        {"fixed": {"tau": 1e-2}},
+        {"effects": ("command_delay",)},
+        {"model": "qian2014"},
+    ],
+)
 def test_what_a_filter_does_not_know_is_refused(given):
     with pytest.raises(Unusable):
         identify(

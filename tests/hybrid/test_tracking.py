@@ -207,9 +207,14 @@ def test_a_missing_sample_is_predicted():
 
 @pytest.mark.parametrize(
     ("given", "code"),
-    [({"sample_rate": 0}, "bad-sample-rate"), ({"sample_rate": float("nan")}, "bad-sample-rate"),
-     ({"hold": "cubic"}, "unknown-hold"), ({"tau0": 0.0}, "bad-start"), ({"gain0": 0.0}, "bad-start")],
-)  # fmt: skip
+    [
+        ({"sample_rate": 0}, "bad-sample-rate"),
+        ({"sample_rate": float("nan")}, "bad-sample-rate"),
+        ({"hold": "cubic"}, "unknown-hold"),
+        ({"tau0": 0.0}, "bad-start"),
+        ({"gain0": 0.0}, "bad-start"),
+    ],
+)
 def test_what_no_filter_can_work_with_is_refused(given, code):
     with pytest.raises(Unusable) as refused:
         Tracker(**{"sample_rate": 4096.0, **given})

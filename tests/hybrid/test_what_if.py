@@ -35,12 +35,24 @@ WIDER = {gain: (0.9 * lower, 1.1 * upper) for gain, (lower, upper) in AXES.items
 def fit_of(values=reference.TABLE_4, **stated) -> FitResult:
     """A fit that found these values, each with a standard error of 1 %."""
     return FitResult(
-        model="qian2014", effects=(),
+        model="qian2014",
+        effects=(),
         parameters={n: Estimate(v, UNITS[n], 0.01 * v, v / 10, v * 10, at_bound=False) for n, v in values.items()},
-        correlation={}, determined=(), undetermined=(), error={}, offset={}, noise_floor={}, runs=(), method="ga",
-        seed=0, evaluations=0, seconds=0.0, version="0", data_hash="",
+        correlation={},
+        determined=(),
+        undetermined=(),
+        error={},
+        offset={},
+        noise_floor={},
+        runs=(),
+        method="ga",
+        seed=0,
+        evaluations=0,
+        seconds=0.0,
+        version="0",
+        data_hash="",
         actuator=Actuator("A", **({"piston_area": reference.AREA, "stroke": reference.STROKE} | stated)),
-    )  # fmt: skip
+    )
 
 
 @pytest.fixture(scope="module")
@@ -264,8 +276,18 @@ def test_the_command_writes_json_and_figures(servoident, tmp_path):
 
     file, out = tmp_path / "fit.json", tmp_path / "figures"
     file.write_text(json.dumps(fit_of(stroke=None).to_json()))
-    given = ("whatif", file, "--set", "area=239 mm^2", "--set", "stroke=4 in", "--gain", "2:3",
-             "--specimen", "mass=2.06 kg, stiffness=30.65 kN/m")  # fmt: skip
+    given = (
+        "whatif",
+        file,
+        "--set",
+        "area=239 mm^2",
+        "--set",
+        "stroke=4 in",
+        "--gain",
+        "2:3",
+        "--specimen",
+        "mass=2.06 kg, stiffness=30.65 kN/m",
+    )
     refused = servoident(*given)
     assert refused.returncode == 2
     assert len(refused.stderr.strip().splitlines()) == 1

@@ -38,8 +38,9 @@ def moved(command: np.ndarray, disturbance: float, seed: int = 1) -> tuple[np.nd
 
 
 def record(command: np.ndarray, measured: np.ndarray) -> Run:
-    return Run("r", "", RATE, {"command": command, "displacement": measured}, {"command": "V", "displacement": "m"},
-               hold="zoh")  # fmt: skip
+    return Run(
+        "r", "", RATE, {"command": command, "displacement": measured}, {"command": "V", "displacement": "m"}, hold="zoh"
+    )
 
 
 @pytest.mark.parametrize("command", [binary(5), multisine(6), np.concatenate([np.zeros(300), multisine(5)])])
@@ -71,10 +72,16 @@ def test_a_command_whose_height_changes_is_compared_behind_the_change():
 
 @pytest.mark.parametrize(
     "command",
-    [np.random.default_rng(2).standard_normal(4000), np.repeat([0.0, 1.0], [50, 3950]), np.linspace(0.0, 1.0, 4000),
-     np.zeros(4000), np.sin(2 * np.pi * np.arange(4000) / 400), multisine(2),
-     np.repeat(np.random.default_rng(3).choice([-1.0, 0.0, 1.0], 20), 200)],
-)  # fmt: skip
+    [
+        np.random.default_rng(2).standard_normal(4000),
+        np.repeat([0.0, 1.0], [50, 3950]),
+        np.linspace(0.0, 1.0, 4000),
+        np.zeros(4000),
+        np.sin(2 * np.pi * np.arange(4000) / 400),
+        multisine(2),
+        np.repeat(np.random.default_rng(3).choice([-1.0, 0.0, 1.0], 20), 200),
+    ],
+)
 def test_what_does_not_repeat_itself_has_no_periods(command):
     """Noise, a step, a ramp, a rest, steps at random; of a sine the noise is told by its phase."""
     assert not own_repeats(record(command, np.random.default_rng(4).standard_normal(len(command))))

@@ -203,8 +203,14 @@ def test_outputs_of_one_record_are_no_repeats_and_each_output_has_its_own():
     assert found["one.displacement"] == pytest.approx(NOISE, rel=0.1)
     assert found["one.force"] > 5 * NOISE
     # Without a command the motion is what drives, unless it is an output of the record itself.
-    bare = [replace(one, channels={"velocity": one.command, **{n: one.channels[n] for n in ("displacement", "force")}},
-                    units={"velocity": "m/s", "displacement": "m", "force": "N"}) for one in runs]  # fmt: skip
+    bare = [
+        replace(
+            one,
+            channels={"velocity": one.command, **{n: one.channels[n] for n in ("displacement", "force")}},
+            units={"velocity": "m/s", "displacement": "m", "force": "N"},
+        )
+        for one in runs
+    ]
     assert pairs(*bare) == expected
 
 

@@ -16,15 +16,22 @@ from tests.reference import qian_reference as qian
 
 SECONDS, SEED = 2.0, 1
 PRINTED = {
-    "Z0": "1.48e-5 m^3/(s*kPa) as printed", "tau": "0.0036 s", "Cl": "1e-8 m^3/(s*kPa)", "c0": "3.2 kN*s/m",
-    "m0": "4.25 kg", "Ka": "1.39e-10 m^3/kPa",
-}  # fmt: skip
+    "Z0": "1.48e-5 m^3/(s*kPa) as printed",
+    "tau": "0.0036 s",
+    "Cl": "1e-8 m^3/(s*kPa)",
+    "c0": "3.2 kN*s/m",
+    "m0": "4.25 kg",
+    "Ka": "1.39e-10 m^3/kPa",
+}
 """Table 4 as it stands in the print."""
 BOUNDS = {
-    "Z0": ("1e-5 m^3/(s*kPa) as printed", "2e-5 m^3/(s*kPa) as printed"), "tau": ("0.001 s", "0.006 s"),
-    "Cl": ("2e-9 m^3/(s*kPa)", "2e-8 m^3/(s*kPa)"), "c0": ("0.8 kN*s/m", "5 kN*s/m"), "m0": ("1 kg", "10 kg"),
+    "Z0": ("1e-5 m^3/(s*kPa) as printed", "2e-5 m^3/(s*kPa) as printed"),
+    "tau": ("0.001 s", "0.006 s"),
+    "Cl": ("2e-9 m^3/(s*kPa)", "2e-8 m^3/(s*kPa)"),
+    "c0": ("0.8 kN*s/m", "5 kN*s/m"),
+    "m0": ("1 kg", "10 kg"),
     "Ka": ("2e-12 m^3/kPa", "2e-10 m^3/kPa"),
-}  # fmt: skip
+}
 """Table 2 as it stands in the print."""
 
 

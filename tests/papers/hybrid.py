@@ -117,12 +117,16 @@ def leaking(Cl: float = 3e-11) -> Matrix:
         above, below = max(ve - of.vep, 0.0) * of.kqp, min(ve - of.ven, 0.0) * of.kqn
         Q = above * np.sqrt(max(strano.SUPPLY - P, 0.0)) + below * np.sqrt(max(strano.SUPPLY + P, 0.0))
         return [
-            dve, of.wn**2 * (vc - ve) - 2 * of.xi * of.wn * dve, (Q - strano.AREA * v - Cl * P) / of.C,
-            (strano.AREA * P - of.sigma * v) / of.m, v,
-        ]  # fmt: skip
+            dve,
+            of.wn**2 * (vc - ve) - 2 * of.xi * of.wn * dve,
+            (Q - strano.AREA * v - Cl * P) / of.C,
+            (strano.AREA * P - of.sigma * v) / of.m,
+            v,
+        ]
 
-    found = scipy.integrate.solve_ivp(rates, (0, times[-1]), [of.ve0, 0, 0, 0, 0], "LSODA", times, rtol=1e-8,
-                                      atol=1e-10, max_step=1 / strano.RATE).y  # fmt: skip
+    found = scipy.integrate.solve_ivp(
+        rates, (0, times[-1]), [of.ve0, 0, 0, 0, 0], "LSODA", times, rtol=1e-8, atol=1e-10, max_step=1 / strano.RATE
+    ).y
     rng = np.random.default_rng(741)
     noise = rng.standard_normal((2, len(r)))
     channels = {"command": r, "displacement": found[4] + 1e-5 * noise[0], "load_pressure": found[2] + 1e4 * noise[1]}
@@ -133,9 +137,12 @@ def leaking(Cl: float = 3e-11) -> Matrix:
 
 
 LEAK = {
-    "name": "laminar_leak", "place": "pressure", "equation": "L = L + cl * P", "meaning": "leakage of the piston",
+    "name": "laminar_leak",
+    "place": "pressure",
+    "equation": "L = L + cl * P",
+    "meaning": "leakage of the piston",
     "strength": {"symbol": "cl", "unit": "m^3/(s*Pa)", "lower": "0 m^3/(s*Pa)", "upper": "1e-9 m^3/(s*Pa)"},
-}  # fmt: skip
+}
 
 
 def hypothesis_d() -> tuple[Measured, ...]:
@@ -359,34 +366,107 @@ def simulated_rig() -> tuple[Measured, ...]:
 FLAT = "the flat fifth-order rig"
 CLOSED = "a lag in closed form"
 ROWS = (
-    Row("H1", "eqs. (1) to (6)", "fifth-order rig from position, load pressure and spool", "a model; values not "
-        "printed",
-        FLAT + ", machine 0", fifth_order, long=True),
-    Row("H2", "eq. (2), instruments", "vertical load and supply pressure as measured inputs", "measured", FLAT,
-        measured_inputs, long=True),
+    Row(
+        "H1",
+        "eqs. (1) to (6)",
+        "fifth-order rig from position, load pressure and spool",
+        "a model; values not printed",
+        FLAT + ", machine 0",
+        fifth_order,
+        long=True,
+    ),
+    Row(
+        "H2",
+        "eq. (2), instruments",
+        "vertical load and supply pressure as measured inputs",
+        "measured",
+        FLAT,
+        measured_inputs,
+        long=True,
+    ),
     Row("H3", "section III", "validation on another record", "validated", FLAT + ", seed 1", validated, long=True),
-    Row("H4", "hypothesis d", "no leakage; a leak of 3e-11 m³/(s Pa) is hidden", "assumed", "SciPy's LSODA, seed 741",
-        hypothesis_d, long=True),
-    Row("H5", "section IV, Fig. 4", "feedforward by the inverse", "y follows r when ΔG = 0", FLAT, feedforward,
-        long=True),
+    Row(
+        "H4",
+        "hypothesis d",
+        "no leakage; a leak of 3e-11 m³/(s Pa) is hidden",
+        "assumed",
+        "SciPy's LSODA, seed 741",
+        hypothesis_d,
+        long=True,
+    ),
+    Row(
+        "H5",
+        "section IV, Fig. 4",
+        "feedforward by the inverse",
+        "y follows r when ΔG = 0",
+        FLAT,
+        feedforward,
+        long=True,
+    ),
     Row("H6", "section IV", "limit of the gain", "practical limits", FLAT, gain_limit, long=True),
-    Row("H7", "section IV", "ΔG: the reaction of a specimen that the model does not know", "paid for by the gain", FLAT,
-        unknown_force, long=True),
-    Row("H8", "section V, Figs. 5, 6", "an isolator with hysteresis", "hysteretic device", "a perfect rig, written out",
-        hysteresis, long=True),
-    Row("H9", "eqs. (12) to (25)", "τyr 21 → 14 ms, kyr 0.97 → 1.05 in one step", "constant values", CLOSED,
-        extended_kalman_filter),
+    Row(
+        "H7",
+        "section IV",
+        "ΔG: the reaction of a specimen that the model does not know",
+        "paid for by the gain",
+        FLAT,
+        unknown_force,
+        long=True,
+    ),
+    Row(
+        "H8",
+        "section V, Figs. 5, 6",
+        "an isolator with hysteresis",
+        "hysteretic device",
+        "a perfect rig, written out",
+        hysteresis,
+        long=True,
+    ),
+    Row(
+        "H9",
+        "eqs. (12) to (25)",
+        "τyr 21 → 14 ms, kyr 0.97 → 1.05 in one step",
+        "constant values",
+        CLOSED,
+        extended_kalman_filter,
+    ),
     Row("H10", "Fig. 7", "the band around both estimates", "curves without a band", CLOSED, figure_7),
     Row("H11", "section VII", "real time", "in real time", "clock of the processor", real_time, long=True),
-    Row("H12", "section VII", "where the loop is no lag", "valid below the oil column", "the flat chain of fourth "
-        "order",
-        not_first_order, long=True),
-    Row("H13", "section I", "delay compensation under El Centro", "needed", "the loop without it", compensated,
-        long=True),
-    Row("H14", "section II", "the rig as a shaking table, noise to 28 Hz", "possible", "flat loop of matrix "
-        "exponentials",
-        shaking_table, long=True),
-    Row("H15", "section VII", "parameters change with controller and specimen", "vary", "eq. (10), slow",
-        changing_parameters, long=True),
+    Row(
+        "H12",
+        "section VII",
+        "where the loop is no lag",
+        "valid below the oil column",
+        "the flat chain of fourth order",
+        not_first_order,
+        long=True,
+    ),
+    Row(
+        "H13",
+        "section I",
+        "delay compensation under El Centro",
+        "needed",
+        "the loop without it",
+        compensated,
+        long=True,
+    ),
+    Row(
+        "H14",
+        "section II",
+        "the rig as a shaking table, noise to 28 Hz",
+        "possible",
+        "flat loop of matrix exponentials",
+        shaking_table,
+        long=True,
+    ),
+    Row(
+        "H15",
+        "section VII",
+        "parameters change with controller and specimen",
+        "vary",
+        "eq. (10), slow",
+        changing_parameters,
+        long=True,
+    ),
     Row("H16", "section III", "simulation of the rig", "a model", FLAT, simulated_rig, long=True),
-)  # fmt: skip
+)

@@ -105,8 +105,9 @@ def sines() -> tuple[Measured, ...]:
     printed, least = as_printed(ALPHA, bent), fit_sine(ALPHA, bent)
     other = minimize(
         lambda a: np.sum((a[0] + a[1] * np.sin(ALPHA + a[2]) - bent) ** 4) / least.rms**4,
-        [least.a1, least.a2, least.a3], tol=1e-14,
-    ).x  # fmt: skip
+        [least.a1, least.a2, least.a3],
+        tol=1e-14,
+    ).x
     return (
         Measured("gain, furthest of the sines", 100 * float(np.abs(level).max()), "%", 2.0),
         Measured("phase", float(np.degrees(np.abs(angle).max())), "°", 2.0),
@@ -203,30 +204,76 @@ def twelve_bits() -> tuple[Measured, ...]:
 
 BENCH = "an independent bench (12 bit, 0.2 MPa RMS), seeds 0 to 2"
 ROWS = (
-    Row("K1", "section 4, block a", "time constant T", "an aperiodic link; the printed second derivative is a misprint",
-        BENCH, block_a, long=True,
+    Row(
+        "K1",
+        "section 4, block a",
+        "time constant T",
+        "an aperiodic link; the printed second derivative is a misprint",
+        BENCH,
+        block_a,
+        long=True,
         argument="The text calls block a an aperiodic link. The program takes T I' + I = Iin, and finds T of a "
         "bench that "
-        "is built so."),
+        "is built so.",
+    ),
     Row("K2", "block b, conclusion 2", "hysteresis B", "error below 5 %", BENCH, block_b, long=True),
-    Row("K3", "block c", "speed characteristic, six currents to each side", "a table with a spline or lines", BENCH,
+    Row(
+        "K3",
+        "block c",
+        "speed characteristic, six currents to each side",
+        "a table with a spline or lines",
+        BENCH,
         block_c,
-        long=True),
+        long=True,
+    ),
     Row("K4", "Fig. 1, block d", "slope kp and friction ΔPfr", "values without an error", BENCH, block_d, long=True),
-    Row("K5", "5.1", "zero shift, dead space, ranges of positions", "values without an error", BENCH, static_procedure,
-        long=True),
-    Row("K6", "5.1, Fig. 3", "three groups: at rest, moving forward, moving back", "a figure", "true speed, seed 3",
-        three_groups),
-    Row("K7", "5.2", "x = a1 + a2 sin(α + a3), with R, J and Δ", "an iteration", "NumPy on the true position; "
-        "SciPy", sines),
-    Row("K8", "5.2", "T by gradient descent, errors over amplitudes", "an iteration", BENCH, gradient_descent,
-        long=True),
-    Row("K9", "Fig. 4", "amplitude and phase characteristics", "a figure", "an integrator behind a lag, closed form",
-        characteristics, long=True),
+    Row(
+        "K5",
+        "5.1",
+        "zero shift, dead space, ranges of positions",
+        "values without an error",
+        BENCH,
+        static_procedure,
+        long=True,
+    ),
+    Row(
+        "K6",
+        "5.1, Fig. 3",
+        "three groups: at rest, moving forward, moving back",
+        "a figure",
+        "true speed, seed 3",
+        three_groups,
+    ),
+    Row(
+        "K7",
+        "5.2",
+        "x = a1 + a2 sin(α + a3), with R, J and Δ",
+        "an iteration",
+        "NumPy on the true position; SciPy",
+        sines,
+    ),
+    Row(
+        "K8", "5.2", "T by gradient descent, errors over amplitudes", "an iteration", BENCH, gradient_descent, long=True
+    ),
+    Row(
+        "K9",
+        "Fig. 4",
+        "amplitude and phase characteristics",
+        "a figure",
+        "an integrator behind a lag, closed form",
+        characteristics,
+        long=True,
+    ),
     Row("K10", "5.2", "drift while a sine runs", "compensated on the bench", "a sine with a drift, closed form", drift),
     Row("K11", "5.3", "fixed levels", "mean speeds", BENCH, levels, long=True),
-    Row("K12", "5.3, Fig. 5", "continuous change, current corrected by the dynamics", "hysteresis removed",
-        "true characteristic, seed 1", continuous),
+    Row(
+        "K12",
+        "5.3, Fig. 5",
+        "continuous change, current corrected by the dynamics",
+        "hysteresis removed",
+        "true characteristic, seed 1",
+        continuous,
+    ),
     Row("K13", "5.3", "smoothing: IIR, FIR, Bézier through I0", "three ways", "the condition itself", bezier_curve),
     Row("K14", "5.3", "nonlinearity and asymmetry by straight lines", "values without an error", "NumPy on the true "
         "characteristic, seeds 0 to 2", straightness, long=True),

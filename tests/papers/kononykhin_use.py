@@ -54,9 +54,12 @@ def sheet_of_an_actuator() -> tuple[Measured, ...]:
     return (
         counted("figures of the window drawn", len(drawn), 4),
         Measured("quantities of the sheet", len(lines), "", None, 12),
-        counted("limits judged right: one kept, one broken", (verdicts["T"] == "pass") + (verdicts["hysteresis"] ==
-        "FAIL"), 2),
-    )  # fmt: skip
+        counted(
+            "limits judged right: one kept, one broken",
+            (verdicts["T"] == "pass") + (verdicts["hysteresis"] == "FAIL"),
+            2,
+        ),
+    )
 
 
 def without_an_operator() -> tuple[Measured, ...]:
@@ -249,16 +252,50 @@ def spread_of_actuators() -> tuple[Measured, ...]:
 
 BENCH = "an independent bench (12 bit, 0.2 MPa RMS), seeds 0 to 2"
 ROWS = (
-    Row("K16", "Fig. 2", "window for reading and analysing; the sheet", "a window", "limits set by the row",
-        sheet_of_an_actuator, long=True),
-    Row("K17", "section 6", "identification without an operator", "automatic", "independent bench, seed 4",
-        without_an_operator, long=True),
-    Row("K18", "5.2, section 6", "other fitters on the same records", "gradient descent", "independent bench, seed 9",
-        alternative_fitters, long=True),
+    Row(
+        "K16",
+        "Fig. 2",
+        "window for reading and analysing; the sheet",
+        "a window",
+        "limits set by the row",
+        sheet_of_an_actuator,
+        long=True,
+    ),
+    Row(
+        "K17",
+        "section 6",
+        "identification without an operator",
+        "automatic",
+        "independent bench, seed 4",
+        without_an_operator,
+        long=True,
+    ),
+    Row(
+        "K18",
+        "5.2, section 6",
+        "other fitters on the same records",
+        "gradient descent",
+        "independent bench, seed 9",
+        alternative_fitters,
+        long=True,
+    ),
     Row("K19", "conclusion 2", "position error for sines of 2 % and 50 %", "10 % and 3 %", BENCH, accuracy, long=True),
-    Row("K20", "conclusion 1", "time of the analysis", "60 min → 8 s", "clock of the processor", time_of_analysis,
-        long=True),
-    Row("K21", "conclusion 1", "reading the characteristics", "30 min → 1 min", "sum of the records", time_of_reading,
+    Row(
+        "K20",
+        "conclusion 1",
+        "time of the analysis",
+        "60 min → 8 s",
+        "clock of the processor",
+        time_of_analysis,
+        long=True,
+    ),
+    Row(
+        "K21",
+        "conclusion 1",
+        "reading the characteristics",
+        "30 min → 1 min",
+        "sum of the records",
+        time_of_reading,
         argument="The control unit plays the laws, with no operator. The records that take less than ten seconds "
         "last about a minute "
         "together. The static records and the slow sines take the rest: a saw-tooth of 0.25 mm/s holds the pressure "

@@ -55,15 +55,25 @@ def payload() -> tuple[Measured, ...]:
     return (
         Measured("error of the damper's model, fitted and held back", 100 * (fit.error["fit"] or np.nan), "%", 20.0),
         Measured("and", 100 * (fit.error["verify"] or np.nan), "%", 20.0),
-        Measured("the structure with it from SciPy", 100 * rms(reference_of(machine(actuator, case, held), case,
-        ground), truth), "%", 0.05),
+        Measured(
+            "the structure with it from SciPy",
+            100 * rms(reference_of(machine(actuator, case, held), case, ground), truth),
+            "%",
+            0.05,
+        ),
         Measured("hybrid simulation without a controller", 100 * (runs[0].reference_rms if runs[0] else np.nan), "%"),
         Measured("with two degrees of freedom", 100 * (runs[1].reference_rms if runs[1] else np.nan), "%", 2.0),
-    )  # fmt: skip
+    )
 
 
 ROWS = (
-    Row("Q33", "sections 1 and 3", "a magnetorheological damper as payload, from its public record", "usually MR "
-        "dampers",
-        "the record; own least squares of 17 and 18 %; SciPy", payload, long=True),
-)  # fmt: skip
+    Row(
+        "Q33",
+        "sections 1 and 3",
+        "a magnetorheological damper as payload, from its public record",
+        "usually MR dampers",
+        "the record; own least squares of 17 and 18 %; SciPy",
+        payload,
+        long=True,
+    ),
+)

@@ -104,10 +104,13 @@ def cost() -> tuple[Measured, ...]:
 def cloud() -> tuple[Measured, ...]:
     shown = np.array([one.cloud[[g - 1 for g in SHOWN]] for one in courses()])
     return (
-        counted("searches whose cloud shrinks from each shown generation to the next",
-                int(np.sum(np.all(np.diff(shown) < 0, axis=1))), len(SEEDS)),
+        counted(
+            "searches whose cloud shrinks from each shown generation to the next",
+            int(np.sum(np.all(np.diff(shown) < 0, axis=1))),
+            len(SEEDS),
+        ),
         Measured("width at generation 12 over that at 1", float((shown[:, -1] / shown[:, 0]).mean()), "", 0.75),
-    )  # fmt: skip
+    )
 
 
 def searches() -> tuple[Measured, ...]:
@@ -216,31 +219,79 @@ def modulus() -> tuple[Measured, ...]:
 
 FLAT = "flat integration of eqs. (1) to (7), seed 1"
 ROWS = (
-    Row("Q6", "Table 3", "7 specimens × Kp 5, 7, 10 × three amplitudes, and Kp 6", "63 runs",
-        "flat integration of the same commands", matrix_of_tests, long=True),
+    Row(
+        "Q6",
+        "Table 3",
+        "7 specimens × Kp 5, 7, 10 × three amplitudes, and Kp 6",
+        "63 runs",
+        "flat integration of the same commands",
+        matrix_of_tests,
+        long=True,
+    ),
     Row("Q7", "eq. (17)", "fitness of the fitted vector", "std(xm − xi)/std(xm), summed", FLAT, fitness, long=True),
     Row("Q8", "Table 4", "six parameters from 63 runs with 0.5 % noise", "Table 4", FLAT, table_4, long=True),
-    Row("Q9", "2.2.1 to 2.2.3, Figs. 8 to 10", "the operators of the paper's search at its selection ratio",
-        "200 vectors, 0.5 kept, columns permuted, 0.2 redrawn, 5 averaged", "counted in its first generation",
-        operators, long=True),
-    Row("Q10", "Fig. 14", "the cost over the generations", "20 generations, from 23 to 7: 0.30", FLAT, cost, long=True,
+    Row(
+        "Q9",
+        "2.2.1 to 2.2.3, Figs. 8 to 10",
+        "the operators of the paper's search at its selection ratio",
+        "200 vectors, 0.5 kept, columns permuted, 0.2 redrawn, 5 averaged",
+        "counted in its first generation",
+        operators,
+        long=True,
+    ),
+    Row(
+        "Q10",
+        "Fig. 14",
+        "the cost over the generations",
+        "20 generations, from 23 to 7: 0.30",
+        FLAT,
+        cost,
+        long=True,
         argument="The selection ratio of the text, 0.5, leaves five vectors after six generations, and mutation "
         "over the "
         "whole of Table 2 does not converge. The program keeps 0.85 and redraws between the survivors: Fig. 14 "
-        "comes out."),
+        "comes out.",
+    ),
     Row("Q11", "Fig. 13", "the cloud of Z0 and c at generations 1, 4, 8, 12", "it contracts", FLAT, cloud, long=True),
     Row("Q12", "2.2", "other global searches", "one optimum", "the default search", searches, long=True),
-    Row("Q15", "Fig. 11, section 3", "commands for a rig: white noise of 0 to 80 Hz", "63 records at 4096 Hz",
-        "spectra by NumPy", acquisition,
+    Row(
+        "Q15",
+        "Fig. 11, section 3",
+        "commands for a rig: white noise of 0 to 80 Hz",
+        "63 records at 4096 Hz",
+        "spectra by NumPy",
+        acquisition,
         argument="The program writes the command files and reads the records, or a stream while the test runs. It "
-        "contains no driver of a digital-to-analogue converter: the rig's own controller plays the files."),
-    Row("Q16", "section 3, FFT", "measured transfer functions at Kp = 6", "H1, averaged", "eq. (10) as a polynomial",
-        spectra, long=True),
-    Row("Q17", "Fig. 15", "5.0 to 5.5 s at Kp = 6, 0.02 in", "model and record lie on each other", "flat integration, "
-        "seed 15", in_time, long=True),
-    Row("Q18", "Fig. 16 a", "response to 40 Hz without a specimen, Kp = 6", "axes of −20 to 0 dB and −200 to 0°",
-        "eq. (10) as a polynomial", at_40_hertz, long=True),
+        "contains no driver of a digital-to-analogue converter: the rig's own controller plays the files.",
+    ),
+    Row(
+        "Q16",
+        "section 3, FFT",
+        "measured transfer functions at Kp = 6",
+        "H1, averaged",
+        "eq. (10) as a polynomial",
+        spectra,
+        long=True,
+    ),
+    Row(
+        "Q17",
+        "Fig. 15",
+        "5.0 to 5.5 s at Kp = 6, 0.02 in",
+        "model and record lie on each other",
+        "flat integration, seed 15",
+        in_time,
+        long=True,
+    ),
+    Row(
+        "Q18",
+        "Fig. 16 a",
+        "response to 40 Hz without a specimen, Kp = 6",
+        "axes of −20 to 0 dB and −200 to 0°",
+        "eq. (10) as a polynomial",
+        at_40_hertz,
+        long=True,
+    ),
     Row("Q19", "5.1", "Kp = 6, which no fit saw", "perfect tracking to 30 Hz", FLAT, held_back, long=True),
     Row("Q20", "sections 1 and 6", "re-use: other payloads and gains", "one set for all", FLAT, reused, long=True),
     Row("Q21", "eq. (18)", "bulk modulus with the printed volume", "1.1 GPa", FLAT, modulus, long=True),
-)  # fmt: skip
+)

@@ -111,18 +111,51 @@ def static_gain() -> tuple[Measured, ...]:
 CLOSED = "eqs. (10) to (15) as polynomials"
 ROWS = (
     Row("Q1", "Figs. 1 to 4, eqs. (1) to (7)", "the closed servo loop, to 80 Hz", "eq. (10)", CLOSED, chain),
-    Row("Q2", "Table 1, eqs. (8), (9)", "six parameters from records, with standard errors",
-        "six values without an error", "flat integration of eqs. (1) to (7), seed 1", table_1, long=True),
+    Row(
+        "Q2",
+        "Table 1, eqs. (8), (9)",
+        "six parameters from records, with standard errors",
+        "six values without an error",
+        "flat integration of eqs. (1) to (7), seed 1",
+        table_1,
+        long=True,
+    ),
     Row("Q3", "eqs. (10) to (15)", "each coefficient, 20 drawn machines (seed 7)", "p1 to p5", CLOSED, coefficients),
-    Row("Q4", "Tables 2 and 4", "Table 4 typed in with its printed units", "1.48e-5 m³/(s kPa), 3.6 ms, …",
-        "flat integration, seed 1", as_printed, long=True),
-    Row("Q5", "Table 2, eq. (16)", "search inside the printed bounds", "uniform start in Table 2",
-        "the fit with default bounds", bounds, long=True),
-    Row("Q13", "Figs. 5 to 7, 2.1.6", "m, k, Kp from a tenth to four times, mean of 1 to 40 Hz",
-        "the gain changes the response most", CLOSED, sensitivity),
-    Row("Q14", "2.1.6", "static gain below 1 of a stiff specimen", "Cl k in the denominator; the correction is left to "
-        "future work", CLOSED, static_gain,
+    Row(
+        "Q4",
+        "Tables 2 and 4",
+        "Table 4 typed in with its printed units",
+        "1.48e-5 m³/(s kPa), 3.6 ms, …",
+        "flat integration, seed 1",
+        as_printed,
+        long=True,
+    ),
+    Row(
+        "Q5",
+        "Table 2, eq. (16)",
+        "search inside the printed bounds",
+        "uniform start in Table 2",
+        "the fit with default bounds",
+        bounds,
+        long=True,
+    ),
+    Row(
+        "Q13",
+        "Figs. 5 to 7, 2.1.6",
+        "m, k, Kp from a tenth to four times, mean of 1 to 40 Hz",
+        "the gain changes the response most",
+        CLOSED,
+        sensitivity,
+    ),
+    Row(
+        "Q14",
+        "2.1.6",
+        "static gain below 1 of a stiff specimen",
+        "Cl k in the denominator; the correction is left to future work",
+        CLOSED,
+        static_gain,
         argument="The paper gives no correction. The program keeps eq. (10) and states the static gain. At 676 "
         "kN/m, ten "
-        "times the stiffest specimen of Table 3, it is 0.7; at 67.6 kN/m it is 0.96."),
-)  # fmt: skip
+        "times the stiffest specimen of Table 3, it is 0.7; at 67.6 kN/m it is 0.96.",
+    ),
+)

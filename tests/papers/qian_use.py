@@ -94,8 +94,16 @@ def stated_spread() -> tuple[Measured, ...]:
         stable.append(hybrid_reference.poles(1024.0, 26.0, 1, actuator, structure, specimen).real.max() < 0)
         d, x, _ = hybrid_reference.simulate(ground, 1024.0, 26.0, 1, actuator, structure, specimen)
         errors.append(np.std(x - d) / np.std(d))
-    made = design_controller(FIT, Specimen(*STATED), spread=TWENTY, draws=200, sample_rate=4096.0, gain=2.0,
-                             piston_area=Plant().A, structure="two-degree")  # fmt: skip
+    made = design_controller(
+        FIT,
+        Specimen(*STATED),
+        spread=TWENTY,
+        draws=200,
+        sample_rate=4096.0,
+        gain=2.0,
+        piston_area=Plant().A,
+        structure="two-degree",
+    )
     score, share, by_force = found.quantities["tracking_rms"], found.stable, float(np.mean(stable))
     counting = np.sqrt((share + by_force) * (2 - share - by_force) / 2 / 200)
     assert made.robustness is not None
@@ -103,10 +111,15 @@ def stated_spread() -> tuple[Measured, ...]:
         Measured("stable of 200 near the edge of stability", 100 * share, "%"),
         Measured("by brute force", 100 * by_force, "%"),
         Measured("difference over its counting error", abs(share - by_force) / counting, "", 3.0),
-        Measured("95th percentile of the tracking error over that by brute force",
-                 score.upper / float(np.percentile(errors, 95)), "", 1.1, 0.9),
+        Measured(
+            "95th percentile of the tracking error over that by brute force",
+            score.upper / float(np.percentile(errors, 95)),
+            "",
+            1.1,
+            0.9,
+        ),
         counted("drawn actuators that stay stable with two degrees of freedom", made.robustness.stable, 200),
-    )  # fmt: skip
+    )
 
 
 @cache
@@ -242,27 +255,84 @@ def chosen_gain() -> tuple[Measured, ...]:
 
 FLAT = "a flat loop of matrix exponentials"
 ROWS = (
-    Row("Q22", "eqs. (19), (20)", "loop shaping for eq. (19)", "a controller; its margins are not printed",
-        "a sampled loop stepped by matrix exponentials", controller, long=True),
-    Row("Q23", "Fig. 17", "El Centro, 10 % of the mass and 20 % of the stiffness physical: error against the numerical "
-        "solution", "very close with the controller", FLAT, earthquake, long=True),
-    Row("Q24", "Fig. 18", "noise to 30 Hz, the same", "amplitude and phase kept to 30 Hz", FLAT, noise_to_30_hertz,
-        long=True, argument="Eq. (19) as feedback alone is 4.2 dB and 37° off at 25 Hz, in the program and in the "
-        "reference. It cannot give Fig. 18. With a path forward in addition the figure comes out."),
-    Row("Q25", "section 1", "any realistic parameter error: ± 20 % of each, 200 draws, seed 571", "robust",
-        "200 draws of the flat loop", stated_spread, long=True),
-    Row("Q26", "5.3, Fig. 19", "another actuator without tests, oil column at 45 Hz", "a peak at 45 Hz, Kp 2 and 3",
-        "eq. (10) as a polynomial", oil_column, long=True,
+    Row(
+        "Q22",
+        "eqs. (19), (20)",
+        "loop shaping for eq. (19)",
+        "a controller; its margins are not printed",
+        "a sampled loop stepped by matrix exponentials",
+        controller,
+        long=True,
+    ),
+    Row(
+        "Q23",
+        "Fig. 17",
+        "El Centro, 10 % of the mass and 20 % of the stiffness physical: error against the numerical solution",
+        "very close with the controller",
+        FLAT,
+        earthquake,
+        long=True,
+    ),
+    Row(
+        "Q24",
+        "Fig. 18",
+        "noise to 30 Hz, the same",
+        "amplitude and phase kept to 30 Hz",
+        FLAT,
+        noise_to_30_hertz,
+        long=True,
+        argument="Eq. (19) as feedback alone is 4.2 dB and 37° off at 25 Hz, in the program and in the "
+        "reference. It cannot give Fig. 18. With a path forward in addition the figure comes out.",
+    ),
+    Row(
+        "Q25",
+        "section 1",
+        "any realistic parameter error: ± 20 % of each, 200 draws, seed 571",
+        "robust",
+        "200 draws of the flat loop",
+        stated_spread,
+        long=True,
+    ),
+    Row(
+        "Q26",
+        "5.3, Fig. 19",
+        "another actuator without tests, oil column at 45 Hz",
+        "a peak at 45 Hz, Kp 2 and 3",
+        "eq. (10) as a polynomial",
+        oil_column,
+        long=True,
         argument="By eq. (10) Table 4, scaled by area and stroke, has no peak: |G| at 45 Hz is 0.075 and 0.117, the "
         "figure "
         "shows 0.5 to 2. No single parameter gives it. The program says so and names the smallest joint change that "
-        "does."),
-    Row("Q27", "5.3", "less gain, less oil column", "reducing the gain reduces the effect", "eq. (10) as a polynomial",
-        less_gain, long=True),
-    Row("Q28", "5.3", "instability in a record: Kp 6, 12, 24 of a valve that saturates, seed 56",
-        "a sustained oscillation is read off", "Runge-Kutta loop, padded transform", record_of_instability, long=True),
-    Row("Q29", "sections 1 and 5", "instability of a hybrid simulation", "to be interpreted", FLAT,
-        unstable_hybrid, long=True),
+        "does.",
+    ),
+    Row(
+        "Q27",
+        "5.3",
+        "less gain, less oil column",
+        "reducing the gain reduces the effect",
+        "eq. (10) as a polynomial",
+        less_gain,
+        long=True,
+    ),
+    Row(
+        "Q28",
+        "5.3",
+        "instability in a record: Kp 6, 12, 24 of a valve that saturates, seed 56",
+        "a sustained oscillation is read off",
+        "Runge-Kutta loop, padded transform",
+        record_of_instability,
+        long=True,
+    ),
+    Row(
+        "Q29",
+        "sections 1 and 5",
+        "instability of a hybrid simulation",
+        "to be interpreted",
+        FLAT,
+        unstable_hybrid,
+        long=True,
+    ),
     Row("Q30", "section 6", "design of an experiment before it", "possible with the model", FLAT, before_the_test),
     Row("Q31", "section 1", "two actuators on one structure", "named as a use", FLAT, several, long=True),
     Row("Q32", "2.1.4, 2.1.5", "capacity and valve speed", "the model holds within them", "peaks by the flat actuator",

@@ -74,8 +74,13 @@ def upload() -> tuple[Measured, ...]:
     first, again = uploaded(zipped()), uploaded(zipped())
     bad = uploaded(b"no archive")
     stranger = service().get(f"{API}/matrices", headers={"Authorization": "Bearer nobody"})
-    told = [first.status_code in (200, 201), again.status_code == 200, first.json()["id"] == again.json()["id"],
-            bad.status_code == 422, stranger.status_code == 401]  # fmt: skip
+    told = [
+        first.status_code in (200, 201),
+        again.status_code == 200,
+        first.json()["id"] == again.json()["id"],
+        bad.status_code == 422,
+        stranger.status_code == 401,
+    ]
     return (counted("answers as the contract has them", sum(told), 5),)
 
 
@@ -165,8 +170,12 @@ def story(serial: str, *effects: tuple[str, float]) -> dict[str, Any]:
         body = {"effect": named[0]} if len(named) == 1 else {"effects": named}
         last = ended(service().post(f"{API}/fits/{fit}/effects", json=body))["fit"]
     results = [service().get(f"{API}/fits/{one}").json()["result"] for one in (fit, last)]
-    return {"named": set(named), "before": results[0]["error"]["fit"], "after": results[1]["error"]["fit"],
-            "parameters": results[1]["parameters"]}  # fmt: skip
+    return {
+        "named": set(named),
+        "before": results[0]["error"]["fit"],
+        "after": results[1]["error"]["fit"],
+        "parameters": results[1]["parameters"],
+    }
 
 
 def of_story(found: Mapping[str, Any], effects: Mapping[str, float]) -> tuple[Measured, ...]:
@@ -235,8 +244,11 @@ def exports() -> tuple[Measured, ...]:
         service().get(f"{API}/fits/{fitted()}/export.{kind}", params=asked) for kind in ("h", "mat", "fmu")
     )
     held = scipy.io.loadmat(io.BytesIO(mat.content))
-    right = ["servoident_step" in header.text, held["A"].shape[0] >= 4,
-             "modelDescription.xml" in zipfile.ZipFile(io.BytesIO(fmu.content)).namelist()]  # fmt: skip
+    right = [
+        "servoident_step" in header.text,
+        held["A"].shape[0] >= 4,
+        "modelDescription.xml" in zipfile.ZipFile(io.BytesIO(fmu.content)).namelist(),
+    ]
     poles = np.linalg.eigvals(held["A"])
     of = service().get(f"{API}/fits/{fitted()}").json()["result"]["parameters"]
     p = {name: one["value"] for name, one in of.items()}
@@ -322,8 +334,11 @@ def limits_of_a_line() -> tuple[Measured, ...]:
 def sheet_over_http() -> tuple[Measured, ...]:
     truth = bench.scattered(4)
     lines = {line["name"]: line for line in service().get(f"{API}/fits/{bench_fit()}/sheet").json()["lines"]}
-    off = [lines["T"]["value"] / truth.T - 1, lines["dead_space"]["value"] / (truth.dead_space / 100) - 1,
-           lines["hysteresis"]["value"] / (truth.B / 100) - 1]  # fmt: skip
+    off = [
+        lines["T"]["value"] / truth.T - 1,
+        lines["dead_space"]["value"] / (truth.dead_space / 100) - 1,
+        lines["hysteresis"]["value"] / (truth.B / 100) - 1,
+    ]
     return (
         Measured("quantities of the sheet as JSON", len(lines), "", None, 12),
         Measured("T, B, dead space, furthest", 100 * float(np.abs(off).max()), "%", 5.0),
@@ -338,21 +353,54 @@ ROWS = (
     Row("S5", "approval", "approve, withdraw, audit", "–", "what was asked", approval, long=True),
     Row("S6", "regression", "recheck of approved sets, JUnit", "–", "the approved sets", regression, long=True),
     Row("S7", "verdict", "limits of a line", "–", "true value, seed 3", verdicts, long=True),
-    Row("S8", "story", "two hidden: a dead zone of 120 µm and friction of 40 N", "–", "flat nonlinear chain, seed 750",
-        two_hidden, long=True),
-    Row("S9", "story", "one hidden: flow falls with the pressure", "–", "flat nonlinear chain, seed 750",
-        one_hidden, long=True),
+    Row(
+        "S8",
+        "story",
+        "two hidden: a dead zone of 120 µm and friction of 40 N",
+        "–",
+        "flat nonlinear chain, seed 750",
+        two_hidden,
+        long=True,
+    ),
+    Row(
+        "S9",
+        "story",
+        "one hidden: flow falls with the pressure",
+        "–",
+        "flat nonlinear chain, seed 750",
+        one_hidden,
+        long=True,
+    ),
     Row("S10", "story", "the same in the browser", "–", "the story of the suite", in_the_browser, long=True),
-    Row("S11", "unknown terms", "a drift of the gain, which is unknown to the library", "–",
+    Row(
+        "S11",
+        "unknown terms",
+        "a drift of the gain, which is unknown to the library",
+        "–",
         "flat chain with a drift, seed 2",
-        outside_the_catalogue, long=True),
+        outside_the_catalogue,
+        long=True,
+    ),
     Row("S12", "export", "C, MAT, FMU", "–", "eq. (10) as a polynomial", exports, long=True),
     Row("S13", "report", "page and PDF", "–", "first bytes", reports, long=True),
     Row("S14", "comparison", "two actuators side by side", "–", "both serial numbers", side_by_side, long=True),
     Row("S15", "live", "a stream while a test runs", "–", "NumPy on what was sent", live, long=True),
-    Row("K25", "section 2", "limits of a line on dead space", "controlled in tests", "true value, seed 4",
+    Row(
+        "K25",
+        "section 2",
+        "limits of a line on dead space",
+        "controlled in tests",
+        "true value, seed 4",
         limits_of_a_line,
-        long=True),
-    Row("K30", "section 6", "the sheet's numbers over HTTP", "–", "independent bench, seed 4", sheet_over_http,
-        long=True),
-)  # fmt: skip
+        long=True,
+    ),
+    Row(
+        "K30",
+        "section 6",
+        "the sheet's numbers over HTTP",
+        "–",
+        "independent bench, seed 4",
+        sheet_over_http,
+        long=True,
+    ),
+)

@@ -24,5 +24,6 @@ def played(run: PlannedRun, truth: Truth | None = None, seed: int = 1, read: Ins
     rng = np.random.default_rng(seed)
     truth = truth or Truth(I0=100 * offset)
     frequency = law.named.get("frequency", 0.0)
-    return record(truth, run.id, run.kind, law.number, settings, law.seconds, 1e3 * law.start, rng, read,
-                  frequency=frequency)  # fmt: skip
+    return record(
+        truth, run.id, run.kind, law.number, settings, law.seconds, 1e3 * law.start, rng, read, frequency=frequency
+    )

@@ -22,9 +22,12 @@ from tests.planning.rigs import fit_of
 from tests.reference.qian_reference import Cell, Plant, simulate
 
 PROGRAM = {
-    "gains": [5, 10], "specimens": [{"mass": "0 kg"}, {"mass": "2.67 kg", "stiffness": "67.6 kN/m"}],
-    "amplitudes": ["0.05 in"], "verify": {"gains": [7]}, "seconds": "2 s",
-}  # fmt: skip
+    "gains": [5, 10],
+    "specimens": [{"mass": "0 kg"}, {"mass": "2.67 kg", "stiffness": "67.6 kN/m"}],
+    "amplitudes": ["0.05 in"],
+    "verify": {"gains": [7]},
+    "seconds": "2 s",
+}
 RIG = RigLimits(stroke=0.15, speed=0.1)
 
 

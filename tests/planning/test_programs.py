@@ -43,12 +43,18 @@ def test_a_program_of_ones_own_is_every_combination():
     """Each list counts; verify gains only verify; a kind may have a frequency of its own."""
     program = program_of(
         {
-            "gains": [5, "7.5"], "verify": {"gains": [6]}, "amplitudes": ["1 mm", "0.1 in"],
-            "specimens": [{"mass": "0.87 kg"}], "kinds": ["blwn", {"kind": "sine", "frequency": "5 Hz"}, "sweep"],
-            "sample_rate": "1000 Hz", "seconds": "2 s", "band": "40 Hz", "ramp": "0.5 s",
+            "gains": [5, "7.5"],
+            "verify": {"gains": [6]},
+            "amplitudes": ["1 mm", "0.1 in"],
+            "specimens": [{"mass": "0.87 kg"}],
+            "kinds": ["blwn", {"kind": "sine", "frequency": "5 Hz"}, "sweep"],
+            "sample_rate": "1000 Hz",
+            "seconds": "2 s",
+            "band": "40 Hz",
+            "ramp": "0.5 s",
         },
         Settings(),
-    )  # fmt: skip
+    )
     assert Counter((run.gain, run.use) for run in program.runs) == {(5, "fit"): 6, (7.5, "fit"): 6, (6, "verify"): 6}
     assert {run.specimen for run in program.runs} == {Specimen(mass=0.87)}
     frequencies = {(run.signal.kind, run.signal.frequency) for run in program.runs}

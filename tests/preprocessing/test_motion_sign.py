@@ -33,9 +33,14 @@ def driven(
 
 @pytest.mark.parametrize(
     ("machine", "output"),
-    [(MASS, "velocity"), (DAMPER, "displacement"), (DAMPER, "velocity"), (SPRING, "displacement"),
-     (SWINGING, "displacement")],
-)  # fmt: skip
+    [
+        (MASS, "velocity"),
+        (DAMPER, "displacement"),
+        (DAMPER, "velocity"),
+        (SPRING, "displacement"),
+        (SWINGING, "displacement"),
+    ],
+)
 def test_mass_damper_and_spring_have_the_sign_of_what_drives_them(
     machine: tuple[float, float, float], output: str
 ) -> None:

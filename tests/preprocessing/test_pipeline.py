@@ -39,8 +39,9 @@ def pulled() -> Matrix:
     t = np.arange(2000) / 1e3
     x, v = 0.01 * np.sin(10 * t), 0.1 * np.cos(10 * t)
     channels, units = {"displacement": x, "velocity": v, "force": -500.0 * v}, {"displacement": "m", "force": "N"}
-    runs = [Run(use, "", 1e3, channels, {**units, "velocity": "m/s"}, output="force", use=use)
-            for use in ("fit", "verify")]  # fmt: skip
+    runs = [
+        Run(use, "", 1e3, channels, {**units, "velocity": "m/s"}, output="force", use=use) for use in ("fit", "verify")
+    ]
     return Matrix(Actuator("DAMPER"), tuple(runs))
 
 

@@ -90,8 +90,16 @@ def test_what_a_force_loop_lacks_is_found(full):
 
 
 def test_a_machine_has_its_description_for_a_name():
-    data = {"controller": "pi", "of": "force", "valve": "first", "flow": "linear", "pressure": "compressible",
-            "load": "mass_spring_damper", "sensor": ["force"], "gains": {"P": 2, "I": 10}}  # fmt: skip
+    data = {
+        "controller": "pi",
+        "of": "force",
+        "valve": "first",
+        "flow": "linear",
+        "pressure": "compressible",
+        "load": "mass_spring_damper",
+        "sensor": ["force"],
+        "gains": {"P": 2, "I": 10},
+    }
     name = described(data).name
     assert machine(name).name == name
     assert described(yaml.safe_load(yaml.safe_dump(data))).name == name

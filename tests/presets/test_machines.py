@@ -100,8 +100,17 @@ def test_in_units_of_1_a_mass_on_a_spring_is_found():
         mass = np.array([[0.0, 1.0], [-400.0, -6.0]]), np.array([[0.0], [1.0]]), np.eye(2)[:1], np.zeros((1, 1))
         _, x, _ = dlsim(cont2discrete(mass, 1 / RATE), u)
         x = x[:, 0] + 0.005 * x.std() * rng.standard_normal(len(u))
-        runs.append(Run(f"r{number}", "", RATE, {"command": u, "displacement": x}, hold="zoh", use=use,
-                        units={"command": "1", "displacement": "1"}))  # fmt: skip
+        runs.append(
+            Run(
+                f"r{number}",
+                "",
+                RATE,
+                {"command": u, "displacement": x},
+                hold="zoh",
+                use=use,
+                units={"command": "1", "displacement": "1"},
+            )
+        )
     matrix = Matrix(Actuator("MASS"), tuple(runs))
     assert {"drive", "first_order", "motor"} <= {model.name for model in in_question(matrix.runs)}
     assert choose_structure(matrix).structures[0].machine == "drive"
@@ -240,8 +249,9 @@ def test_where_no_model_is_driven_by_what_was_recorded_the_channels_are_named():
 
 
 @pytest.mark.parametrize(
-    ("unit", "models"), [("N*m", ["drive"]), ("N", ["drive"]), ("V", ["motor", "first_order"])],
-)  # fmt: skip
+    ("unit", "models"),
+    [("N*m", ["drive"]), ("N", ["drive"]), ("V", ["motor", "first_order"])],
+)
 def test_a_torque_or_a_force_drives_a_mass_and_nothing_else_is_in_question(unit, models):
     """It needs no constant from the command to the force, whether position or speed is recorded."""
     for channel, of in (("velocity", "rad/s"), ("displacement", "rad")):
@@ -253,9 +263,14 @@ def test_a_torque_or_a_force_drives_a_mass_and_nothing_else_is_in_question(unit,
 
 @pytest.mark.parametrize(
     ("name", "model"),
-    [("mr_damper", "specimen"), ("dc_motor", "motor"), ("crane_actuator", "open_valve"), ("emps", "drive"),
-     ("mts_actuator", "qian2014")],
-)  # fmt: skip
+    [
+        ("mr_damper", "specimen"),
+        ("dc_motor", "motor"),
+        ("crane_actuator", "open_valve"),
+        ("emps", "drive"),
+        ("mts_actuator", "qian2014"),
+    ],
+)
 def test_the_model_that_is_taken_for_measured_machines(measured_data, name, model):
     assert suited(read_matrix(measured_data / name).runs)[0].name == model
 
@@ -368,8 +383,12 @@ def test_in_unknown_units_a_loop_is_known_by_where_its_output_is(seed):
     said = "No model was named: qian2014 is used, a position loop, because the recorded output follows the command; "
     (notice,) = (one for one in choose_structure(matrix).matrix.notices if one.startswith(said))
     assert notice.endswith("(--model position_servo).")
-    of_force = replace(matrix.runs[0], output="force", units={"command": "1", "force": "1"},
-                       channels={"command": matrix.runs[0].command, "force": matrix.runs[0].measured})  # fmt: skip
+    of_force = replace(
+        matrix.runs[0],
+        output="force",
+        units={"command": "1", "force": "1"},
+        channels={"command": matrix.runs[0].command, "force": matrix.runs[0].measured},
+    )
     assert [model.name for model in in_question([of_force])] == ["force_loop"]
 
 
@@ -391,12 +410,15 @@ def test_in_unknown_units_a_loop_is_known_by_where_its_output_arrives(end, model
         lagging(1, beside=1.0).runs[0],
         lagging(1, wander=0.5).runs[0],
         replace(lagging(1).runs[0], units={"command": "V", "displacement": "m"}),
-        replace(lagging(1).runs[0], output="velocity", channels={
-            "command": lagging(1).runs[0].command, "velocity": lagging(1).runs[0].measured}),
+        replace(
+            lagging(1).runs[0],
+            output="velocity",
+            channels={"command": lagging(1).runs[0].command, "velocity": lagging(1).runs[0].measured},
+        ),
         replace(lagging(1).runs[0], channels={"command": np.ones(3000), "displacement": np.ones(3000)}),
         replace(lagging(1).runs[0], channels={"command": np.arange(9.0), "displacement": np.arange(9.0)}),
     ],
     ids=["another-gain", "beside", "wandering", "other-units", "speed", "one-value", "short"],
-)  # fmt: skip
+)
 def test_else_a_command_in_unknown_units_is_in_open_loop(run):
     assert "qian2014" not in [model.name for model in in_question([run])]

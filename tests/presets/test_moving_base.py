@@ -68,8 +68,17 @@ class Storey:
             shown = self.shaken(base)[sensor][: len(base) - late]
             base = base[late:]
             shown = shown + NOISE * shown.std() * rng.standard_normal(len(shown))
-            runs.append(Run(f"r{number}", "", RATE, {"command": base, output: shown}, units,
-                            output=output, use="verify" if number == 2 else "fit"))  # fmt: skip
+            runs.append(
+                Run(
+                    f"r{number}",
+                    "",
+                    RATE,
+                    {"command": base, output: shown},
+                    units,
+                    output=output,
+                    use="verify" if number == 2 else "fit",
+                )
+            )
         return Matrix(Actuator("TABLE"), tuple(runs))
 
 
@@ -161,8 +170,9 @@ def test_accelerations_are_read_in_g():
     run = describe_run({"id": "r", "file": "r.csv", "sample_rate": "200 Hz", "channels": channels}, "runs[0]")
     assert run.outputs == ("acceleration",)
     assert {name: (channel.scale.factor, channel.scale.unit) for name, channel in run.channels.items()} == {
-        "command": (G, "m/s^2"), "acceleration": (G, "m/s^2"),
-    }  # fmt: skip
+        "command": (G, "m/s^2"),
+        "acceleration": (G, "m/s^2"),
+    }
     assert channel_of("Ground acceleration (g)") == "command"
     assert channel_of("Floor acceleration [m/s^2]") == "acceleration"
     assert channel_of("Beschleunigung") == "acceleration"

@@ -58,10 +58,14 @@ def test_an_angle_that_follows_an_angle_is_an_electric_servo():
 
 @pytest.mark.parametrize(
     ("change", "oil"),
-    [({}, True), ({"units": {"command": "m", "displacement": "m"}}, False),
-     ({"units": TURNING | {"load_pressure": "Pa"}}, False), ({"gain": 5.0, "units": {"displacement": "rad"}}, False)],
+    [
+        ({}, True),
+        ({"units": {"command": "m", "displacement": "m"}}, False),
+        ({"units": TURNING | {"load_pressure": "Pa"}}, False),
+        ({"gain": 5.0, "units": {"displacement": "rad"}}, False),
+    ],
     ids=["stated", "a-way", "a-pressure", "a-command-of-unknown-unit"],
-)  # fmt: skip
+)
 def test_what_may_have_oil_stays_a_cylinder(change, oil):
     """Parts that are stated, a pressure that is recorded and what moves along a way may be hydraulic."""
     runs = [replace(run, **change) for run in servo(1).runs]

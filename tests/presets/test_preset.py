@@ -37,8 +37,14 @@ from tests.reference import qian_reference as linear
 
 NOISE = 0.005
 STOCK = (
-    PROPORTIONAL, FIRST_ORDER_VALVE, RIGID_SPOOL, LINEAR_FLOW, COMPRESSIBLE, MASS_SPRING_DAMPER, IDEAL_SENSOR,
-)  # fmt: skip
+    PROPORTIONAL,
+    FIRST_ORDER_VALVE,
+    RIGID_SPOOL,
+    LINEAR_FLOW,
+    COMPRESSIBLE,
+    MASS_SPRING_DAMPER,
+    IDEAL_SENSOR,
+)
 
 
 def put_together(*stages, **stated) -> Preset:
@@ -117,8 +123,13 @@ def test_what_no_stage_brings_is_refused(stages, stated, what):
 
 def test_two_stages_that_mean_different_parameters_by_one_name_are_refused():
     lagging = Parameter("tau", "τ", "s", 1e-3, 1.0, 0.1, "time constant of another lag")
-    lag = stage("spool", (Quantity("w", "m", "opening"),), ("w' = (q - w) / tau", "a second lag"),
-                parameters=(lagging,), scales=(Scale.by_bounds(lagging),))  # fmt: skip
+    lag = stage(
+        "spool",
+        (Quantity("w", "m", "opening"),),
+        ("w' = (q - w) / tau", "a second lag"),
+        parameters=(lagging,),
+        scales=(Scale.by_bounds(lagging),),
+    )
     with pytest.raises(Unusable, match="its stages mean different parameters by tau"):
         put_together(*(lag if one is RIGID_SPOOL else one for one in STOCK))
 
@@ -154,10 +165,16 @@ def test_a_play_in_a_loop_may_be_wider_than_the_drive_signals_deviation():
     assert 1.0 < scale.upper * float(scale.equation.value({"Kp": 2.0, "U": 1.0})) / 2.0 < np.sqrt(2)
 
 
-@pytest.mark.parametrize(("unit", "measured", "searched"), [
-    ("N*s^2/m^2", "(1)/V**2", 10.0), ("N*s^3/m^3", "(1)/V**3", 10.0), ("N/m^2", "(1)/L**2", 1.0),
-    ("N/m^4", "(1)/L**4", 1.0), ("m^3/(s*Pa^3)", "A*V/((1)/A)**3", 1.0),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    ("unit", "measured", "searched"),
+    [
+        ("N*s^2/m^2", "(1)/V**2", 10.0),
+        ("N*s^3/m^3", "(1)/V**3", 10.0),
+        ("N/m^2", "(1)/L**2", 1.0),
+        ("N/m^4", "(1)/L**4", 1.0),
+        ("m^3/(s*Pa^3)", "A*V/((1)/A)**3", 1.0),
+    ],
+)
 def test_a_force_or_a_flow_for_a_power_of_what_it_follows_is_searched_by_its_size(unit, measured, searched):
     """Whatever the power: a strength of a unit that no effect had before needs no line of a table."""
     strength = Parameter("coefficient", "c", unit, 0.0, 1.0, 0.0, "a force")

@@ -46,8 +46,9 @@ class Pressed:
             return [v, (self.area * p[min(int(now * RATE + 1e-9), len(p) - 1)] - held) / mass]
 
         t = np.arange(len(p)) / RATE
-        found = scipy.integrate.odeint(rates, [0.0, 0.0], t, tfirst=True, hmax=1 / RATE, rtol=1e-8, atol=1e-11,
-                                       tcrit=t[1:-1], mxstep=5000)  # fmt: skip
+        found = scipy.integrate.odeint(
+            rates, [0.0, 0.0], t, tfirst=True, hmax=1 / RATE, rtol=1e-8, atol=1e-11, tcrit=t[1:-1], mxstep=5000
+        )
         return np.asarray(found[:, 0])
 
     def recorded(self, seed: int, unit: str = "m", loads: tuple[float, ...] = (0.0, 0.0, 0.0)) -> Matrix:

@@ -35,8 +35,16 @@ def run(parts: Coupled, seed: int, seen: int, use: str) -> Run:
     u, t = np.repeat(rng.uniform(-3.0, 3.0, COUNT // 8), 8), np.arange(COUNT) / RATE
     speed = parts.moved(lambda now: 10.0 * u[min(int(now * RATE + 1e-9), COUNT - 1)], t)[seen]
     speed = speed + NOISE * speed.std() * rng.standard_normal(COUNT)
-    return Run(use, "", RATE, {"command": u, "velocity": speed}, {"command": "V", "velocity": "rad/s"}, hold="zoh",
-               use=use, output="velocity")  # fmt: skip
+    return Run(
+        use,
+        "",
+        RATE,
+        {"command": u, "velocity": speed},
+        {"command": "V", "velocity": "rad/s"},
+        hold="zoh",
+        use=use,
+        output="velocity",
+    )
 
 
 @cache

@@ -42,8 +42,15 @@ def tanks(seed: int, use: str, edge: float = np.inf, bend: float = 0.0) -> Run:
     level = scipy.integrate.odeint(rates, [8.0, 20.0], t, tfirst=True, rtol=1e-8, atol=1e-8, hmax=PERIOD)[:, 1]
     level = level * (1.0 + bend * (level - 25.0))
     level = level + READS + 0.005 * level.std() * rng.standard_normal(COUNT)
-    return Run(use, "", 1.0 / PERIOD, {"command": u, "displacement": level}, {"command": "V", "displacement": "m"},
-               hold="zoh", use=use)  # fmt: skip
+    return Run(
+        use,
+        "",
+        1.0 / PERIOD,
+        {"command": u, "displacement": level},
+        {"command": "V", "displacement": "m"},
+        hold="zoh",
+        use=use,
+    )
 
 
 @pytest.fixture(scope="module")

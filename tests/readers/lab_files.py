@@ -52,12 +52,20 @@ def _numbers(values: list[float]) -> bytes:
 def _set58(name: str, unit: str, body: bytes, kind: str = "    58") -> bytes:
     axis = "{:10d}{:5d}{:5d}{:5d} {:<20s} {:<20s}"
     head = [
-        "    -1", f"{kind:<80s}", f"{name:<80s}", "NONE", "01-JAN-26 00:00:00", "NONE", "NONE",
+        "    -1",
+        f"{kind:<80s}",
+        f"{name:<80s}",
+        "NONE",
+        "01-JAN-26 00:00:00",
+        "NONE",
+        "NONE",
         f"{1:5d}{0:10d}{0:5d}{0:10d} {'NONE':<10s}{1:10d}{3:4d} {'NONE':<10s}{0:10d}{0:4d}",
         f"{2:10d}{len(U):10d}{1:10d}{0.0:13.5e}{0.25:13.5e}{0.0:13.5e}",
-        axis.format(17, 0, 0, 0, "Time", "s"), axis.format(8, 0, 0, 0, "Axis", unit),
-        axis.format(0, 0, 0, 0, "NONE", "NONE"), axis.format(0, 0, 0, 0, "NONE", "NONE"),
-    ]  # fmt: skip
+        axis.format(17, 0, 0, 0, "Time", "s"),
+        axis.format(8, 0, 0, 0, "Axis", unit),
+        axis.format(0, 0, 0, 0, "NONE", "NONE"),
+        axis.format(0, 0, 0, 0, "NONE", "NONE"),
+    ]
     tail = b"" if body.endswith(b"\n") else b"\n"
     return "\n".join(head).encode() + b"\n" + body + tail + b"    -1\n"
 
@@ -76,9 +84,18 @@ def lvm(timed: bool = True) -> bytes:
 
 def controldesk(delimiter: str = ",") -> bytes:
     """What ControlDesk 7 exports: a field over two lines above, ports with Simulink's names and with their own."""
-    head = ["descriptions,General,User,lab", ',General,Origin,"Software revision: a, b', 'Platform: MicroAutoBox III"',
-            "", "trace_size,16", "trace_types,5,4,4", "trace_names,,In1,x_out", "trace_units,s,V,mm",
-            "path,,Model Root/Valve/u,Model Root/Stand", "flags,,2,2"]  # fmt: skip
+    head = [
+        "descriptions,General,User,lab",
+        ',General,Origin,"Software revision: a, b',
+        'Platform: MicroAutoBox III"',
+        "",
+        "trace_size,16",
+        "trace_types,5,4,4",
+        "trace_names,,In1,x_out",
+        "trace_units,s,V,mm",
+        "path,,Model Root/Valve/u,Model Root/Stand",
+        "flags,,2,2",
+    ]
     rows = [f"{'' if t else 'trace_values'},{t},{u},{x}" for t, u, x in ROWS]
     text = "\r\n".join([*head, *rows, ""])
     return (text if delimiter == "," else text.replace(",", delimiter).replace(".", ",")).encode()
@@ -86,8 +103,14 @@ def controldesk(delimiter: str = ",") -> bytes:
 
 def mts() -> bytes:
     """What a timed acquisition of the station manager writes."""
-    head = ["MTS793|MPT|ENU|1|2|.|/|:|1|0|0|A", "", "Data Acquisition\tTimed\tTime:\t4\tSec\t1/5/2026 10:00:00 AM",
-            "Station Name:\tBench", "Time\tu\tx", "s\tV\tmm"]  # fmt: skip
+    head = [
+        "MTS793|MPT|ENU|1|2|.|/|:|1|0|0|A",
+        "",
+        "Data Acquisition\tTimed\tTime:\t4\tSec\t1/5/2026 10:00:00 AM",
+        "Station Name:\tBench",
+        "Time\tu\tx",
+        "s\tV\tmm",
+    ]
     return "\r\n".join([*head, *("\t".join(map(str, row)) for row in ROWS), ""]).encode()
 
 
@@ -171,8 +194,16 @@ def _saved(savemat, variables) -> bytes:
 
 def diadem() -> bytes:
     """The head of a record of DIAdem: the time counted, the command as counts, the displacement value by value."""
-    of_all = ["DIAEXTENDED  {@:ENGLISH}", "#BEGINGLOBALHEADER", "1,WINDOWS 32Bit", "2,", "101,Bench",
-              "112,High -> Low", "#ENDGLOBALHEADER", ""]  # fmt: skip
+    of_all = [
+        "DIAEXTENDED  {@:ENGLISH}",
+        "#BEGINGLOBALHEADER",
+        "1,WINDOWS 32Bit",
+        "2,",
+        "101,Bench",
+        "112,High -> Low",
+        "#ENDGLOBALHEADER",
+        "",
+    ]
     channels = [
         {200: "time", 202: "s", 210: "IMPLICIT", 214: "REAL64", 220: 16, 240: 0.0, 241: 0.25},
         {200: "u", 202: "V", 210: "EXPLICIT", 211: "RUN.I16", 213: "CHANNEL", 214: "INT16", 220: 16, 221: 3,
@@ -185,9 +216,13 @@ def diadem() -> bytes:
     lines = [
         line
         for entries in channels
-        for line in ("#BEGINCHANNELHEADER", *(f"{code},{value}" for code, value in entries.items()),
-                     "#ENDCHANNELHEADER", "")
-    ]  # fmt: skip
+        for line in (
+            "#BEGINCHANNELHEADER",
+            *(f"{code},{value}" for code, value in entries.items()),
+            "#ENDCHANNELHEADER",
+            "",
+        )
+    ]
     return "\r\n".join([*of_all, *lines]).encode()
 
 

@@ -31,8 +31,27 @@ def mdf3(rows: Rows) -> bytes:
     for n, (name, unit) in enumerate((("time", b"s"), ("u", b"V"), ("x", b"mm"))):
         following = blocks[f"CN{n + 1}"] if n < 2 else 0
         master, step = int(n == 0), 0.25 if n == 0 else 0.0
-        put(f"CN{n}", b"CN", 218, "IIIIIH32s128sHHHHddd", following, blocks[f"CC{n}"], 0, 0, 0, master,
-            name.encode(), b"", 64 * n, 64, 3, 0, 0.0, 0.0, step)  # fmt: skip
+        put(
+            f"CN{n}",
+            b"CN",
+            218,
+            "IIIIIH32s128sHHHHddd",
+            following,
+            blocks[f"CC{n}"],
+            0,
+            0,
+            0,
+            master,
+            name.encode(),
+            b"",
+            64 * n,
+            64,
+            3,
+            0,
+            0.0,
+            0.0,
+            step,
+        )
         put(f"CC{n}", b"CC", 46, "Hdd20sHH", 0, 0.0, 0.0, unit, 65535, 0)
     return bytes(made)
 

@@ -22,10 +22,20 @@ UNITS = {
     "": ("V", "bar", "°C", "%"),
 }
 PREAMBLES = (
-    "Prüfstand 4", "Datum: 12.03.2026", "Operator;Meier;;", "Date,2026-03-12", "Comment\tfirst run", "# bench 7",
-    "Kommentar: Öl 40 °C", "Channels 3", "Version 1.2.3", "Filter: 1000 Hz", "=====", "Serial no.;4711",
+    "Prüfstand 4",
+    "Datum: 12.03.2026",
+    "Operator;Meier;;",
+    "Date,2026-03-12",
+    "Comment\tfirst run",
+    "# bench 7",
+    "Kommentar: Öl 40 °C",
+    "Channels 3",
+    "Version 1.2.3",
+    "Filter: 1000 Hz",
+    "=====",
+    "Serial no.;4711",
     '"quoted, line"',
-)  # fmt: skip
+)
 
 
 @dataclass
@@ -86,9 +96,12 @@ def _as_text(made: Written, of: random.Random) -> Written:
         comma = False
     count = of.choice((12, 20, 45))
     texts = [_column(channel, made, of, count) for channel in made.channels]
-    made.values = [[float(text) for text in column] if channel != "time" or made.time != "iso"
-                   else [n / 1000 for n in range(count)]
-                   for channel, column in zip(made.channels, texts, strict=True)]  # fmt: skip
+    made.values = [
+        [float(text) for text in column]
+        if channel != "time" or made.time != "iso"
+        else [n / 1000 for n in range(count)]
+        for channel, column in zip(made.channels, texts, strict=True)
+    ]
     if comma:
         texts = [[text.replace(".", ",") for text in column] for column in texts]
     quoted = of.random() < 0.1 and not delimiter.isspace()
@@ -145,8 +158,10 @@ def _heading(made: Written, delimiter: str, quoted: bool, tail: str, of: random.
         split = of.randrange(len(names))
         blank = "-" if delimiter.isspace() and delimiter != "\t" else ""
         upper = [blank if n == split else name for n, name in enumerate(names)]
-        lower = [f"{name} [{unit}]" if n == split and not blank else name if n == split else f"[{unit}]"
-                 for n, (name, unit) in enumerate(zip(names, made.units, strict=True))]  # fmt: skip
+        lower = [
+            f"{name} [{unit}]" if n == split and not blank else name if n == split else f"[{unit}]"
+            for n, (name, unit) in enumerate(zip(names, made.units, strict=True))
+        ]
         return [delimiter.join(upper) + tail, delimiter.join(lower) + tail]
     rows = [delimiter.join(names) + tail]
     if made.stated == "row":

@@ -20,18 +20,46 @@ from ident.readers.column_names import (
 )
 
 CHANNELS = {
-    "x_soll": "command", "Sollwert": "command", "xSoll": "command", "Lagesollwert [mm]": "command",
-    "Führungsgröße": "command", "consigne": "command", "Riferimento": "command", "PositionCommand": "command",
-    "x_ref": "command", "setpoint_mm": "command", "Istwert": "displacement", "x_ist": "displacement",
-    "Weg_mm": "displacement", "Déplacement (mm)": "displacement", "mesure": "displacement", "posizione": "displacement",
-    "Position feedback": "displacement", "ActualPosition": "displacement", "Istwert [kN]": "force",
-    "mesure [mm/s]": "velocity", "Force_kN": "force", "Kraft": "force", "Drehzahl": "velocity", "vitesse": "velocity",
-    "Druckdifferenz": "load_pressure", "p_A": "pressure_a", "yout [m]": "displacement", "y_m": "displacement",
-    "Ventilstrom": "current", "Öltemperatur": "temperature", "位移": "displacement", "力值(kN)": "force",
-    "Ch 1 Kraft Sollwert": "command", "Ch 1 Kraft": "force", "Kanal 2 Weg [mm]": "displacement",
-    "Axial Force Command": "command", "force_setpoint_kN": "command", "指令_mm": "command",
+    "x_soll": "command",
+    "Sollwert": "command",
+    "xSoll": "command",
+    "Lagesollwert [mm]": "command",
+    "Führungsgröße": "command",
+    "consigne": "command",
+    "Riferimento": "command",
+    "PositionCommand": "command",
+    "x_ref": "command",
+    "setpoint_mm": "command",
+    "Istwert": "displacement",
+    "x_ist": "displacement",
+    "Weg_mm": "displacement",
+    "Déplacement (mm)": "displacement",
+    "mesure": "displacement",
+    "posizione": "displacement",
+    "Position feedback": "displacement",
+    "ActualPosition": "displacement",
+    "Istwert [kN]": "force",
+    "mesure [mm/s]": "velocity",
+    "Force_kN": "force",
+    "Kraft": "force",
+    "Drehzahl": "velocity",
+    "vitesse": "velocity",
+    "Druckdifferenz": "load_pressure",
+    "p_A": "pressure_a",
+    "yout [m]": "displacement",
+    "y_m": "displacement",
+    "Ventilstrom": "current",
+    "Öltemperatur": "temperature",
+    "位移": "displacement",
+    "力值(kN)": "force",
+    "Ch 1 Kraft Sollwert": "command",
+    "Ch 1 Kraft": "force",
+    "Kanal 2 Weg [mm]": "displacement",
+    "Axial Force Command": "command",
+    "force_setpoint_kN": "command",
+    "指令_mm": "command",
     "阻尼力\uff08N\uff09": "force",
-}  # fmt: skip
+}
 NONE = (
     "u",
     "y",
@@ -99,8 +127,9 @@ def test_the_input_of_a_model_is_the_command_where_its_output_is_there():
     """The names of MATLAB; u alone may be a displacement."""
     file, draft = known("u_V", "y_mm")
     assert {name: (a.column, a.unit) for name, a in draft.known(file).channels.items()} == {
-        "command": ("u_V", "V"), "displacement": ("y_mm", "mm")
-    }  # fmt: skip
+        "command": ("u_V", "V"),
+        "displacement": ("y_mm", "mm"),
+    }
     file, draft = known("t", "u", "x")
     assert not draft.known(file).channels
 
@@ -114,8 +143,9 @@ def test_what_all_names_have_in_common_says_nothing_of_a_column():
         assert found == {"command": names[1], "displacement": names[2]}
     file, draft = known("Axis 1 Time [s]", "Axis 1 Force [kN]", "Axis 1 Position [mm]")
     assert {name: answer.unit for name, answer in draft.known(file).channels.items()} == {
-        "force": "kN", "displacement": "mm"
-    }  # fmt: skip
+        "force": "kN",
+        "displacement": "mm",
+    }
     file, draft = known("Tiempo [s]", "Axial Force [kN]", "Axial Displacement [mm]", "Axial Count [1]")
     assert {*draft.known(file).channels} == {"force", "displacement"}
     assert without_common_words(("Time", "Ch 1 Force", "Ch 1 Displacement")) == ("Time", "Force", "Displacement")

@@ -67,7 +67,7 @@ CASES = [  # what is written, by what it is replaced, code, words of the message
     ("gain: 7", "gain: " + "[" * 2000, "too-deep", "line 7"),
     ("actuator: {serial: SW-1, piston_area: 497 mm^2}", "actuator: SW-1", "not-a-mapping", "actuator"),
     ("gain: 7", "gain: 7\n---\n", "not-yaml", "more than one document"),
-]  # fmt: skip
+]
 
 
 @pytest.mark.parametrize(("old", "new", "code", "words"), CASES, ids=[f"{case[2]}-{case[1][:24]}" for case in CASES])
@@ -173,9 +173,12 @@ def test_a_command_has_any_unit_and_what_turns_is_measured_as_an_angle(command, 
 
 @pytest.mark.parametrize(
     ("answers", "output"),
-    [("velocity: {column: 1, unit: rpm}", "velocity"), ("force: {column: 1, unit: N}", "force"),
-     ("velocity: {column: 1, unit: m/s}, displacement: {column: 2, unit: m}", "displacement")],
-)  # fmt: skip
+    [
+        ("velocity: {column: 1, unit: rpm}", "velocity"),
+        ("force: {column: 1, unit: N}", "force"),
+        ("velocity: {column: 1, unit: m/s}, displacement: {column: 2, unit: m}", "displacement"),
+    ],
+)
 def test_what_alone_was_recorded_of_the_answer_is_the_output(answers, output):
     text = f"""
 actuator: {{serial: A}}

@@ -120,7 +120,7 @@ def test_a_list_of_signals_within_a_document_is_read_by_their_names_and_units():
         ("run.npz.gz", b"x", "unknown-type"),
         ("run.csv", b"u,x\nV,mm\nHz,Hz\n1,2\n", "not-numeric"),
     ],
-)  # fmt: skip
+)
 def test_what_is_not_a_whole_file_of_its_kind_is_refused(name, data, code):
     with pytest.raises(Unusable) as refused:
         read_table(data, name, FOUND, LIMITS).load([0, -1])

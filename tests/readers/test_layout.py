@@ -111,8 +111,10 @@ def test_the_line_of_names_that_matrix_yaml_states_is_the_one_that_is_found():
     assert (found.skip_rows, found.heading.units) == (3, ("s", "V", "mm"))
     stated = recognise(text, "run.csv", Dialect(skip_rows=3))
     assert (stated.heading.names, stated.heading.units, stated.below) == (
-        found.heading.names, found.heading.units, found.below
-    )  # fmt: skip
+        found.heading.names,
+        found.heading.units,
+        found.below,
+    )
 
 
 @pytest.mark.parametrize(
@@ -124,7 +126,7 @@ def test_the_line_of_names_that_matrix_yaml_states_is_the_one_that_is_found():
         ([f"09:30:{n:02d},500" for n in range(30)], 1.0),
         ([f"3/12/2026 09:30:{n:02d} PM" for n in range(30)], 1.0),
     ],
-)  # fmt: skip
+)
 def test_time_stamps_are_seconds_since_the_first(stamps, step):
     np.testing.assert_allclose(seconds(stamps, 2, "run.csv"), step * np.arange(30), atol=1e-9)
     table = read("\n".join(["time;u", *(f"{stamp};{n % 7}" for n, stamp in enumerate(stamps))]))
@@ -170,10 +172,17 @@ def test_signs_of_units_and_accents_are_no_chinese(heading):
 
 @pytest.mark.parametrize(
     ("above", "rate"),
-    [("Abtastrate;1000 Hz", 1000.0), ("Sampling period,1.0 ms,", 1000.0), ("Abtastintervall: 0,5 ms", 2000.0),
-     ("sampling frequency = 4.096 kHz", 4096.0), ("Sample 1", None), ("Samples: 30", None), ("Sample rate: 100", None),
-     ("sample" + " " * 60_000 + "x", None)],
-)  # fmt: skip
+    [
+        ("Abtastrate;1000 Hz", 1000.0),
+        ("Sampling period,1.0 ms,", 1000.0),
+        ("Abtastintervall: 0,5 ms", 2000.0),
+        ("sampling frequency = 4.096 kHz", 4096.0),
+        ("Sample 1", None),
+        ("Samples: 30", None),
+        ("Sample rate: 100", None),
+        ("sample" + " " * 60_000 + "x", None),
+    ],
+)
 def test_a_rate_or_an_interval_above_the_table_is_found_where_it_carries_a_unit(above, rate):
     text = "\n".join([above, "", "n,command [V],position [mm]", *(f"{n},{n % 7},{n % 3}" for n in range(30))])
     found = read_raw(text.encode(), "run.csv").rate
@@ -205,9 +214,12 @@ SECOND = ["Data Acquisition\t\tTime:\t12.5\ts", "Force", "kN", "1.5", "-3.5"]
 
 @pytest.mark.parametrize(
     ("foot", "said"),
-    [(["Maximum\t29.5\t31.25"], "line 42,"), (["", "End of test", "approved by:\tthe laboratory"], "lines 43 to 44,"),
-     (["", *SECOND], "lines 43 to 47,")],
-)  # fmt: skip
+    [
+        (["Maximum\t29.5\t31.25"], "line 42,"),
+        (["", "End of test", "approved by:\tthe laboratory"], "lines 43 to 44,"),
+        (["", *SECOND], "lines 43 to 47,"),
+    ],
+)
 def test_a_result_a_remark_or_another_table_below_the_table_is_told_and_left_out(foot, said):
     """Testing machines write them there; no row begins with a word."""
     table = read("\n".join(["u\tx", *lines(delimiter="\t"), *foot, ""]))

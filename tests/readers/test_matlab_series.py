@@ -196,7 +196,8 @@ def test_objects_that_all_refer_to_all_are_looked_at_once():
     """Each way through forty of them to the depth of eight would be followed: more than there are seconds."""
     count = 40
     everyone = mat_objects.Reference(tuple(range(1, count + 1)))
-    objects = mat_objects.Objects(("p",), ("", "thing"), ((0, 0, 0), *[(1, 1, 0)] * count), ((), ((1, 1, 0),)), ((),),
-                      (None, None, everyone))  # fmt: skip
+    objects = mat_objects.Objects(
+        ("p",), ("", "thing"), ((0, 0, 0), *[(1, 1, 0)] * count), ((), ((1, 1, 0),)), ((),), (None, None, everyone)
+    )
     assert objects.properties(1) == {"p": everyone}
     assert list(objects.series(everyone, "x")) == []

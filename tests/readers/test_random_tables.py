@@ -94,8 +94,12 @@ def outcome(seed: int, folder) -> str:
     path.write_bytes(table.data)
     stated = {name: given.channels[name] for name in ("command", "displacement")}
     clock = {"time": {"column": given.time.column, "unit": given.time.unit}} if table.time else {"sample_rate": "1 kHz"}
-    (read,) = read_matrix(path, units={name: one.unit for name, one in stated.items()},
-                          columns={name: one.column for name, one in stated.items()}, **clock).runs  # fmt: skip
+    (read,) = read_matrix(
+        path,
+        units={name: one.unit for name, one in stated.items()},
+        columns={name: one.column for name, one in stated.items()},
+        **clock,
+    ).runs
     check_run(read, table)
     return "read"
 

@@ -100,8 +100,16 @@ def test_many_outputs_are_split_each():
     arrays = lagged(0.01)
     arrays["load_pressure"] = arrays["displacement"]
     units = UNITS | {"load_pressure": "bar"}
-    matrix = from_arrays(arrays, units=units, sample_rate="1000 Hz", output=["displacement", "load_pressure"],
-                         split={"validation": [6000, 8000]})  # fmt: skip
+    matrix = from_arrays(
+        arrays,
+        units=units,
+        sample_rate="1000 Hz",
+        output=["displacement", "load_pressure"],
+        split={"validation": [6000, 8000]},
+    )
     assert [run.id for run in matrix.runs] == [
-        "run.displacement", "run.load_pressure", "run.validation.displacement", "run.validation.load_pressure",
-    ]  # fmt: skip
+        "run.displacement",
+        "run.load_pressure",
+        "run.validation.displacement",
+        "run.validation.load_pressure",
+    ]

@@ -62,7 +62,7 @@ def test_whatever_speaks_arrow_is_a_table():
 @pytest.mark.parametrize(
     ("stated", "said"),
     [
-        ({}, 'make a data set of it: servoident init .*state them, as units=.*the file has t, u, x'),
+        ({}, "make a data set of it: servoident init .*state them, as units=.*the file has t, u, x"),
         ({"units": UNITS, "columns": COLUMNS}, "neither sample_rate nor time is given"),
         ({"units": {"command": "mm"}, "columns": COLUMNS, "sample_rate": "1 kHz"}, "no unit of displacement is stated"),
         ({"units": UNITS, "sample_rate": "1 kHz"}, "there is no column 'command'"),
@@ -71,7 +71,7 @@ def test_whatever_speaks_arrow_is_a_table():
         ({"units": UNITS, "columns": COLUMNS, "sample_rate": "1 kHz", "gian": 7}, "unknown key 'gian'"),
         ({"units": UNITS, "columns": COLUMNS, "sample_rate": "1 kHz", "gain": 0}, "the loop is open"),
     ],
-)  # fmt: skip
+)
 def test_what_is_missing_or_wrong_is_said_with_its_remedy(file, stated, said):
     with pytest.raises(Unusable, match=said):
         read_matrix(file, **stated)

@@ -33,12 +33,14 @@ def servo_loop(mass, stiffness, gain, damping=0.0, values=TABLE_4, area=AREA):
     """(A, B, C) of the states q, P, v, x, scaled to mm and MPa; mass, damping, stiffness are the specimen's."""
     Z0, tau, Cl, c0, m0, Ka = (values[name] for name in ("Z0", "tau", "Cl", "c0", "m0", "Ka"))
     m = m0 + mass
-    A = np.array([
-        [-1 / tau, 0, 0, -gain / tau],
-        [Z0 / area / Ka, -Cl / Ka, -area / Ka, 0],
-        [0, area / m, -(c0 + damping) / m, -stiffness / m],
-        [0, 0, 1, 0],
-    ])  # fmt: skip
+    A = np.array(
+        [
+            [-1 / tau, 0, 0, -gain / tau],
+            [Z0 / area / Ka, -Cl / Ka, -area / Ka, 0],
+            [0, area / m, -(c0 + damping) / m, -stiffness / m],
+            [0, 0, 1, 0],
+        ]
+    )
     B, C = np.array([gain / tau, 0, 0, 0]), np.array([0, 0, 0, 1.0])
     unit = np.array([1e-3, 1e6, 1e-3, 1e-3])
     return A * unit / unit[:, None], B / unit, C * unit

@@ -21,7 +21,7 @@ SUBSTEPS = 3
 
 def displacements(
     plant: linear.Plant, cells: Sequence[linear.Cell], commands: Samples, gain: Callable[[float], float]
-) -> Samples:  # fmt: skip
+) -> Samples:
     """Displacements (runs, n) for commands (runs, n) that are straight between samples."""
     Kp, mass, k, c = (
         np.array([getattr(cell, name) for cell in cells]) for name in ("gain", "mass", "stiffness", "damping")

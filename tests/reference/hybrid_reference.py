@@ -74,18 +74,25 @@ def ramps(A: Array, B: Array, h: float) -> tuple[Array, Array, Array]:
 def rods(a: Actuator, s: Specimen, Kp: float) -> tuple[Array, Array]:
     """State matrices of (q, P, v, x) under the command u."""
     m = a.m0 + s.m
-    A = np.array([
-        [-1 / a.tau, 0.0, 0.0, -Kp / a.tau],
-        [a.Z0 / (a.A * a.Ka), -a.Cl / a.Ka, -a.A / a.Ka, 0.0],
-        [0.0, a.A / m, -a.c0 / m, -s.k / m],
-        [0.0, 0.0, 1.0, 0.0],
-    ])  # fmt: skip
+    A = np.array(
+        [
+            [-1 / a.tau, 0.0, 0.0, -Kp / a.tau],
+            [a.Z0 / (a.A * a.Ka), -a.Cl / a.Ka, -a.A / a.Ka, 0.0],
+            [0.0, a.A / m, -a.c0 / m, -s.k / m],
+            [0.0, 0.0, 1.0, 0.0],
+        ]
+    )
     return A, np.array([[Kp / a.tau], [0.0], [0.0], [0.0]])
 
 
 def poles(
-    rate: float, Kp: float, delay: int, actuator: Actuator, structure: Structure, specimen: Specimen,
-) -> NDArray[np.complex128]:  # fmt: skip
+    rate: float,
+    Kp: float,
+    delay: int,
+    actuator: Actuator,
+    structure: Structure,
+    specimen: Specimen,
+) -> NDArray[np.complex128]:
     """The poles s (1/s) of the loop under u = d: one sample of :func:`simulate` without ground, of each unit state."""
     a, w, s = actuator, structure, specimen
     A, B = rods(a, s, Kp)
@@ -103,10 +110,15 @@ def poles(
 
 
 def simulate(
-    ground: Array, rate: float, Kp: float, delay: int = 1, actuator: Actuator | None = None,
-    structure: Structure | None = None, specimen: Specimen | None = None,
+    ground: Array,
+    rate: float,
+    Kp: float,
+    delay: int = 1,
+    actuator: Actuator | None = None,
+    structure: Structure | None = None,
+    specimen: Specimen | None = None,
     law: Callable[[float, float], float] = lambda d, _y: d,
-) -> tuple[Array, Array, Array]:  # fmt: skip
+) -> tuple[Array, Array, Array]:
     """Wanted d, measured x (m) and force f (N) at the samples, each (n,), under u = law(d, x)."""
     a, w, s = actuator or Actuator(), structure or Structure(), specimen or Specimen()
     A, B = rods(a, s, Kp)

@@ -444,9 +444,14 @@ class Outputs(NamedTuple):
 
 
 def respond(
-    plant: linear.Plant, f: Effects, cell: linear.Cell, command: Samples, hold: str = "linear",
-    rate: float = linear.SAMPLE_RATE, substeps: int = SUBSTEPS,
-) -> Outputs:  # fmt: skip
+    plant: linear.Plant,
+    f: Effects,
+    cell: linear.Cell,
+    command: Samples,
+    hold: str = "linear",
+    rate: float = linear.SAMPLE_RATE,
+    substeps: int = SUBSTEPS,
+) -> Outputs:
     """One run from rest, without noise."""
     given = np.array([tuple(f)], _RECORD)[0]
     found = integrate(plant, given, cell, command, rate, substeps, hold == "linear", np.empty((3, len(command))))
@@ -454,9 +459,16 @@ def respond(
 
 
 def measure_all(
-    f: Effects, runs: Sequence[linear.Trial], *, seconds: float, noise: float, seed: int, hold: str = "linear",
-    plant: linear.Plant | None = None, bits: int | None = 18,
-) -> list[linear.Record]:  # fmt: skip
+    f: Effects,
+    runs: Sequence[linear.Trial],
+    *,
+    seconds: float,
+    noise: float,
+    seed: int,
+    hold: str = "linear",
+    plant: linear.Plant | None = None,
+    bits: int | None = 18,
+) -> list[linear.Record]:
     """Every run of a matrix, each with its own command and noise, its position in steps of the stroke over 2^bits."""
     machine = plant or linear.Plant()
 

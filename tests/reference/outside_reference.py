@@ -49,8 +49,16 @@ class Outside(NamedTuple):
     swinging_gain: float = 0.0
 
 
-UNLISTED = ("gain_drift", "valve_temperature", "sensor_curve", "loaded_lag", "gain_bump", "relief_leakage",
-            "growing_friction", "position_damping")  # fmt: skip
+UNLISTED = (
+    "gain_drift",
+    "valve_temperature",
+    "sensor_curve",
+    "loaded_lag",
+    "gain_bump",
+    "relief_leakage",
+    "growing_friction",
+    "position_damping",
+)
 
 
 @njit(inline="always")
@@ -99,7 +107,7 @@ def integrate(plant, cell, o, warm, command, rate):
 
 def measure_all(
     outside: Outside, runs: list[linear.Trial], plant: linear.Plant, *, seconds: float, noise: float, seed: int
-) -> list[linear.Record]:  # fmt: skip
+) -> list[linear.Record]:
     """Every run, each with its own command, noise and temperature of the valve."""
     records = []
     for number, trial in enumerate(runs):

@@ -146,8 +146,10 @@ class SpoolStiction(Machine):
     def switches(self) -> list[Switch]:
         side = copysign(1, self.mode)
         if abs(self.mode) == 2:
-            return [(lambda _, s: side * self.pull(s), -1),
-                    (lambda _, s: side * self.pull(s) - self.p.s / self.plant.tau, 1)]  # fmt: skip
+            return [
+                (lambda _, s: side * self.pull(s), -1),
+                (lambda _, s: side * self.pull(s) - self.p.s / self.plant.tau, 1),
+            ]
         if self.mode:
             return [(lambda t, s: side * self.gap(t, s) - self.p.s, -1)]
         return [(lambda t, s: self.gap(t, s) - self.p.s, 1), (lambda t, s: self.gap(t, s) + self.p.s, -1)]

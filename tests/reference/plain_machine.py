@@ -198,8 +198,17 @@ def piece(machine: Machine, a: float, b: float, s: NDArray[np.float64]) -> NDArr
         for switch, direction in machine.switches():
             ends.append(_ends(switch, direction))
         step = min(machine.longest, b - a)
-        found = solve_ivp(machine.rates, (a, b), s, "DOP853", events=ends, max_step=step, rtol=RTOL,
-                          atol=RTOL * np.array([*SCALE, *machine.own]), dense_output=True)  # fmt: skip
+        found = solve_ivp(
+            machine.rates,
+            (a, b),
+            s,
+            "DOP853",
+            events=ends,
+            max_step=step,
+            rtol=RTOL,
+            atol=RTOL * np.array([*SCALE, *machine.own]),
+            dense_output=True,
+        )
         machine.remember(found.sol)
         a, s = float(found.t[-1]), found.y[:, -1]
         if found.status == 0:

@@ -33,8 +33,9 @@ def test_finer_steps_change_nothing(monkeypatch):
 def test_at_a_fixed_level_the_speed_is_that_of_the_formula():
     """25 % from a zero shift of 1 %: f at 23.8 %, less what friction takes of 100 MPa, limited to 21."""
     truth = reference.Truth(I0=1.0)
-    found = reference.record(truth, "r", "speed-levels", 2, [0.0, 25.0, 3.0, 0.3, 2000.0], 2.0, 10.0,
-                             np.random.default_rng(0))  # fmt: skip
+    found = reference.record(
+        truth, "r", "speed-levels", 2, [0.0, 25.0, 3.0, 0.3, 2000.0], 2.0, 10.0, np.random.default_rng(0)
+    )
     speed = (found.true_position[1900] - found.true_position[900]) / 1.0
     expected = truth.speed(np.array([25.0 - 0.2 - 1.0]))[0] * np.sqrt(1 - 0.5 / 21.0)
     assert speed == pytest.approx(expected, rel=1e-6)

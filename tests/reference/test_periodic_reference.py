@@ -77,9 +77,14 @@ EFFECTS = {
     "sensor_lag": {"T": 0.02}, "sensor_nonlinearity": {"s": 30.0},
 }  # fmt: skip
 OF_LOOP = {
-    "loop_delay": {"T": 0.013}, "lead": {"Td": 0.01}, "integral_action": {"Ki": 0.5}, "sensor_gain": {"g": 0.1},
-    "acquisition_lag": {"T": 0.02}, "backlash": {"b": 1.0}, "dead_zone": {"h": 1.0},
-}  # fmt: skip
+    "loop_delay": {"T": 0.013},
+    "lead": {"Td": 0.01},
+    "integral_action": {"Ki": 0.5},
+    "sensor_gain": {"g": 0.1},
+    "acquisition_lag": {"T": 0.02},
+    "backlash": {"b": 1.0},
+    "dead_zone": {"h": 1.0},
+}
 SHOWN, EQUAL = 1e-3, 1e-4  # of the deviation: what an effect changes at least, what finer steps change at most
 
 

@@ -47,10 +47,31 @@ KINDS = {
 }
 NAMES = tuple(name for names in KINDS.values() for name in names)
 (
-    SQUARE_LEAKAGE, CUBIC_DAMPING, GAIN_HILL, POSITION_DAMPING, SPEED_GAIN, LOADED_FRICTION, RELIEF_VALVE, BUMPER,
-    WIDE_OPENING, FEEDBACK_PLAY, YIELDING_ELEMENT, FLOW_HYSTERESIS, LATE_LEAKAGE, MOUNT, LATE_FRICTION, PULSATION,
-    WARMING_GAIN, RUNNING_IN, MASS_GAIN, GAIN_FRICTION, TILTED_LEAKAGE, TAPERED_PISTON, BELLOWS, BREATHING,
-) = range(24)  # fmt: skip
+    SQUARE_LEAKAGE,
+    CUBIC_DAMPING,
+    GAIN_HILL,
+    POSITION_DAMPING,
+    SPEED_GAIN,
+    LOADED_FRICTION,
+    RELIEF_VALVE,
+    BUMPER,
+    WIDE_OPENING,
+    FEEDBACK_PLAY,
+    YIELDING_ELEMENT,
+    FLOW_HYSTERESIS,
+    LATE_LEAKAGE,
+    MOUNT,
+    LATE_FRICTION,
+    PULSATION,
+    WARMING_GAIN,
+    RUNNING_IN,
+    MASS_GAIN,
+    GAIN_FRICTION,
+    TILTED_LEAKAGE,
+    TAPERED_PISTON,
+    BELLOWS,
+    BREATHING,
+) = range(24)
 
 SHAPES: dict[str, tuple[tuple[float, float], ...]] = {
     "gain_hill": ((-0.6 * X, 0.6 * X), (0.25 * X, 0.6 * X)),
@@ -67,8 +88,16 @@ SHAPES: dict[str, tuple[tuple[float, float], ...]] = {
     "running_in": ((0.2, 0.6),),
 }
 """Between what the shapes a and b are drawn, in SI."""
-SIGNED = {"gain_hill", "speed_gain", "wide_opening", "warming_gain", "mass_gain", "tapered_piston", "bellows",
-          "breathing"}  # fmt: skip
+SIGNED = {
+    "gain_hill",
+    "speed_gain",
+    "wide_opening",
+    "warming_gain",
+    "mass_gain",
+    "tapered_piston",
+    "bellows",
+    "breathing",
+}
 """Effects whose strength may be of either sign."""
 
 
@@ -212,7 +241,7 @@ def integrate(plant, cell, h, command, rate):
 
 def measure_all(
     hidden: Hidden, runs: Sequence[linear.Trial], plant: linear.Plant, *, seconds: float, noise: float, seed: int
-) -> list[linear.Record]:  # fmt: skip
+) -> list[linear.Record]:
     """Every run, each with its own command and noise, on all cores."""
 
     def one(numbered: tuple[int, linear.Trial]) -> linear.Record:

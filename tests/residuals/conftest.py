@@ -12,9 +12,13 @@ from ident.workflows import identify
 from tests.fit.recovery import matrix
 
 HIDDEN = {
-    "dead_zone": 2e-4, "coulomb_friction": 25.0, "pressure_flow": 9e-8, "quadratic_damping": 5000.0,
-    "gain_asymmetry": 0.05, "backlash": 2e-4,
-}  # fmt: skip
+    "dead_zone": 2e-4,
+    "coulomb_friction": 25.0,
+    "pressure_flow": 9e-8,
+    "quadratic_damping": 5000.0,
+    "gain_asymmetry": 0.05,
+    "backlash": 2e-4,
+}
 """Strengths at which the linear model is a few per cent off."""
 TRUE = {p.name: p.value for p in preset("qian2014").parameters}
 

@@ -23,9 +23,13 @@ from tests.residuals.conftest import HIDDEN, TRUE, compared
 from tests.short_form import short_form
 
 PLACES = {
-    "dead_zone": "spool", "coulomb_friction": "friction", "pressure_flow": "pressure-flow",
-    "quadratic_damping": "friction", "gain_asymmetry": "spool", "backlash": "play",
-}  # fmt: skip
+    "dead_zone": "spool",
+    "coulomb_friction": "friction",
+    "pressure_flow": "pressure-flow",
+    "quadratic_damping": "friction",
+    "gain_asymmetry": "spool",
+    "backlash": "play",
+}
 LEAST = {"backlash": 0.8}
 """Of the residual's power: play is memory, of which a curve against the speed of the spool shows only the ends."""
 

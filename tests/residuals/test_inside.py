@@ -20,12 +20,14 @@ VALUES = {"m0": 1.0, "Z0": 1.7, "c0": 4.0, "Ka": 0.011, "Cl": 0.016}
 def loop(tau: float, r: np.ndarray) -> dict[str, np.ndarray]:
     """τ w' = r − x − w, Ka P' = Z0 w − v − Cl P, m v' = P − c v, x' = v of a unit area, r straight between samples."""
     v = VALUES
-    A = np.array([
-        [-1 / tau, 0, 0, -1 / tau],
-        [v["Z0"] / v["Ka"], -v["Cl"] / v["Ka"], -1 / v["Ka"], 0],
-        [0, 1 / v["m0"], -v["c0"] / v["m0"], 0],
-        [0, 0, 1, 0],
-    ])  # fmt: skip
+    A = np.array(
+        [
+            [-1 / tau, 0, 0, -1 / tau],
+            [v["Z0"] / v["Ka"], -v["Cl"] / v["Ka"], -1 / v["Ka"], 0],
+            [0, 1 / v["m0"], -v["c0"] / v["m0"], 0],
+            [0, 0, 1, 0],
+        ]
+    )
     _, _, states = scipy.signal.lsim((A, [[1 / tau], [0], [0], [0]], np.eye(4), np.zeros((4, 1))), r, TIME)
     w, P, speed, x = states.T
     return {"w": w, "P": P, "v": speed, "x": x, "e": r - x, "dq": (r - x - w) / tau}
@@ -40,8 +42,14 @@ def test_a_valve_much_faster_than_the_samples_leaves_the_other_signals(tau, lost
     steps = np.repeat([0.0, 1.0, -0.5, 0.7, 0.0], 200)
     command = scipy.signal.lfilter([0.1], [1, -0.9], steps)
     expected = loop(tau, command)
-    run = Run("r", "", RATE, {"command": command, "displacement": expected["x"]},
-              {"command": "m", "displacement": "m"}, gain=1.0)  # fmt: skip
+    run = Run(
+        "r",
+        "",
+        RATE,
+        {"command": command, "displacement": expected["x"]},
+        {"command": "m", "displacement": "m"},
+        gain=1.0,
+    )
     matrix = Matrix(Actuator("FAST", piston_area=1.0), (run,))
     found = inside(every_run(preset("qian2014"), matrix), VALUES | {"tau": tau}, list(expected))
     for name in expected.keys() - {lost}:

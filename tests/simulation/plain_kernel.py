@@ -20,9 +20,7 @@ from ident.simulation import simulate
 from ident.simulation.kernel import LANES, Kernel
 
 Array = NDArray[np.float64]
-CALLS: dict[str, Callable[..., Any]] = {
-    "sqrt": np.sqrt, "pow": np.power, "sin": np.sin, "cos": np.cos, "tanh": np.tanh
-}  # fmt: skip
+CALLS: dict[str, Callable[..., Any]] = {"sqrt": np.sqrt, "pow": np.power, "sin": np.sin, "cos": np.cos, "tanh": np.tanh}
 
 
 @contextmanager
@@ -35,9 +33,20 @@ def plain_kernels() -> Iterator[None]:
 
 
 def advance_groups(
-    kernel: Kernel, wide: int, groups: tuple[int, int], buffers: Array, u: Array, fm: Array, u_at: NDArray[np.int64],
-    fm_at: NDArray[np.int64], first: int, last: int, every: int, out: Array, lanes: int
-) -> None:  # fmt: skip
+    kernel: Kernel,
+    wide: int,
+    groups: tuple[int, int],
+    buffers: Array,
+    u: Array,
+    fm: Array,
+    u_at: NDArray[np.int64],
+    fm_at: NDArray[np.int64],
+    first: int,
+    last: int,
+    every: int,
+    out: Array,
+    lanes: int,
+) -> None:
     """What :func:`ident.simulation.machine_call.advance_groups` does; a lane that repeats the one before is copied."""
     rows, b = out.reshape(-1, lanes), buffers.reshape(lanes // LANES, -1, LANES)
     begun, said = b.copy(), _code(kernel.lines)

@@ -48,8 +48,14 @@ def test_it_is_met_between_its_samples_and_is_itself_at_them():
     inner = slice(32, SAMPLES - 32)
     np.testing.assert_array_equal(found[:, 0], run().command)
     np.testing.assert_allclose(found[inner], sines(np.arange(SAMPLES)[:, None] + shares)[inner], atol=1e-4)
-    still = Run("r", "", 1.0, {"command": np.full(9, 3.0), "displacement": np.arange(9.0)}, hold="band-limited",
-                assumed_beginning="moving")  # fmt: skip
+    still = Run(
+        "r",
+        "",
+        1.0,
+        {"command": np.full(9, 3.0), "displacement": np.arange(9.0)},
+        hold="band-limited",
+        assumed_beginning="moving",
+    )
     np.testing.assert_allclose(band_limited(still, shares), 3.0, rtol=1e-14)
 
 

@@ -29,8 +29,14 @@ def gains(order: int, *coefficients: float) -> list[float]:
 
 def weight(a: float, polynomial) -> float:
     """∫ a e^(−a (1 − σ)) p(σ) dσ over a step: what an input p leaves in a lag of a = step/T."""
-    return quad(lambda s: a * np.exp(-a * (1 - s)) * polynomial(s), 0, 1, epsabs=1e-15, epsrel=1e-12,
-                points=[1 - 1 / a] if a > 1 else None)[0]  # fmt: skip
+    return quad(
+        lambda s: a * np.exp(-a * (1 - s)) * polynomial(s),
+        0,
+        1,
+        epsabs=1e-15,
+        epsrel=1e-12,
+        points=[1 - 1 / a] if a > 1 else None,
+    )[0]
 
 
 @pytest.mark.parametrize("a", [1e-4, 0.02, 0.7, 1.0, 1.4, 8.0, 60.0])
@@ -39,8 +45,11 @@ def test_a_lag_is_advanced_exactly(a):
     assert list(start) == [1.0, 0.0]
     line = [weight(a / 2, lambda s: 1 - s), weight(a / 2, lambda s: s)]
     assert half == pytest.approx([np.exp(-a / 2), *line], rel=1e-9, abs=1e-14)
-    parabola = [weight(a, lambda s: 1 - 3 * s + 2 * s * s), weight(a, lambda s: 4 * s - 4 * s * s),
-                weight(a, lambda s: 2 * s * s - s)]  # fmt: skip
+    parabola = [
+        weight(a, lambda s: 1 - 3 * s + 2 * s * s),
+        weight(a, lambda s: 4 * s - 4 * s * s),
+        weight(a, lambda s: 2 * s * s - s),
+    ]
     assert whole == pytest.approx([np.exp(-a), *parabola], rel=1e-9, abs=1e-14)
 
 

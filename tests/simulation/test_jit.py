@@ -57,17 +57,20 @@ def test_a_change_in_another_module_is_compiled_anew(folder):  # noqa: ARG001
     assert calling(CALLED.replace("2.0", "4.0"))(1.5) == 6.5
 
 
-@pytest.mark.parametrize("changed", [
-    {"called": CALLED.replace("GAIN * x", "GAIN - x")},
-    {"called": CALLED.replace("2.0", "2")},
-    {"fastmath": True},
-    {"calling": CALLING.replace("0.5", "0.25")},
-    {"calling": CALLING.replace("+ bias", "- bias")},
-    {"called": CALLED.replace("GAIN * x", "math.sin(x)"), "math": math},
-    {"called": CALLED.replace("GAIN * x", "ROW[0]"), "ROW": np.array([2.0])},
-    {"called": CALLED.replace("GAIN * x", "ROW[0]"), "ROW": np.array([3.0])},
-    {"called": CALLED.replace("GAIN * x", "ROW[0]"), "ROW": (3.0, (4, True))},
-])  # fmt: skip
+@pytest.mark.parametrize(
+    "changed",
+    [
+        {"called": CALLED.replace("GAIN * x", "GAIN - x")},
+        {"called": CALLED.replace("2.0", "2")},
+        {"fastmath": True},
+        {"calling": CALLING.replace("0.5", "0.25")},
+        {"calling": CALLING.replace("+ bias", "- bias")},
+        {"called": CALLED.replace("GAIN * x", "math.sin(x)"), "math": math},
+        {"called": CALLED.replace("GAIN * x", "ROW[0]"), "ROW": np.array([2.0])},
+        {"called": CALLED.replace("GAIN * x", "ROW[0]"), "ROW": np.array([3.0])},
+        {"called": CALLED.replace("GAIN * x", "ROW[0]"), "ROW": (3.0, (4, True))},
+    ],
+)
 def test_each_change_that_numba_reads_is_another_function(changed):
     seen = {"\n".join(made_of(calling())), "\n".join(made_of(calling(**changed)))}
     assert len(seen) == 2

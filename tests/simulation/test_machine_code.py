@@ -61,15 +61,23 @@ def row(number: int) -> str:
 
 CASES = {
     "arithmetic": [f"x = {row(0)}", f"y = 0.5 * (x - {row(1)}) / (2.0 + x * x) + -x", f"{row(3)} = y + +x"],
-    "choice": [f"x = {row(0)}", f"z = {row(2)}", f"{row(3)} = (x if x >= 0.0 else -x) * (1.0 if z > 0.1 else (-1.0 if "
-               "z < -0.1 else 0.0)) + (2.0 if x != z else 3.0) + (x if x <= z else z) + (1.0 if x == x else 0.0)"],
+    "choice": [
+        f"x = {row(0)}",
+        f"z = {row(2)}",
+        f"{row(3)} = (x if x >= 0.0 else -x) * (1.0 if z > 0.1 else (-1.0 if "
+        "z < -0.1 else 0.0)) + (2.0 if x != z else 3.0) + (x if x <= z else z) + (1.0 if x == x else 0.0)",
+    ],
     "functions": [f"x = {row(0)}", "y = x * x", f"{row(3)} = sqrt(y) + pow(y, 1.7) + sin(x) + cos(3.0 * x) + tanh(x)"],
-    "state": [f"x = {row(0)}",
-              f"{row(0)} = 0.9 * x + 0.1 * {row(2)}", f"{row(3)} = {row(0)}", f"{row(0)} = {row(0)} * x"],
+    "state": [
+        f"x = {row(0)}",
+        f"{row(0)} = 0.9 * x + 0.1 * {row(2)}",
+        f"{row(3)} = {row(0)}",
+        f"{row(0)} = {row(0)} * x",
+    ],
     "many inputs": [f"{row(3)} = {row(2)} + 10.0 * {row(5)} + 100.0 * {row(6)}"],
     "time": [f"{row(3)} = {row(0)} * sin(0.1 * (k + 0.5)) + k"],
     "names again": [f"x = {row(0)}", "x = x + 1.0", f"{row(0)} = 0.5 * x", f"{row(3)} = x * {row(1)}"],
-}  # fmt: skip
+}
 
 FED = {
     "state": [(2, "commands", 0, 1), (5, "forces", 0, 1)],
@@ -98,9 +106,18 @@ def test_the_same_lines_give_the_same_digits_wherever_memory_lies():
 
 @pytest.mark.parametrize(
     "line",
-    ["x = __import__('os')", "x = open", "x.y = 1.0", "x = [1.0]", "b[lane] = 1.0", "x = exp(1.0)", "import os",
-     "x = 1.0 if (2.0 < 3.0 < 4.0) else 2.0", "x = y"],
-)  # fmt: skip
+    [
+        "x = __import__('os')",
+        "x = open",
+        "x.y = 1.0",
+        "x = [1.0]",
+        "b[lane] = 1.0",
+        "x = exp(1.0)",
+        "import os",
+        "x = 1.0 if (2.0 < 3.0 < 4.0) else 2.0",
+        "x = y",
+    ],
+)
 def test_nothing_else_is_a_line(line):
     with pytest.raises((TypeError, KeyError)):
         advance((line,), (), 0)

@@ -64,8 +64,15 @@ def unstable(rng) -> tuple[str, Loop, Loop]:
 def as_program(of: Loop) -> EarlierCase:
     """A loop as the program is given it."""
     fit = fitted("qian2014", **{name: of[name] for name in reference.Actuator._fields if name != "A"})
-    case = Case("drawn", *(np.array([[of[name]]]) for name in ("M", "K", "C")), Specimen(of["mass"], of["stiffness"]),
-                gain=of["gain"], piston_area=of["A"], sample_rate=RATE, delay=int(of["delay"]))  # fmt: skip
+    case = Case(
+        "drawn",
+        *(np.array([[of[name]]]) for name in ("M", "K", "C")),
+        Specimen(of["mass"], of["stiffness"]),
+        gain=of["gain"],
+        piston_area=of["A"],
+        sample_rate=RATE,
+        delay=int(of["delay"]),
+    )
     return EarlierCase(fit, case)
 
 

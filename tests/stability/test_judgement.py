@@ -19,8 +19,25 @@ def fit_of(of) -> FitResult:
     """The fit that found the values of a loop."""
     values = {**{n: (of[n], UNITS[n]) for n in UNITS}, "loop_delay.delay": (of["T"], "s")}
     found = {n: Estimate(v, unit, 0.01 * v, 0.0, 10 * v, False) for n, (v, unit) in values.items()}
-    return FitResult("qian2014", ("loop_delay",), found, {}, (), (), {}, {}, {}, (), "ga", 0, 0, 0.0, "", "",
-                     actuator=Actuator("A", piston_area=reference.AREA))  # fmt: skip
+    return FitResult(
+        "qian2014",
+        ("loop_delay",),
+        found,
+        {},
+        (),
+        (),
+        {},
+        {},
+        {},
+        (),
+        "ga",
+        0,
+        0,
+        0.0,
+        "",
+        "",
+        actuator=Actuator("A", piston_area=reference.AREA),
+    )
 
 
 def judged(loop, before=None):

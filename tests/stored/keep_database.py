@@ -55,8 +55,13 @@ def matrix() -> dict[str, str]:
     text, found = DESCRIPTION, {}
     for record in records:
         cell, name = record.trial.cell, record.trial.id
-        text += RUN % {"id": name, "mass": cell.mass, "stiffness": cell.stiffness, "gain": cell.gain,
-                       "use": record.trial.use}  # fmt: skip
+        text += RUN % {
+            "id": name,
+            "mass": cell.mass,
+            "stiffness": cell.stiffness,
+            "gain": cell.gain,
+            "use": record.trial.use,
+        }
         pairs = zip(record.command[::SPARSE], record.displacement[::SPARSE], strict=True)
         rows = [f"{1e3 * command:.5g},{1e3 * displacement:.6g}\n" for command, displacement in pairs]
         found[f"{name}.csv"] = "".join(["command,displacement\n", *rows])
@@ -95,8 +100,14 @@ def serve(data: Path) -> None:
         found = ended(posted("/fits", **fit))
         asked = {"json": {"fit": found, "max_effects": 1, "seed": 1}}
         diagnosis = ended(posted("/diagnoses", **asked))
-        for path in (f"/matrices/{made}", f"/fits/{found}", f"/diagnoses/{diagnosis}", f"/fits/{found}/ladder",
-                     f"/jobs/{found}", "/actuators/SW-1"):  # fmt: skip
+        for path in (
+            f"/matrices/{made}",
+            f"/fits/{found}",
+            f"/diagnoses/{diagnosis}",
+            f"/fits/{found}/ladder",
+            f"/jobs/{found}",
+            "/actuators/SW-1",
+        ):
             answers[path] = client.get(f"{API}{path}").json()
         again = posted("/fits", **fit), posted("/diagnoses", **asked)
         kept = {"fit": found, "diagnosis": diagnosis, "killed": again[0], "queued": again[1], "answers": answers}

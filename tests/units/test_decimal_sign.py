@@ -85,10 +85,17 @@ def test_the_forms_of_the_pages_take_one():
 
 @pytest.mark.parametrize(
     ("written", "dimension", "meant"),
-    [("mss", "time", "ms"), ("cm^^2", "area", "cm^2"), ("kn", "force", "kN"), ("inc", "length", "inch"),
-     ("mm/sek", "velocity", "sec"), ("Bars", "pressure", "bar"), ("KHZ", "frequency", "kHz"),
-     ("widget", "length", "")],
-)  # fmt: skip
+    [
+        ("mss", "time", "ms"),
+        ("cm^^2", "area", "cm^2"),
+        ("kn", "force", "kN"),
+        ("inc", "length", "inch"),
+        ("mm/sek", "velocity", "sec"),
+        ("Bars", "pressure", "bar"),
+        ("KHZ", "frequency", "kHz"),
+        ("widget", "length", ""),
+    ],
+)
 def test_the_unit_that_is_suggested_is_of_the_kind_that_is_wanted(written, dimension, meant):
     with pytest.raises(Unusable) as refused:
         unit_scale(written, dimension, "field")

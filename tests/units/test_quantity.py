@@ -77,14 +77,16 @@ WRITTEN = {
     1.3558179483314003: ("N*m", ["lbf.ft", "lbf-ft", "ft-lbf", "ft-lb", "lb-ft", "ft.lbs"]),
     0.11298482902761668: ("N*m", ["in-lb", "lbf-in", "in.lbf"]),
     0.017453292519943295: ("rad/s", ["°/s", "º/s", "deg/s", "deg.s-1", "deg/sec", "° s⁻¹", "dps", "degrees/second"]),
-    0.10471975511965977: ("rad/s", ["rpm", "RPM", "rev/min", "r/min", "U/min", "tr/min", "1/min", "min-1", "min⁻¹",
-                                    "rev.min^-1", "upm"]),
+    0.10471975511965977: (
+        "rad/s",
+        ["rpm", "RPM", "rev/min", "r/min", "U/min", "tr/min", "1/min", "min-1", "min⁻¹", "rev.min^-1", "upm"],
+    ),
     1e-3: ("m/s", ["mm/s", "mm.s-1", "mm·s⁻¹", "mm s-1", "mm/sec."]),
     0.0254: ("m/s", ["in/s", "in./s", "in.s-1"]),
     98066.5: ("pressure", ["kgf/cm2", "kgf.cm-2", "kp/cm²"]),
     175.12683524647636: ("damping", ["lbf-s/in", "lbf.s/in", "lbf·s·in⁻¹"]),
     1e-6: ("time", ["us", "µs", "μs"]),
-}  # fmt: skip
+}
 """A factor to SI: the kind, and the ways of writing units that have it."""
 
 REFUSED = [

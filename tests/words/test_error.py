@@ -18,9 +18,13 @@ LARGE = re.compile(r"(?<![\d.])\d{4,}(\.\d*)?\s*%|e\+?\d+\s*%")
 @given(st.one_of(st.none(), st.floats(allow_nan=True, allow_infinity=True)))
 def test_no_per_cent_of_four_digits_is_ever_printed(fraction):
     for said in (
-        percent(fraction), percent_in_print(fraction), percent_in_print(fraction, 2), error_said(fraction),
-        error_in_print(fraction), ErrorOf(fraction, with_mean=fraction and 2 * abs(fraction)).headline(),
-    ):  # fmt: skip
+        percent(fraction),
+        percent_in_print(fraction),
+        percent_in_print(fraction, 2),
+        error_said(fraction),
+        error_in_print(fraction),
+        ErrorOf(fraction, with_mean=fraction and 2 * abs(fraction)).headline(),
+    ):
         assert not LARGE.search(said), said
     if fraction is not None and abs(fraction) < 1e300:
         assert not LARGE.search(change(fraction))
@@ -41,9 +45,13 @@ def test_a_change_to_24_times_is_no_per_cent():
 
 @pytest.mark.parametrize(
     ("runs", "said"),
-    [((), "unstable"), (("k24",), "unstable on run k24"), (("a", "b"), "unstable on runs a, b"),
-     (tuple("abcde"), "unstable on 5 runs (a, b, c, …)")],
-)  # fmt: skip
+    [
+        ((), "unstable"),
+        (("k24",), "unstable on run k24"),
+        (("a", "b"), "unstable on runs a, b"),
+        (tuple("abcde"), "unstable on 5 runs (a, b, c, …)"),
+    ],
+)
 def test_an_unstable_model_is_called_so_by_its_runs(runs, said):
     for error in (UNSTABLE, 4.52e104, float("inf"), float("nan")):
         assert ErrorOf(error, unstable=runs).said() == ErrorOf(error, unstable=runs).in_print() == said

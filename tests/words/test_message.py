@@ -79,9 +79,8 @@ def pieces(source: str) -> list[str]:
     """What of a file is prose: strings with words in a row, but for docstrings and those of a type."""
     tree = ast.parse(source)
     documents = {
-        id(node.value) for node in ast.walk(tree)
-        if isinstance(node, ast.Expr) and isinstance(node.value, ast.Constant)
-    }  # fmt: skip
+        id(node.value) for node in ast.walk(tree) if isinstance(node, ast.Expr) and isinstance(node.value, ast.Constant)
+    }
     texts = [n for n in ast.walk(tree) if isinstance(n, ast.Constant) and isinstance(n.value, str)]
     return [one.value for one in texts if id(one) not in documents and PROSE.search(one.value)]
 

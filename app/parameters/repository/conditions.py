@@ -122,8 +122,10 @@ def _approved_between(given: frozenset[str]) -> Condition:
     """A set that was approved, in this time."""
 
     def times(row: Any) -> list[ColumnElement[bool]]:
-        ends = {"approved_after": row.since > bindparam("approved_after"),
-                "approved_before": row.since < bindparam("approved_before")}  # fmt: skip
+        ends = {
+            "approved_after": row.since > bindparam("approved_after"),
+            "approved_before": row.since < bindparam("approved_before"),
+        }
         return [ends[name] for name in sorted(given)]
 
     hits = select(APPROVAL).where(APPROVAL.is_not(None), *times(ApprovalRow)).distinct()

@@ -28,8 +28,14 @@ from ident.rounding import EPSILON
 
 Array = NDArray[np.float64]
 _PLACES = {
-    "e": "controller", "dq": "valve", "w": "spool", "Q": "flow", "R": "load", "y_fb": "sensor", "y": "sensor",
-}  # fmt: skip
+    "e": "controller",
+    "dq": "valve",
+    "w": "spool",
+    "Q": "flow",
+    "R": "load",
+    "y_fb": "sensor",
+    "y": "sensor",
+}
 _READ, _LOOP = "y_fb", "y_in"  # the transducer's signal is another place than the record where a loop uses it
 _SIGNALS = ("w", "Q", "P", "v", "x", "F")
 _VARIED = ("Kp", "mL", "k")  # conditions of a run

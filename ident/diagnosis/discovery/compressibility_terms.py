@@ -42,5 +42,6 @@ def _softer(share: str, kind: str, of: tuple[str, ...], unit: dict[str, float], 
         known = {**signals, **{shape.symbol: shape.value for shape in shapes}}
         return np.asarray(-factor.value(known) * signals[OIL] * np.gradient(signals["P"]) * rate)
 
-    return Term("pressure", OIL, f"{OIL} * ({share})", kind, of, unit, shapes, in_time=True, worked_out=taken,
-                through="Q")  # fmt: skip
+    return Term(
+        "pressure", OIL, f"{OIL} * ({share})", kind, of, unit, shapes, in_time=True, worked_out=taken, through="Q"
+    )

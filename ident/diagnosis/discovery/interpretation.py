@@ -42,12 +42,17 @@ _INTERPRETATIONS: dict[tuple[str, str, tuple[str, ...]], str] = {
     ("y", "square", ("x",)): "a transducer that is not linear",
     ("y", "even square", ("x",)): "a transducer that is not linear",
     ("y", "drift", ("t",)): "a transducer that drifts",
-}  # fmt: skip
+}
 _KINDS = {
-    "beyond": "acts beyond a threshold to both sides", "above": "acts above a threshold",
-    "below": "acts below a threshold", "saturation": "saturates",
-    "lag": "acts late", "late": "acts late", "play": "has play",
-    "friction at": "dry friction at one part of the way", "hill of": "acts at one part of the way",
+    "beyond": "acts beyond a threshold to both sides",
+    "above": "acts above a threshold",
+    "below": "acts below a threshold",
+    "saturation": "saturates",
+    "lag": "acts late",
+    "late": "acts late",
+    "play": "has play",
+    "friction at": "dry friction at one part of the way",
+    "hill of": "acts at one part of the way",
     "hill": "acts at one part of the way",
     "condition": "changes with a condition of the run, with what was recorded beside it, or with time",
     "friction near rest": "dry friction that differs between rest and motion (Stribeck)",
@@ -57,13 +62,14 @@ _KINDS = {
     "slip with": "friction that slips smoothly near rest, and grows with another signal",
     "late slip": "friction that slips smoothly near rest and builds up, and turns, with a delay",
     "late friction": "dry friction that builds up, and turns, with a delay",
-    "fading": "comes, or goes, with time as what warms up", "fading friction": "dry friction that wears in",
+    "fading": "comes, or goes, with time as what warms up",
+    "fading friction": "dry friction that wears in",
     "resonance": "a part that swings on a spring, moved by what is here",
     "free curve": "a free curve: no formula is known for it yet",
     "yields": "a force that builds up along the way and yields, as that of a seal or a strained part (Dahl)",
     "after": "falls, or grows, after large motions, and recovers",
     "periodic": "comes and goes with time, as the pulses of a pump",
-}  # fmt: skip
+}
 
 
 def interpretation(terms: Sequence[Term]) -> str:
@@ -71,7 +77,5 @@ def interpretation(terms: Sequence[Term]) -> str:
     places = {term.form for term in terms}
     if places == {("Q", "size", ("v",)), ("R", "turns with", ("P", "v"))}:
         return "the areas of the piston differ between the directions"
-    found = [
-        _INTERPRETATIONS.get(term.form) or _KINDS.get(term.kind, "") for term in terms
-    ]  # fmt: skip
+    found = [_INTERPRETATIONS.get(term.form) or _KINDS.get(term.kind, "") for term in terms]
     return "; ".join(dict.fromkeys(entry for entry in found if entry))

@@ -163,9 +163,12 @@ def _share(taken: Array, left: float) -> Array:
 
 
 def _rows(
-    terms: Sequence[Term], beside: Sequence[Regressors], paths: Mapping[str, Sequence[Response]], runs: Sequence[int],
+    terms: Sequence[Term],
+    beside: Sequence[Regressors],
+    paths: Mapping[str, Sequence[Response]],
+    runs: Sequence[int],
     sound: NDArray[np.bool_],
-) -> Array:  # fmt: skip
+) -> Array:
     """[T * φ, J, r] of some runs, one below the other; each batch of columns is put in its place, and held once.
 
     `sound` (terms,) becomes true for terms that are finite in one of these runs.

@@ -89,9 +89,13 @@ class TermSearch:
                 self._drawn(begun)
             self.complete = True
         return DiscoveryResult(
-            proposals=tuple(map(self._restated, self.proposals)), refit=self.base, rejected=self.rejected,
-            looked_at=self.looked_at, left_out=self.left_out, complete=self.complete,
-        )  # fmt: skip
+            proposals=tuple(map(self._restated, self.proposals)),
+            refit=self.base,
+            rejected=self.rejected,
+            looked_at=self.looked_at,
+            left_out=self.left_out,
+            complete=self.complete,
+        )
 
     def _drawn(self, begun: TermSearch) -> None:
         """Add one free curve to the terms; or put it in the place of all terms, where the error is then no larger."""

@@ -86,8 +86,10 @@ def term_evidence(
         return _of_run(one, other, run.sample_rate, band)
 
     gained = [gain(run, one, other) for run, one, other in zip(runs, before, after, strict=True)]
-    size = [float(np.mean([np.std(r) / np.std(run.measured) for run, r in zip(runs, of, strict=True)]))
-            for of in (before, after)]  # fmt: skip
+    size = [
+        float(np.mean([np.std(r) / np.std(run.measured) for run, r in zip(runs, of, strict=True)]))
+        for of in (before, after)
+    ]
     return TermEvidence(np.array(gained), 1.0 - size[1] / size[0])
 
 

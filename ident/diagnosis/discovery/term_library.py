@@ -23,9 +23,12 @@ from ident.units.grammar import powers_of
 ALONE = "valve"
 """A place whose terms read its own signal alone."""
 _OF_ONE = (
-    ("{a} * abs({a})", "square", 2), ("abs({a})", "size", 1), ("sgn({a})", "sign", 0), ("{a}**3", "cube", 3),
+    ("{a} * abs({a})", "square", 2),
+    ("abs({a})", "size", 1),
+    ("sgn({a})", "sign", 0),
+    ("{a}**3", "cube", 3),
     ("{a}**2", "even square", 2),
-)  # fmt: skip
+)
 """Functions of one signal: text, kind, and the power of its unit. No answer depends on it: the text says it."""
 
 
@@ -63,8 +66,10 @@ class TermLibrary(Site):
             width = Shape("h", float(np.quantile(np.abs(self.typical[a]), share)), self.units[a])
             if width.value > 0:
                 for text, kind in (
-                    ("{a} - clip({a}, -h, h)", "beyond"), ("max({a} - h, 0)", "above"), ("min({a} + h, 0)", "below"),
-                ):  # fmt: skip
+                    ("{a} - clip({a}, -h, h)", "beyond"),
+                    ("max({a} - h, 0)", "above"),
+                    ("min({a} + h, 0)", "below"),
+                ):
                     yield Term(place, at, text.format(a=a), kind, (a,), self.unit((a, 1)), (width,))
                 if a == at:
                     text = f"{a} / sqrt(1 + ({a} / h)**2) - {a}"
@@ -73,14 +78,16 @@ class TermLibrary(Site):
 
     def _of_two(self, place: str, at: str, a: str, b: str) -> Iterator[Term]:
         for text, kind, powers, symmetric in (
-            ("{a} * {b}", "product", (1, 1), True), ("{a} * abs({b})", "grows with", (1, 1), False),
-            ("{a} * sgn({b})", "turns with", (1, 0), False), ("abs({a}) * sgn({b})", "size along", (1, 0), False),
+            ("{a} * {b}", "product", (1, 1), True),
+            ("{a} * abs({b})", "grows with", (1, 1), False),
+            ("{a} * sgn({b})", "turns with", (1, 0), False),
+            ("abs({a}) * sgn({b})", "size along", (1, 0), False),
             ("max({a}, 0) * {b}", "one-sided product", (1, 1), False),
             ("min({a}, 0) * {b}", "one-sided product", (1, 1), False),
             ("{a} * {b}**2", "grows with square", (1, 2), False),
             ("{a}**2 * sgn({b})", "square along", (2, 0), False),
             ("abs({a}) * {b} * abs({b})", "square grown", (1, 2), False),
-        ):  # fmt: skip
+        ):
             if not symmetric or a < b:
                 unit = self.unit((a, powers[0]), (b, powers[1]))
                 taken = text.removesuffix(" * sgn({b})").format(a=a) if kind in ("size along", "square along") else ""

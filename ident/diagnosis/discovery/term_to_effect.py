@@ -57,15 +57,29 @@ def definition(
     reach = 0.0 if first.in_time else CRITERIA.discovery.strength_reach * as_large
     bound = max(reach, CRITERIA.discovery.strength_far * abs(strength))
     found: dict[str, Any] = {
-        "name": name, "place": terms[-1].place, "equation": lines,
-        "strength": {"symbol": STRENGTH, "unit": ratio(units[first.at], first.unit), "lower": 0.0 if brakes else -bound,
-                     "upper": bound},
-        "meaning": "proposed by search", "source": "proposed by search",
-    }  # fmt: skip
+        "name": name,
+        "place": terms[-1].place,
+        "equation": lines,
+        "strength": {
+            "symbol": STRENGTH,
+            "unit": ratio(units[first.at], first.unit),
+            "lower": 0.0 if brakes else -bound,
+            "upper": bound,
+        },
+        "meaning": "proposed by search",
+        "source": "proposed by search",
+    }
     if first.curve is not None:
         knots, values, steep = list(first.curve.knots), list(first.curve.values), CRITERIA.discovery.curve_steep
-        found["curve"] = {"symbol": CURVE, "of": first.curve.of, "knots": knots, "values": values, "unit": "1",
-                          "lower": -steep, "upper": steep}  # fmt: skip
+        found["curve"] = {
+            "symbol": CURVE,
+            "of": first.curve.of,
+            "knots": knots,
+            "values": values,
+            "unit": "1",
+            "lower": -steep,
+            "upper": steep,
+        }
     state = next((term.state for term in terms if term.state), "")
     return (
         found | ({"shape": shapes} if shapes else {}) | ({"state": {"symbol": STATE, "rate": state}} if state else {})
@@ -115,8 +129,10 @@ def as_fitted(own: Mapping[str, Any], effect: Effect, values: Mapping[str, float
     The bounds of the strength are widened until the fitted strength lies well within them.
     """
     far, of = CRITERIA.discovery.strength_far * abs(values[effect.added[0].in_equations]), own["strength"]
-    found = {**own, "strength": {**of, "lower": min(of["lower"], -far) if of["lower"] else 0.0,
-                                 "upper": max(of["upper"], far)}}  # fmt: skip
+    found = {
+        **own,
+        "strength": {**of, "lower": min(of["lower"], -far) if of["lower"] else 0.0, "upper": max(of["upper"], far)},
+    }
     at = {parameter.symbol: values[parameter.in_equations] for parameter in effect.added[1:]}
     if "shape" in own:
         found["shape"] = {symbol: {**of, "value": at[symbol]} for symbol, of in own["shape"].items()}

@@ -28,9 +28,12 @@ depends on it, but that other phases are drawn, as random."""
 
 
 def bar(
-    residuals: Sequence[Array], sensitivities: Sequence[Array], candidates: Sequence[Array], disturbance: Disturbance,
+    residuals: Sequence[Array],
+    sensitivities: Sequence[Array],
+    candidates: Sequence[Array],
+    disturbance: Disturbance,
     seed: int = 0,
-) -> float:  # fmt: skip
+) -> float:
     """The gain (nats) that the best of the candidates exceeds by chance in one case of twenty.
 
     Each run has the residual (n,) of the model that may be extended, its sensitivities (n, p) to the parameters, and

@@ -109,9 +109,11 @@ def common_disturbance(compared: Sequence[Residuals]) -> Disturbance:
 
 
 def compare(
-    before: Residuals, after: Residuals, disturbance: Disturbance | None = None,
+    before: Residuals,
+    after: Residuals,
+    disturbance: Disturbance | None = None,
     criteria: EvidenceCriteria = EVIDENCE_CRITERIA,
-) -> Evidence:  # fmt: skip
+) -> Evidence:
     """Compare two models by their residuals.
 
     `disturbance` is the spectrum common to all compared models, the two among them; without it the spectrum is common
@@ -200,9 +202,7 @@ def _without(disturbance: Disturbance, before: Array, after: Array) -> float:
     return disturbance.without(best).gain(before[others].sum(axis=0), after[others].sum(axis=0))
 
 
-def _parts(
-    gained: Sequence[Array], records: Sequence[Record], criteria: EvidenceCriteria
-) -> dict[Hashable, BlockMean]:  # fmt: skip
+def _parts(gained: Sequence[Array], records: Sequence[Record], criteria: EvidenceCriteria) -> dict[Hashable, BlockMean]:
     """The difference on each condition, where there are several, and on each span of the records."""
     conditions: dict[Hashable, list[Array]] = {}
     for series, record in zip(gained, records, strict=True):

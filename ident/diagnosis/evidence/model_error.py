@@ -34,9 +34,12 @@ Array = NDArray[np.float64]
 
 
 def predicted_share(
-    residuals: Sequence[Array], inputs: Sequence[Sequence[Array]], outputs: Sequence[Array], most_averaged: int = 1,
+    residuals: Sequence[Array],
+    inputs: Sequence[Sequence[Array]],
+    outputs: Sequence[Array],
+    most_averaged: int = 1,
     criteria: EvidenceCriteria = EVIDENCE_CRITERIA,
-) -> BlockMean:  # fmt: skip
+) -> BlockMean:
     """The share of the power of the whitened residuals (n,) of some runs that their inputs predict out of fold.
 
     At most `most_averaged` neighbouring samples of a long record make one. Where these are too many, parts of the
@@ -59,7 +62,7 @@ def predicted_share(
 
 def _shortened(
     runs: Sequence[tuple[Array, ...]], most_averaged: int, criteria: EvidenceCriteria
-) -> list[tuple[Array, ...]]:  # fmt: skip
+) -> list[tuple[Array, ...]]:
     """The signals of runs averaged over neighbouring samples, and where these are too many the first part of each of
     twelve stretches of each run."""
     total, most = sum(len(run[0]) for run in runs), criteria.model_error_samples

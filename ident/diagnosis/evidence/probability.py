@@ -112,9 +112,11 @@ def is_rather_noise(of_all: Mapping[str, float]) -> bool:
 
 
 def structure_probabilities(
-    gains: Sequence[float], parameters: Sequence[int], priors: Sequence[float],
+    gains: Sequence[float],
+    parameters: Sequence[int],
+    priors: Sequence[float],
     criteria: EvidenceCriteria = EVIDENCE_CRITERIA,
-) -> list[float]:  # fmt: skip
+) -> list[float]:
     """The probabilities of models of a machine by their gains and priors: each parameter costs the gain that is worth
     one."""
     logs = criteria.learning_rate * (np.array(gains) - criteria.least_gain * np.array(parameters)) + np.log(priors)

@@ -157,7 +157,7 @@ _IS_REAL = Question(may_be_real, "That is no more than the best of all effects g
 
 def improves_on_the_whole(
     evidence: Evidence, bar: Callable[[], float], criteria: EvidenceCriteria = EVIDENCE_CRITERIA
-) -> bool:  # fmt: skip
+) -> bool:
     """Whether the second model gains more than chance, and passes each question that is not of a part of the data."""
     asked = (question for question in QUESTIONS if not question.of_a_part)
     on_the_whole = may_be_real(evidence, criteria) and all(question.yes(evidence, criteria) for question in asked)
@@ -166,7 +166,7 @@ def improves_on_the_whole(
 
 def worth_adding(
     evidence: Evidence, bar: Callable[[], float] = lambda: float("inf"), criteria: EvidenceCriteria = EVIDENCE_CRITERIA
-) -> bool:  # fmt: skip
+) -> bool:
     """The rule by which an effect is added: the second model gains more than chance, and passes each question.
 
     The selection asks it of fitted models through :mod:`ident.diagnosis.model_comparison`. Without a `bar` the second

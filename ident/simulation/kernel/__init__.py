@@ -26,9 +26,12 @@ from ident.simulation.kernel.writer import Writer
 
 @lru_cache(maxsize=256)
 def kernel(
-    chain: Chain, output: str, plain: frozenset[tuple[str, float]] = frozenset(), beside: tuple[str, ...] = (),
+    chain: Chain,
+    output: str,
+    plain: frozenset[tuple[str, float]] = frozenset(),
+    beside: tuple[str, ...] = (),
     recorded: bool = False,
-) -> Kernel:  # fmt: skip
+) -> Kernel:
     """The kernel of a chain for one output; `plain` are symbols that stand as numbers in the code.
 
     Channels `beside` the output are left in rows of the buffer at every step. Where the command is `recorded`, an

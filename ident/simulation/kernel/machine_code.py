@@ -74,10 +74,18 @@ def advance(lines: Sequence[str], fed: Sequence[Fed], shown: int, lanes: int = L
     native = ctypes.CFUNCTYPE(None, *types)(engine.get_function_address("advance"))
 
     def run(
-        b: NDArray[np.float64], commands: NDArray[np.float64], forces: NDArray[np.float64],
-        command_at: NDArray[np.int64], force_at: NDArray[np.int64], first: int, last: int, every: int,
-        out: NDArray[np.float64], stride: int, _kept: object = engine,
-    ) -> None:  # fmt: skip
+        b: NDArray[np.float64],
+        commands: NDArray[np.float64],
+        forces: NDArray[np.float64],
+        command_at: NDArray[np.int64],
+        force_at: NDArray[np.int64],
+        first: int,
+        last: int,
+        every: int,
+        out: NDArray[np.float64],
+        stride: int,
+        _kept: object = engine,
+    ) -> None:
         given = (array.ctypes.data for array in (b, commands, forces, command_at, force_at))
         native(*given, first, last, every, out.ctypes.data, stride)
 

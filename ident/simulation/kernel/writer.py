@@ -44,9 +44,19 @@ class Writer(Source):
         states |= {lag.target: self._row_of(lag) for lag in needed if lag.target in self.followers}
         loads = [f"c{row} = b[{row * LANES} + lane]" for row, _ in self.constants.values()]
         return Kernel(
-            chain, self.output, (*loads, *body), self.rows, tuple(self.constants.values()),
-            tuple(self.filters.values()), states, memories, inputs, self.shift, shown, beside,
-        )  # fmt: skip
+            chain,
+            self.output,
+            (*loads, *body),
+            self.rows,
+            tuple(self.constants.values()),
+            tuple(self.filters.values()),
+            states,
+            memories,
+            inputs,
+            self.shift,
+            shown,
+            beside,
+        )
 
     def _is_given(self, needed: Sequence[Equation]) -> bool:
         """Whether rate and bends of the command are inputs: the output reads the rate, and no delay shifts it."""
@@ -80,9 +90,14 @@ class Writer(Source):
         return kept, rates
 
     def _body(
-        self, needed: Sequence[Equation], rates: Sequence[Equation], states: Mapping[str, int],
-        memories: Mapping[str, int], inputs: Mapping[str, int], shown: Mapping[str, int],
-    ) -> list[str]:  # fmt: skip
+        self,
+        needed: Sequence[Equation],
+        rates: Sequence[Equation],
+        states: Mapping[str, int],
+        memories: Mapping[str, int],
+        inputs: Mapping[str, int],
+        shown: Mapping[str, int],
+    ) -> list[str]:
         self.lines = []
         for name, row in [*states.items(), *((f"{name}__old", row) for name, row in memories.items())]:
             self._write(f"{name}_1" if name in states else name, f"b[{row * LANES} + lane]")

@@ -42,9 +42,11 @@ def read(path: str, query: str = "") -> Call:
 FIGURE = "figures/{name}.{kind}"
 CASE = {"fit": "{fit}", "case": "qian"}
 CUSTOM = {
-    "name": "leak", "place": "flow", "equation": "Q = Q - kq*Q",
+    "name": "leak",
+    "place": "flow",
+    "equation": "Q = Q - kq*Q",
     "strength": {"symbol": "kq", "unit": "1", "lower": 0, "upper": 1},
-}  # fmt: skip
+}
 
 OF_API = (
     Call("GET", "/health", (), free=True),
@@ -160,7 +162,7 @@ OF_API = (
     Call("PUT", "/live/{name}/recording", LAB, {"on": True}),
     Call("POST", "/live/{name}/recording", LAB, {"serial": "SW-1", "run": "r1"}),
     read("/stream/ekf"),
-)  # fmt: skip
+)
 """Below /api/v1."""
 
 PAGES = (

@@ -17,18 +17,27 @@ from tests.short_form import short_form
 
 ROUTES = [*((API + call.path, call) for call in OF_API), *((call.path, call) for call in PAGES[:-1])]
 ASKS = {
-    "data-cancel": "DELETE /jobs/{job}", "data-conclude": "POST /jobs/{job}/conclude", "data-own": "POST /diagnoses",
-    "data-run": "POST /matrices/{matrix}/revisions", "data-new-token": "POST /tokens",
+    "data-cancel": "DELETE /jobs/{job}",
+    "data-conclude": "POST /jobs/{job}/conclude",
+    "data-own": "POST /diagnoses",
+    "data-run": "POST /matrices/{matrix}/revisions",
+    "data-new-token": "POST /tokens",
     "data-limits": "PUT /limits/{model}",
-    "data-regression": "POST /regressions", "data-digest": "POST /retention", "data-new-webhook": "POST /webhooks",
-    "data-approve": "POST /fits/{fit}/approve", "data-revoke": "DELETE /tokens/{token}",
-    "data-drop": "DELETE /own-effects/{name}", "data-add": "POST /fits/{fit}/effects",
+    "data-regression": "POST /regressions",
+    "data-digest": "POST /retention",
+    "data-new-webhook": "POST /webhooks",
+    "data-approve": "POST /fits/{fit}/approve",
+    "data-revoke": "DELETE /tokens/{token}",
+    "data-drop": "DELETE /own-effects/{name}",
+    "data-add": "POST /fits/{fit}/effects",
     "data-diagnose": "POST /diagnoses",
-    "data-keep": "POST /own-effects", "data-mend": "POST /matrices/{matrix}/revisions",
-    "data-live-mark": "POST /live/{name}/marks", "data-live-record": "PUT /live/{name}/recording",
+    "data-keep": "POST /own-effects",
+    "data-mend": "POST /matrices/{matrix}/revisions",
+    "data-live-mark": "POST /live/{name}/marks",
+    "data-live-record": "PUT /live/{name}/recording",
     "data-live-keep": "POST /live/{name}/recording",
     "data-propose": "GET /diagnoses/{diagnosis}/proposal",
-}  # fmt: skip
+}
 """What a form or a button with this attribute asks for, where its address does not say it."""
 WITHIN = {"data-pick", "data-close", "data-more", "data-less", "role", "data-format", "data-clear"}
 """Attributes of buttons that change only what is seen."""
@@ -132,16 +141,24 @@ def pages(service: TestClient, matrix: str, fitted: str) -> Iterator[dict[str, s
     """The address of each page with something on it, also of a job that runs, by the name of its route."""
     running = service.post(f"{API}/fits", json={"matrix": matrix, "seed": 5, "options": {"generations": 10_000}}).json()
     effect = {
-        "name": "offered", "place": "flow", "equation": "Q = Q - kq*Q",
+        "name": "offered",
+        "place": "flow",
+        "equation": "Q = Q - kq*Q",
         "strength": {"symbol": "kq", "unit": "1", "lower": 0, "upper": 1},
-    }  # fmt: skip
+    }
     service.post(f"{API}/own-effects", json={"name": "offered", "definition": effect})
     service.post(f"{API}/tokens", json={"name": "somebody", "role": "line"})
     service.post(f"{API}/webhooks", json={"url": "http://127.0.0.1:9/offered", "events": ["limit.broken"]})
     regression = service.post(f"{API}/regressions", json={"serial": "nobody"}).json()["id"]
     draft = service.post(f"{API}/drafts", files={"files": ("run.csv", RAW)}).json()["id"]
-    about = {"serial": "SW-1", "matrix": matrix, "fit": fitted, "regression": regression, "draft": draft,
-             "name": "index"}  # fmt: skip
+    about = {
+        "serial": "SW-1",
+        "matrix": matrix,
+        "fit": fitted,
+        "regression": regression,
+        "draft": draft,
+        "name": "index",
+    }
     shown = [call for call in PAGES if call.method == "GET" and not re.search(r"\.svg|\.json|job|\{path", call.path)]
     found = {call.path: f"{call.path.format(**about)}?{call.query.format(**about)}" for call in shown}
     yield found | {"a running job": f"/fits/{running['id']}"}

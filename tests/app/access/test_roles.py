@@ -20,9 +20,7 @@ from tests.app.access.idle import idle, idle_app
 from tests.app.access.table import API, EVERY, OF_API, PAGES, SOCKETS, STATIC, Call
 from tests.running import TOKEN
 
-CALLS = [
-    *(Call(**{**vars(call), "path": API + call.path}) for call in OF_API), *PAGES, *STATIC
-]  # fmt: skip
+CALLS = [*(Call(**{**vars(call), "path": API + call.path}) for call in OF_API), *PAGES, *STATIC]
 START = {"Authorization": f"Bearer {TOKEN}"}
 NOBODY = {"Authorization": ""}
 
@@ -46,8 +44,12 @@ def tokens(service: TestClient) -> dict[str, str]:
     assert service.post("/sign-out", headers=as_cookie(cookies["left"]), follow_redirects=False).status_code == 303
     assert service.delete(f"{API}/tokens/{revoked['id']}", headers=START).status_code == 200
     others = f"{cookies['admin'].partition('.')[0]}.{cookies['line'].partition('.')[2]}"
-    wrong = {"expired": expired["token"], "revoked": revoked["token"], "guessed": TOKEN + "x",
-             "of another": f"{expired['id']}.{made['admin'].partition('.')[2]}"}  # fmt: skip
+    wrong = {
+        "expired": expired["token"],
+        "revoked": revoked["token"],
+        "guessed": TOKEN + "x",
+        "of another": f"{expired['id']}.{made['admin'].partition('.')[2]}",
+    }
     return made | wrong | {f"cookie {name}": text for name, text in (cookies | {"of another": others}).items()}
 
 
@@ -96,9 +98,7 @@ def in_turn(call: Call, turn: int) -> list[str]:
 
 
 @pytest.mark.parametrize("call", CALLS, ids=lambda call: call.name)
-def test_each_role_may_what_the_table_says(
-    service: TestClient, tokens: dict[str, str], call: Call, full: bool
-) -> None:  # fmt: skip
+def test_each_role_may_what_the_table_says(service: TestClient, tokens: dict[str, str], call: Call, full: bool) -> None:
     """By token and by cookie: 403 where the role may not, neither 401 nor 403 nor 5xx where it may.
 
     In the short form one role that may and one that may not, from route to route in turn; by cookie at every third.
@@ -123,7 +123,7 @@ def test_each_role_may_what_the_table_says(
 @pytest.mark.parametrize("call", CALLS, ids=lambda call: call.name)
 def test_whoever_has_no_valid_token_gets_nothing(
     service: TestClient, tokens: dict[str, str], call: Call, full: bool
-) -> None:  # fmt: skip
+) -> None:
     """None, expired, revoked, guessed; of a session that was left, whose token was revoked, or another's id.
 
     In the short form none, and every third of the others, from route to route in turn.

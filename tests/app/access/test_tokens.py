@@ -199,9 +199,14 @@ def test_a_cookie_is_secure_where_a_named_proxy_speaks_tls(tmp_path: Path) -> No
 
 @pytest.mark.parametrize(
     ("after", "at"),
-    [("/fits/a?x=1", "/fits/a?x=1"), ("//evil.example", "/"), ("/\\evil.example", "/"), ("https://evil.example", "/"),
-     ("/\t/evil.example", "/")],
-)  # fmt: skip
+    [
+        ("/fits/a?x=1", "/fits/a?x=1"),
+        ("//evil.example", "/"),
+        ("/\\evil.example", "/"),
+        ("https://evil.example", "/"),
+        ("/\t/evil.example", "/"),
+    ],
+)
 def test_signing_in_leads_to_a_page_of_this_service(service: TestClient, after: str, at: str) -> None:
     answer = service.post("/sign-in", data={"token": TOKEN, "after": after}, follow_redirects=False)
     service.cookies.clear()

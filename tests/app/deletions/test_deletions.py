@@ -48,14 +48,16 @@ def everything(session: Session, fit: FitRow) -> None:
     of: dict[str, Any] = {"matrix": fit.matrix, "serial": fit.serial}
     session.add(ControllerRow(id="c" + fit.id, fit=fit.id, asked={}, result={}))
     session.flush()
-    session.add_all([
-        DiagnosisRow(id="d" + fit.id, fit=fit.id, result={}, **of),
-        HybridRow(id="h" + fit.id, fit=fit.id, controller="c" + fit.id, asked={}, result={}, records=b"", **of),
-        ProfileRow(id="p" + fit.id, fit=fit.id, parameter="tau", result={}),
-        PlanRow(id="t" + fit.id, fit=fit.id, result={}),
-        AnnotationRow(fit=fit.id, tags=[]),
-        JobRow(id="j" + fit.id, kind="diagnosis", state="failed", matrix=fit.matrix, parent=fit.id, settings={}),
-    ])  # fmt: skip
+    session.add_all(
+        [
+            DiagnosisRow(id="d" + fit.id, fit=fit.id, result={}, **of),
+            HybridRow(id="h" + fit.id, fit=fit.id, controller="c" + fit.id, asked={}, result={}, records=b"", **of),
+            ProfileRow(id="p" + fit.id, fit=fit.id, parameter="tau", result={}),
+            PlanRow(id="t" + fit.id, fit=fit.id, result={}),
+            AnnotationRow(fit=fit.id, tags=[]),
+            JobRow(id="j" + fit.id, kind="diagnosis", state="failed", matrix=fit.matrix, parent=fit.id, settings={}),
+        ]
+    )
 
 
 def left_of(service: Any, fit: str) -> dict[str, int]:
@@ -109,10 +111,17 @@ def rechecked(session: Session, fit: FitRow) -> None:
 def named(session: Session, fit: FitRow) -> None:
     everything(session, fit)
     session.flush()
-    session.add(OwnEffectRow(
-        id="o" + fit.id, name="o" + fit.id[:8], definition={}, origin="diagnosis", diagnosis="d" + fit.id, alike=[],
-        version="",
-    ))  # fmt: skip
+    session.add(
+        OwnEffectRow(
+            id="o" + fit.id,
+            name="o" + fit.id[:8],
+            definition={},
+            origin="diagnosis",
+            diagnosis="d" + fit.id,
+            alike=[],
+            version="",
+        )
+    )
 
 
 def worked_on(session: Session, fit: FitRow) -> None:

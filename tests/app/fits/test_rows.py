@@ -11,19 +11,30 @@ from ident.fit.result import Combination, Estimate, FitResult, RunError, Undeter
 
 def fit() -> FitResult:
     return FitResult(
-        model="qian2014", effects=(), correlation={}, method="ga", seed=0, evaluations=1, seconds=1.0, version="0",
+        model="qian2014",
+        effects=(),
+        correlation={},
+        method="ga",
+        seed=0,
+        evaluations=1,
+        seconds=1.0,
+        version="0",
         parameters={
             "Z0/A^2": Estimate(37.645, "1/s", 0.14, 0.13, 13128.0, False, "Z₀", "gain"),
             "m0": Estimate(1.0, "kg", None, 1.0, 1.0, False, "m₀", "mass", fixed=True),
             "Ka": Estimate(2e-13, "m^3/Pa", 1e-16, 2e-15, 2e-13, True, "Kₐ", "oil"),
         },
         determined=(
-            Combination("Ka*tau*m0 / (A^2 + Cl*c0)", 2.778e-8, "s^3", 1.1e-9), Combination("a ? b", 1.0, "1", 0.1),
+            Combination("Ka*tau*m0 / (A^2 + Cl*c0)", 2.778e-8, "s^3", 1.1e-9),
+            Combination("a ? b", 1.0, "1", 0.1),
         ),
         undetermined=(Undetermined("m0", "by convention"),),
-        error={"fit": 0.0407, "held_out": None, "verify": 0.037}, offset={"fit": -0.01, "verify": 0.0},
-        noise_floor={"fit": 0.02, "verify": None}, runs=(RunError("a", "fit", 0.0407, -0.01),), data_hash="0",
-    )  # fmt: skip
+        error={"fit": 0.0407, "held_out": None, "verify": 0.037},
+        offset={"fit": -0.01, "verify": 0.0},
+        noise_floor={"fit": 0.02, "verify": None},
+        runs=(RunError("a", "fit", 0.0407, -0.01),),
+        data_hash="0",
+    )
 
 
 def test_a_parameter_is_printed_to_two_digits_of_its_standard_error_in_a_readable_unit():

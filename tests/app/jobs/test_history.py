@@ -37,9 +37,11 @@ def job(session: Session, name: str, seconds: float, ago: float = 1000.0, **valu
         course = course.with_report(Progress("trying", done, 20), seconds * done / (20 if ended else 10))
     given = {"kind": "fit", "state": "succeeded", "fence": 1, "settings": {}, "course": course.stored()} | values
     row = JobRow(
-        id=name, began_at=before(timedelta(seconds=ago)),
-        ended_at=before(timedelta(seconds=ago - seconds)) if ended else None, **given,
-    )  # fmt: skip
+        id=name,
+        began_at=before(timedelta(seconds=ago)),
+        ended_at=before(timedelta(seconds=ago - seconds)) if ended else None,
+        **given,
+    )
     session.add(row)
     session.flush()
     return row

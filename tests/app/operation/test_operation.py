@@ -118,8 +118,10 @@ def test_a_job_s_whole_story_is_found_by_its_id(logged):
     lines = [json.loads(line) for line in log.read_text(encoding="utf-8").splitlines()]
     story = [line for line in lines if line.get("job") == job]
     assert [line["text"].replace(job, "JOB") for line in story] == [
-        "fit JOB is queued", "fit JOB is taken by servoident-1", "fit JOB succeeded",
-    ]  # fmt: skip
+        "fit JOB is queued",
+        "fit JOB is taken by servoident-1",
+        "fit JOB succeeded",
+    ]
     assert story[0]["request"] == "the-asking"
     assert (story[1]["worker"], story[1]["lease"], story[2]["state"]) == ("servoident-1", 1, "succeeded")
     requests = [line for line in lines if line["logger"] == "servoident.requests" and line["request"] == "the-asking"]

@@ -37,10 +37,24 @@ LOOPS = {
 def fit(model: str, *effects: str) -> FitResult:
     settings = Settings(model=model, effects=effects).to_json()
     return FitResult(
-        model=model, effects=effects, correlation={}, method="ga", seed=0, evaluations=1, seconds=1.0, version="0",
-        parameters={}, determined=(), undetermined=(), error={}, offset={}, noise_floor={}, runs=(), data_hash="0",
+        model=model,
+        effects=effects,
+        correlation={},
+        method="ga",
+        seed=0,
+        evaluations=1,
+        seconds=1.0,
+        version="0",
+        parameters={},
+        determined=(),
+        undetermined=(),
+        error={},
+        offset={},
+        noise_floor={},
+        runs=(),
+        data_hash="0",
         settings=settings,
-    )  # fmt: skip
+    )
 
 
 @pytest.mark.parametrize("model", PRESETS)

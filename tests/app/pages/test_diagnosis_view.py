@@ -15,10 +15,14 @@ from ident.diagnosis.result import Diagnosis
 def candidate(effect: str, error: float, group: tuple[str, ...] = (), beyond: bool = True) -> dict[str, Any]:
     parameters = {f"{effect}.force": {"value": 8.51, "unit": "N", "std_error": 0.41, "symbol": "F"}}
     return {
-        "effect": effect, "error": {"fit": error, "held_out": error, "verify": None}, "predicted_error": error,
-        "parameters": parameters, "group": list(group), "why": "Because.",
+        "effect": effect,
+        "error": {"fit": error, "held_out": error, "verify": None},
+        "predicted_error": error,
+        "parameters": parameters,
+        "group": list(group),
+        "why": "Because.",
         "evidence": {"beyond_chance": beyond, "looks": "flat tops"},
-    }  # fmt: skip
+    }
 
 
 def found() -> Stored:
@@ -32,7 +36,9 @@ def found() -> Stored:
         "evidence": "the error is 9 %",
     }
     said = {
-        "model": "qian2014", "budget": {}, "next_experiment": {},
+        "model": "qian2014",
+        "budget": {},
+        "next_experiment": {},
         "baseline": {"error": {"fit": 0.02, "held_out": 0.02, "verify": None}, "offset": 0.0},
         "noise_floor": {"fit": 0.005, "verify": None}, "seconds": 3.2,
         "candidates": [candidate("coulomb_friction", 0.01, group), candidate("stribeck_friction", 0.0101, group),

@@ -17,8 +17,17 @@ def test_the_verdict_of_the_catalogue_stands_on_the_page_while_terms_are_searche
     matrix = service.get(f"/api/v1/fits/{fitted}").json()["matrix"]
     made = service.app.state.context.sessions
     with made.begin() as session:
-        session.add(JobRow(id="searching", kind="diagnosis", matrix=matrix, parent=fitted, state="running",
-                           settings={}, progress={"stage": "terms", "verdict": VERDICT}))  # fmt: skip
+        session.add(
+            JobRow(
+                id="searching",
+                kind="diagnosis",
+                matrix=matrix,
+                parent=fitted,
+                state="running",
+                settings={},
+                progress={"stage": "terms", "verdict": VERDICT},
+            )
+        )
     try:
         page = service.get(f"/fits/{fitted}").text
         assert page.count(VERDICT) == 1

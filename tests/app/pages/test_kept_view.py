@@ -24,7 +24,7 @@ from tests.app.test_custom_effects import OWN
         ("kept", "kept_3"),
         ("x" * 100, "x" * 40),
     ],
-)  # fmt: skip
+)
 def test_a_name_is_suggested_that_is_free_and_can_be_read(meaning, name):
     """Neither an effect of the catalogue nor a symbol, nor one of those that are kept."""
     assert suggested(meaning, {"kept", "kept_2"}) == name

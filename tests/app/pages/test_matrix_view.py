@@ -9,12 +9,23 @@ from schemas.matrix import FindingView, MatrixView, RunView
 def stored(*findings: tuple[str | None, str]) -> MatrixView:
     runs = [
         RunView(
-            id=name, use=use, kind="blwn", hold="linear", output="displacement", samples=8192, sample_rate=4096.0,
-            duration=2.0, gain=None, amplitude=None, mass=None, stiffness=None, damping=None,
+            id=name,
+            use=use,
+            kind="blwn",
+            hold="linear",
+            output="displacement",
+            samples=8192,
+            sample_rate=4096.0,
+            duration=2.0,
+            gain=None,
+            amplitude=None,
+            mass=None,
+            stiffness=None,
+            damping=None,
             channels=["command", "displacement"],
         )
         for name, use in (("a", "fit"), ("b", "verify"))
-    ]  # fmt: skip
+    ]
     views = [FindingView(run=run, severity=severity, code="c", text="words") for run, severity in findings]
     return MatrixView(
         id="m", serial="S", parent=None, created_at="", data_hash="0", runs=runs, findings=views, notices=[]

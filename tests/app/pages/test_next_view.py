@@ -23,13 +23,32 @@ def step(error: float | None = None, *, state: str = "", current: bool = False, 
         serial="S/1 ä", name="", batch="", piston_area=None, created_at="", matrices=1, fits=1, current=None
     )
     job = JobView(
-        id="j", kind="fit", state=state, matrix="m", serial=actuator.serial, settings={}, progress=ProgressView(),
-        parent=None, fit=None, diagnosis=None, problem=None, created_at="", ended_at=None,
-    )  # fmt: skip
+        id="j",
+        kind="fit",
+        state=state,
+        matrix="m",
+        serial=actuator.serial,
+        settings={},
+        progress=ProgressView(),
+        parent=None,
+        fit=None,
+        diagnosis=None,
+        problem=None,
+        created_at="",
+        ended_at=None,
+    )
     fit = ParameterSetView(
-        id="f", serial=actuator.serial, batch="", model="qian2014", created_at="", approved_at=None, current=current,
-        error_fit=error, error_verify=error, parameters={},
-    )  # fmt: skip
+        id="f",
+        serial=actuator.serial,
+        batch="",
+        model="qian2014",
+        created_at="",
+        approved_at=None,
+        current=current,
+        error_fit=error,
+        error_verify=error,
+        parameters={},
+    )
     return next_step(actuator, None if error is None else fit, job if state else None, **known)
 
 
@@ -61,7 +80,7 @@ FELL = Yardstick(parent="p", before=ErrorOf(0.12), floor=NOISE)
         (step(NOISE), "cannot be judged", "Show where it fails", "/fits/f#fails"),
         (step(0.1, current=True, yardstick=FAR), "No action needed", "Open parameters", "/fits/f"),
     ],
-)  # fmt: skip
+)
 def test_the_line_says_where_it_stands_and_leads_on(found, words, deed, at):
     """From no fit over what is missing to the set in force, one link a state."""
     assert words in found.words
@@ -78,7 +97,7 @@ def test_the_line_says_where_it_stands_and_leads_on(found, words, deed, at):
         (step(0.1), ""),
         (step(state="queued"), ""),
     ],
-)  # fmt: skip
+)
 def test_a_fit_is_good_at_the_noise_floor_and_poor_above_it(found, grade):
     """Without a floor nothing is known of it."""
     assert found.grade == grade
@@ -116,7 +135,7 @@ def approved(newer: float, *, verify: float | None = None, before: bool = False,
         (approved(0.044, before=True, yardstick=FAR), "No action needed", "Open parameters", "/fits/c", False),
         (approved(0.044, search=Search(job="d")), "of a newer fit is running", "Open progress", MISSING, False),
     ],
-)  # fmt: skip
+)
 def test_an_approved_actuator_is_judged_by_its_approved_set(found, words, deed, at, main):
     """A fit that came after it, better or worse, is told as one; another one that was there already is not."""
     assert found.words.startswith("Approved")
@@ -132,9 +151,19 @@ def test_the_line_says_an_unstable_run_by_name_and_the_mean_where_it_counts():
         "Its model is no longer unstable on run k24; the error is 0.500 %, the noise floor."
     )
     fit = ParameterSetView(
-        id="f", serial="S", batch="", model="qian2014", created_at="2026-01-04", approved_at=None, current=False,
-        error_fit=NOISE, error_verify=12.0, parameters={}, error_with_mean_fit=45.0, unstable_verify=["k24"],
-    )  # fmt: skip
+        id="f",
+        serial="S",
+        batch="",
+        model="qian2014",
+        created_at="2026-01-04",
+        approved_at=None,
+        current=False,
+        error_fit=NOISE,
+        error_verify=12.0,
+        parameters={},
+        error_with_mean_fit=45.0,
+        unstable_verify=["k24"],
+    )
     assert fit_step(fit, FAR).words == "The error, 0.500 % (with the mean 45.0 times), is at the noise floor."
     made = fit.model_copy(update={"id": "c", "approved_at": "2026-01-03", "current": True})
     actuator = ActuatorView(

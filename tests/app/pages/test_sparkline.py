@@ -11,11 +11,19 @@ from schemas.parameters import ParameterSetView, ValueView
 def approved(*values: float, error: float | None = 0.01) -> list[ParameterSetView]:
     return [
         ParameterSetView(
-            id=str(i), serial="S", batch="", model="qian2014", created_at="", approved_at="", current=False,
-            error_fit=0.02, error_verify=error, parameters={"tau": ValueView(value=value, unit="s", std_error=None)},
+            id=str(i),
+            serial="S",
+            batch="",
+            model="qian2014",
+            created_at="",
+            approved_at="",
+            current=False,
+            error_fit=0.02,
+            error_verify=error,
+            parameters={"tau": ValueView(value=value, unit="s", std_error=None)},
         )
         for i, value in enumerate(values)
-    ]  # fmt: skip
+    ]
 
 
 def test_a_rising_parameter_rises_and_says_by_how_much():

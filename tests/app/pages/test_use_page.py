@@ -46,11 +46,16 @@ def test_a_form_that_is_filled_in_is_the_request_of_the_service():
 @pytest.mark.parametrize(
     ("given", "where"),
     [
-        ({"area": "239"}, "area"), ({"stiffness": "30 kg"}, "stiffness"), ({"peak": "45"}, "peak"),
-        ({"gain_from": "two"}, "gain"), ({"axes_from": "0.5:1"}, "axes"),
-        ({"gain_from": "2", "axes_from": "0.5"}, "axes"), ({"seed": "-1"}, "seed"), ({"seed": "9" * 12}, "seed"),
+        ({"area": "239"}, "area"),
+        ({"stiffness": "30 kg"}, "stiffness"),
+        ({"peak": "45"}, "peak"),
+        ({"gain_from": "two"}, "gain"),
+        ({"axes_from": "0.5:1"}, "axes"),
+        ({"gain_from": "2", "axes_from": "0.5"}, "axes"),
+        ({"seed": "-1"}, "seed"),
+        ({"seed": "9" * 12}, "seed"),
     ],
-)  # fmt: skip
+)
 def test_what_is_no_quantity_is_refused_by_the_name_of_its_field(given, where):
     with pytest.raises(Unusable) as refused:
         asked(given)

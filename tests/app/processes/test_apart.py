@@ -60,10 +60,17 @@ def test_what_numba_looks_through_is_there_before_the_first_fork(monkeypatch: py
     assert looked == ["Context", "CPUContext"]
 
 
-@pytest.mark.parametrize("error", [
-    Unusable("bad", "what", "where", "remedy"), Removed("gone", "what", "where", "remedy"), Cancelled(), MemoryError(),
-    OSError(28, "No space left on device"), Superseded(),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    "error",
+    [
+        Unusable("bad", "what", "where", "remedy"),
+        Removed("gone", "what", "where", "remedy"),
+        Cancelled(),
+        MemoryError(),
+        OSError(28, "No space left on device"),
+        Superseded(),
+    ],
+)
 def test_what_work_raises_is_raised(place: Place, error: BaseException) -> None:
     with pytest.raises(type(error)) as caught:
         place.call(acts.raised, error)

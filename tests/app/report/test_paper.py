@@ -46,8 +46,14 @@ def test_every_piece_reaches_the_paper(report, monkeypatch):
     monkeypatch.setattr(typst, "compile", compiled)
     paper.typeset(report)
     assert [block["kind"] for block in seen["blocks"]] == [block.kind for block in report.blocks]
-    assert seen["drawings"] == ["bode.pdf", "ladder.pdf", "residual-curve.pdf", "residual-map.pdf", "step.pdf",
-                                "time.pdf"]  # fmt: skip
+    assert seen["drawings"] == [
+        "bode.pdf",
+        "ladder.pdf",
+        "residual-curve.pdf",
+        "residual-map.pdf",
+        "step.pdf",
+        "time.pdf",
+    ]
     assert "Dry friction is missing." in json.dumps(seen)
 
 

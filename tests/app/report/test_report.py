@@ -19,13 +19,25 @@ DIAGNOSIS = {
     "noise_floor": {"fit": 0.005, "verify": 0.005},
     "budget": {"noise": 0.005, "linear": 0.003, "nonlinear": 0.02},
     "candidates": [
-        {"effect": "coulomb_friction", "error": {"fit": 0.0051, "held_out": 0.0052, "verify": 0.0053},
-         "predicted_error": 0.0061, "parameters": {}, "group": None, "evidence": {}, "why": "<script>alert(1)"},
+        {
+            "effect": "coulomb_friction",
+            "error": {"fit": 0.0051, "held_out": 0.0052, "verify": 0.0053},
+            "predicted_error": 0.0061,
+            "parameters": {},
+            "group": None,
+            "evidence": {},
+            "why": "<script>alert(1)",
+        },
     ],
     "ladder": [{"added": "coulomb_friction", "error": {"fit": 0.0051, "verify": 0.0053}, "parameters": {}}],
-    "verdict": {"effects": ["coulomb_friction"], "indistinguishable": [["coulomb_friction", "backlash"]],
-                "suspects": [], "unexplained": False, "text": "Dry friction is missing."},
-}  # fmt: skip
+    "verdict": {
+        "effects": ["coulomb_friction"],
+        "indistinguishable": [["coulomb_friction", "backlash"]],
+        "suspects": [],
+        "unexplained": False,
+        "text": "Dry friction is missing.",
+    },
+}
 
 
 @pytest.fixture(scope="module")

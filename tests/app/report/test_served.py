@@ -60,8 +60,18 @@ def test_the_command_line_writes_the_same(service, servoident, fit, tmp_path):
     matrix = unpacked(files("SW-910D-0001"), tmp_path / "matrix")
     (tmp_path / "fit.json").write_text(json.dumps(service.get(f"/api/v1/fits/{fit}").json()["result"]))
     out = tmp_path / "sheet.html"
-    done = servoident("report", matrix, "--fit", tmp_path / "fit.json", "--out", out, "--operator", "A. Kern",
-                      "--oil-temperature", "42 degC")  # fmt: skip
+    done = servoident(
+        "report",
+        matrix,
+        "--fit",
+        tmp_path / "fit.json",
+        "--out",
+        out,
+        "--operator",
+        "A. Kern",
+        "--oil-temperature",
+        "42 degC",
+    )
     assert done.returncode == 0, done.stderr
     assert "<dd>42.0 °C</dd>" in out.read_text(encoding="utf-8")
     done = servoident("report", matrix, "--fit", tmp_path / "fit.json", "--out", tmp_path / "tables.xlsx")

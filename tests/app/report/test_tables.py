@@ -16,8 +16,14 @@ from ident.diagnosis.result import Diagnosis
 from tests.app.report.test_report import DIAGNOSIS
 from tests.residuals.conftest import compared
 
-HOSTILE = {"name": '=HYPERLINK("x")', "text": "a <b> & \u00e9, \"quoted\"\nnext", "number": -1.5e-12, "none": None,
-           "truth": True, "infinite": float("inf")}  # fmt: skip
+HOSTILE = {
+    "name": '=HYPERLINK("x")',
+    "text": 'a <b> & \u00e9, "quoted"\nnext',
+    "number": -1.5e-12,
+    "none": None,
+    "truth": True,
+    "infinite": float("inf"),
+}
 
 
 @pytest.fixture(scope="module")

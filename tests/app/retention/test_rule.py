@@ -80,8 +80,9 @@ def test_what_goes_is_shown_then_removed_and_says_so(lab: TestClient) -> None:
     """Of a superseded set and of one that never was approved; the others stay, and so does what was found."""
     stored, found = blobs(lab), shown(lab)
     assert sorted((one["serial"], one["why"]) for one in found["items"]) == [
-        ("SUPERSEDED", "superseded"), ("UNAPPROVED", "never approved")
-    ]  # fmt: skip
+        ("SUPERSEDED", "superseded"),
+        ("UNAPPROVED", "never approved"),
+    ]
     assert (
         found["bytes"]
         == sum(one["bytes"] for one in found["items"])
@@ -107,11 +108,13 @@ def test_what_goes_is_shown_then_removed_and_says_so(lab: TestClient) -> None:
         assert len(view["runs"]) == 9
         day = view["removed_at"][:10]
         for method, path, body in (
-            ("GET", f"/matrices/{matrix}/description", None), ("GET", f"/fits/{fit}/compare", None),
-            ("GET", f"/matrices/{matrix}/track", None), ("POST", "/fits", {"matrix": matrix}),
+            ("GET", f"/matrices/{matrix}/description", None),
+            ("GET", f"/fits/{fit}/compare", None),
+            ("GET", f"/matrices/{matrix}/track", None),
+            ("POST", "/fits", {"matrix": matrix}),
             ("POST", "/diagnoses", {"fit": fit}),
             ("POST", f"/matrices/{matrix}/revisions", {"actuator": {"notes": "x"}}),
-        ):  # fmt: skip
+        ):
             gone = lab.request(method, API + path, json=body)
             assert (gone.status_code, gone.json()["code"]) == (410, "removed-by-rule"), (path, gone.text)
             assert f"removed by the rule on {day}" in gone.json()["detail"]
@@ -151,8 +154,17 @@ def test_what_others_share_stays(lab: TestClient) -> None:
     second = lab.post(f"{API}/matrices/{first}/revisions", json={"actuator": {"notes": "mended"}}).json()["id"]
     with lab.app.state.context.sessions.begin() as session:
         session.get_one(MatrixRow, first).created_at = OLD
-        session.add(FitRow(id="f-first", matrix=first, serial="SHARED", model="qian2014", result=RESULT, created_at=OLD,
-                           set=SetRow(serial="SHARED", model="qian2014")))  # fmt: skip
+        session.add(
+            FitRow(
+                id="f-first",
+                matrix=first,
+                serial="SHARED",
+                model="qian2014",
+                result=RESULT,
+                created_at=OLD,
+                set=SetRow(serial="SHARED", model="qian2014"),
+            )
+        )
     age(lab, 40)
     (one,) = shown(lab)["items"]
     assert (one["matrix"], one["bytes"]) == (first, 0)

@@ -12,9 +12,17 @@ NAMED = ("hooks.example", "mes.example:8443", "http://10.0.0.7:8080", "127.0.0.1
 
 @pytest.mark.parametrize(
     "url",
-    ["https://hooks.example/a?b=c", "https://HOOKS.example:443/", "https://mes.example:8443", "http://10.0.0.7:8080/x",
-     "http://127.0.0.1:9000/", "https://127.0.0.1:9000/", "http://localhost/", "http://[::1]:9000/"],
-)  # fmt: skip
+    [
+        "https://hooks.example/a?b=c",
+        "https://HOOKS.example:443/",
+        "https://mes.example:8443",
+        "http://10.0.0.7:8080/x",
+        "http://127.0.0.1:9000/",
+        "https://127.0.0.1:9000/",
+        "http://localhost/",
+        "http://[::1]:9000/",
+    ],
+)
 def test_a_host_that_was_named_is_reached(url: str) -> None:
     assert allowed(url, NAMED)
 

@@ -30,19 +30,28 @@ from ident.run import Run, Specimen
 Array = NDArray[np.float64]
 RATE, SAMPLES = 200.0, 100
 UNITS = {
-    "command": "m", "displacement": "m", "velocity": "m/s", "acceleration": "m/s^2", "force": "N",
-    "load_pressure": "Pa", "spool": "V", "supply_pressure": "Pa", "drive_force": "N",
-}  # fmt: skip
+    "command": "m",
+    "displacement": "m",
+    "velocity": "m/s",
+    "acceleration": "m/s^2",
+    "force": "N",
+    "load_pressure": "Pa",
+    "spool": "V",
+    "supply_pressure": "Pa",
+    "drive_force": "N",
+}
 KINDS = ("finite", "saturated", "unstable", "noise-free")
 
 
 def composed() -> list[str]:
     """Twenty machines of stages, of every controller, valve, flow and load, by their names."""
     places = {
-        "controller": ("none", "p", "pi", "pid", "cascade"), "of": ("displacement", "velocity", "force"),
-        "valve": ("first", "second", "none"), "flow": ("linear", "square_root", "to_speed", "none"),
+        "controller": ("none", "p", "pi", "pid", "cascade"),
+        "of": ("displacement", "velocity", "force"),
+        "valve": ("first", "second", "none"),
+        "flow": ("linear", "square_root", "to_speed", "none"),
         "load": ("mass_spring_damper", "none", "measured_force"),
-    }  # fmt: skip
+    }
     names: list[str] = []
     for choice in product(*places.values()):
         said = dict(zip(places, choice, strict=True))
@@ -68,10 +77,19 @@ def matrix_of(model: str) -> Matrix:
         rng = np.random.default_rng([7, number])
         channels = {name: rng.standard_normal(SAMPLES) for name in UNITS}
         channels["supply_pressure"] = 2.1e7 + 1e5 * channels["supply_pressure"]
-        runs.append(Run(
-            f"r{number}", "", RATE, channels, UNITS, specimen=Specimen(mass, 3e4, 10.0), gain=7.0, kind="blwn",
-            output=output,
-        ))  # fmt: skip
+        runs.append(
+            Run(
+                f"r{number}",
+                "",
+                RATE,
+                channels,
+                UNITS,
+                specimen=Specimen(mass, 3e4, 10.0),
+                gain=7.0,
+                kind="blwn",
+                output=output,
+            )
+        )
     return Matrix(Actuator("ANY", piston_area=5e-4, supply_pressure=2.1e7), tuple(runs))
 
 

@@ -14,10 +14,13 @@ PLANT, NOISE = linear.Plant(), 0.005
 
 
 @pytest.mark.full
-@pytest.mark.parametrize(("hidden", "equation", "true"), [
-    ({"entrained_air.alpha": 1.5, "entrained_air.Pr": 1.5e6}, "Ke = Ke + s * (Ke * (1 / (1 + (P / h)**2)))", 1.5),
-    ({"sensor_nonlinearity.s": 2e4}, "y_fb = y_fb + s * (x**3)", 2e4),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    ("hidden", "equation", "true"),
+    [
+        ({"entrained_air.alpha": 1.5, "entrained_air.Pr": 1.5e6}, "Ke = Ke + s * (Ke * (1 / (1 + (P / h)**2)))", 1.5),
+        ({"sensor_nonlinearity.s": 2e4}, "y_fb = y_fb + s * (x**3)", 2e4),
+    ],
+)
 def test_the_oil_and_what_the_loop_reads_are_places_too(hidden, equation, true):
     """Air in the oil multiplies a rate; a transducer that is not linear misleads the loop besides the record.
 

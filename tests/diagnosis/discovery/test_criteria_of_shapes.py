@@ -26,8 +26,9 @@ def terms() -> tuple[Term, ...]:
 
 def begun(kind: str, symbol: str) -> np.ndarray:
     """Where a shape of a kind of term begins."""
-    return np.array([shape.value for term in terms() if term.kind == kind for shape in term.shapes
-                     if shape.symbol == symbol])  # fmt: skip
+    return np.array(
+        [shape.value for term in terms() if term.kind == kind for shape in term.shapes if shape.symbol == symbol]
+    )
 
 
 DEVIATION = float(np.std(EVEN))

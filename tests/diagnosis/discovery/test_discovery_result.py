@@ -135,10 +135,14 @@ def test_what_the_terms_do_without_is_named_no_more() -> None:
     assert next(dispensable_sentence(needless)).endswith(told)
 
 
-@pytest.mark.parametrize("doubt", [
-    {"hypothesis": True}, {"instead_of": ("entrained_air",)},
-    {"contradicted": Contradiction("proposed_1", 0.1, 0.2, 3.0)},
-])  # fmt: skip
+@pytest.mark.parametrize(
+    "doubt",
+    [
+        {"hypothesis": True},
+        {"instead_of": ("entrained_air",)},
+        {"contradicted": Contradiction("proposed_1", 0.1, 0.2, 3.0)},
+    ],
+)
 def test_a_doubtful_term_takes_no_name_away(doubt: dict[str, Any]) -> None:
     term = replace(found(0.1).proposals[-1], **doubt)
     assert DiscoveryResult(proposals=(term,)).dispensable(("entrained_air",)) == ()

@@ -25,10 +25,14 @@ def test_a_column_is_to_the_bit_what_it_is_alone(window):
     """Of more terms than are answered at once; one that is no number is zero, and told apart."""
     rng = np.random.default_rng(6)
     record = SimpleNamespace(
-        run=SimpleNamespace(measured=rng.standard_normal(N)), rate=RATE, anchoring=Anchoring(window),
-        residual=rng.standard_normal(N), sensitivities=rng.standard_normal((N, 2)), free=rng.standard_normal((N, 1)),
+        run=SimpleNamespace(measured=rng.standard_normal(N)),
+        rate=RATE,
+        anchoring=Anchoring(window),
+        residual=rng.standard_normal(N),
+        sensitivities=rng.standard_normal((N, 2)),
+        free=rng.standard_normal((N, 1)),
         signals={"v": rng.standard_normal(N)},
-    )  # fmt: skip
+    )
     columns = Regressors.of(record, band=2 * np.pi * 4.0)
     shown = [rng.standard_normal(N) for _ in range(75)]
     shown[50] = np.full(N, np.inf)
@@ -62,6 +66,7 @@ def test_the_rows_of_a_regression_are_held_once(monkeypatch):
     tracemalloc.stop()
     assert peak < 1.2 * rows.nbytes
     assert sound.all()
-    expected = np.vstack([np.hstack([np.tile(w * answer, 5), np.tile(q * answer, 5), record.known])
-                          for w, q in ((1.0, 3.0), (2.0, 4.0))])  # fmt: skip
+    expected = np.vstack(
+        [np.hstack([np.tile(w * answer, 5), np.tile(q * answer, 5), record.known]) for w, q in ((1.0, 3.0), (2.0, 4.0))]
+    )
     assert np.array_equal(rows, expected)

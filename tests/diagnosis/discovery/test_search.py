@@ -234,10 +234,12 @@ def test_a_search_that_is_cut_says_so():
 
 def test_a_model_without_a_term_has_no_bounds_of_its_shapes():
     own = {
-        "name": "late", "place": "load", "equation": "R = R + s * (lag(v, T) - v)",
+        "name": "late",
+        "place": "load",
+        "equation": "R = R + s * (lag(v, T) - v)",
         "strength": {"symbol": "s", "unit": "N*s/m", "lower": -1e4, "upper": 1e4},
         "shape": {"T": {"unit": "s", "lower": 1e-4, "upper": 1e-2, "value": 1e-3}},
-    }  # fmt: skip
+    }
     settings = Settings(model="qian2014", custom=(own,), bounds={"late.T": (1e-4, 1e-2)})
     models = CandidateModels.of(machine(1), settings, (read_effect(own, model="qian2014"),))
     with_it, without = (models.fitness(effects).space.axes for effects in (("late",), ()))
@@ -295,9 +297,11 @@ def test_of_each_form_the_term_that_explains_most_is_set_beside_the_others(monke
 def test_a_term_that_closes_a_circle_with_those_before_is_not_tried():
     """The resistance hangs on the flow; a spool that moved with the load's force would have no state in between."""
     given = {
-        "name": "before", "place": "load", "equation": "R = R + s * Q",
+        "name": "before",
+        "place": "load",
+        "equation": "R = R + s * Q",
         "strength": {"symbol": "s", "unit": "N*s/m^3", "lower": -1e9, "upper": 1e9},
-    }  # fmt: skip
+    }
     models = CandidateModels.of(
         machine(1), Settings(model="qian2014", custom=(given,)), (read_effect(given, model="qian2014"),)
     )

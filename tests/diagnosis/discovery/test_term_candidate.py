@@ -14,9 +14,13 @@ from ident.diagnosis.discovery.term_candidate import TermCandidate
 
 @pytest.mark.parametrize(
     ("text", "at", "spread", "same"),
-    [("max(w - h, 0)", 1.05, 8.0, True), ("max(w - h, 0)", 1.2, 8.0, False), ("min(w + h, 0)", 1.0, 8.0, False),
-     ("sin(h * t)", 1.05, 1.1, False)],
-)  # fmt: skip
+    [
+        ("max(w - h, 0)", 1.05, 8.0, True),
+        ("max(w - h, 0)", 1.2, 8.0, False),
+        ("min(w + h, 0)", 1.0, 8.0, False),
+        ("sin(h * t)", 1.05, 1.1, False),
+    ],
+)
 def test_what_was_refitted_from_about_there_is_not_refitted_again(text, at, spread, same):
     """The same equation with its threshold beside where it began; the next frequency of a wave is another."""
 

@@ -24,14 +24,21 @@ LADDER = (
 
 def term(number: int, error: float, shapes: int, instead_of: tuple[str, ...] = ()) -> Proposal:
     effect = {
-        "name": f"proposed_{number}", "place": "flow", "equation": [f"Q = Q + s * P**{number + 1}"],
+        "name": f"proposed_{number}",
+        "place": "flow",
+        "equation": [f"Q = Q + s * P**{number + 1}"],
         "strength": {"symbol": "s", "unit": f"m^3/s/Pa^{number + 1}", "lower": -1.0, "upper": 1.0},
-        "meaning": "proposed by search", "source": "proposed by search",
-    }  # fmt: skip
+        "meaning": "proposed by search",
+        "source": "proposed by search",
+    }
     return Proposal(
-        place=("flow",), equation=effect["equation"][0], effect=effect, shapes=shapes,
-        error={"fit": error, "verify": error}, instead_of=instead_of,
-    )  # fmt: skip
+        place=("flow",),
+        equation=effect["equation"][0],
+        effect=effect,
+        shapes=shapes,
+        error={"fit": error, "verify": error},
+        instead_of=instead_of,
+    )
 
 
 TERMS = (term(1, 0.02, 1), term(2, 0.01, 2))

@@ -155,9 +155,11 @@ def test_a_signal_that_follows_at_once_is_none_of_a_place():
 def test_friction_sticks_and_what_drives_does_not():
     """What turns with the sign of the mass's speed adds to dry friction, where it brakes: no sign chatters at rest."""
     for form, limit in (
-        (("load", "size along"), None), (("load", "friction with"), "Kp"), (("load", "fading friction"), "exp(-t / T)"),
+        (("load", "size along"), None),
+        (("load", "friction with"), "Kp"),
+        (("load", "fading friction"), "exp(-t / T)"),
         (("load", "friction at"), "exp(-((x - xm) / d)**2)"),
-    ):  # fmt: skip
+    ):
         term = next(one for one in every() if (one.place, one.kind) == form and one.limit)
         assert limit in (None, term.limit)
         assert term.text in (f"{term.limit} * sgn(v)", f"sgn(v) * {term.limit}")
