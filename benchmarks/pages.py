@@ -18,10 +18,11 @@ from typing import Any
 import httpx
 
 from benchmarks.table import Table
+from tests.running import CHROMIUM
 
 FIRST, WEIGHT, REDRAW = 1.0, 200_000, 0.1  # s, bytes without Vega, s
 VIEWS, BANDS, SECONDS = 5, 9, 2.0
-TOKEN, CHROMIUM = "a-token-for-benchmarks", "/usr/bin/chromium"
+TOKEN = "a-token-for-benchmarks"
 SERVE = """
 import sys
 from pathlib import Path

@@ -20,11 +20,12 @@ import numpy as np
 
 from app.matrices.levels import KEY
 from app.storage import Storage
-from benchmarks.pages import CHROMIUM, TOKEN, served
+from benchmarks.pages import TOKEN, served
 from benchmarks.table import Table
 from benchmarks.uploads import RATE, RUNS, arrays, upload
 from ident.decimation.levels import write_levels
 from ident.run import Run
+from tests.running import CHROMIUM
 
 SECONDS = 30.0
 LONG = 4_000_000  # samples of each channel of the long run

@@ -9,7 +9,9 @@ from itertools import pairwise
 from ident.diagnosis.alternative_structures import AlternativeModel, alternative_explanations
 from ident.diagnosis.ambiguity import alternatives, competing
 from ident.diagnosis.budget import SearchBudget
-from ident.diagnosis.ladder import Rungs
+from ident.diagnosis.candidate_models import CandidateModels
+from ident.diagnosis.fitted_model import FittedModel
+from ident.diagnosis.ladder import Rungs, without_effect
 from ident.diagnosis.model_comparison import verified_change
 from ident.diagnosis.result import Explanation, Suspect
 from ident.diagnosis.run_consistency import inconsistent_parameters
@@ -17,7 +19,7 @@ from ident.diagnosis.selection import Selection
 from ident.diagnosis.sentences import delay_sentence, inconsistent_sentence
 from ident.diagnosis.stages import CONSISTENCY, LAGS, NOISE, OTHERS, VERIFY, Stages
 from ident.diagnosis.total_delay import lag_ambiguities, total_delay
-from ident.diagnosis.verdict import Findings
+from ident.diagnosis.verdict import Findings, confirms
 from ident.diagnosis.verification import VerifyChange
 from ident.progress import Progress
 from ident.run import MOTIONS
@@ -39,7 +41,7 @@ def challenged(
     residual = in_time(lambda: models.last_residual(fitted))
     if residual is None:
         stages.miss(NOISE)
-    verify = in_time(lambda: tuple(_verify_changes(steps)))
+    verify = in_time(lambda: tuple(_verify_changes(models, steps)))
     if verify is None:
         stages.miss(VERIFY)
     return Findings(
@@ -57,12 +59,27 @@ def challenged(
     )
 
 
-def _verify_changes(steps: Rungs) -> Iterator[VerifyChange]:
-    """The change of the validation error with each effect of the ladder, between rungs that are stable."""
+def _verify_changes(models: CandidateModels, steps: Rungs) -> Iterator[VerifyChange]:
+    """The change of the validation error with each effect of the ladder, between rungs that are stable.
+
+    A step says little of its own effect where its parameters made up for effects that were added later. So where
+    validation data do not confirm an effect at its step, they are asked again given all the others.
+    """
     stable = [(added, refit) for added, refit in steps if refit.stable]
+    last = stable[-1][1] if stable else None
     for (_, less), (added, more) in pairwise(stable):
-        if added and (change := verified_change(added, less, more)):
-            yield change
+        change = verified_change(added, less, more) if added else None
+        if change is not None:
+            given_others = None if more is last or confirms(change) else _given_others(models, change.effect, last)
+            yield given_others if given_others is not None and confirms(given_others) else change
+
+
+def _given_others(models: CandidateModels, effect: str, last: FittedModel | None) -> VerifyChange | None:
+    """The change of the validation error with an effect of the last model, given all others of that model."""
+    if last is None or effect not in last.effects:
+        return None
+    others = tuple(name for name in last.effects if name != effect)
+    return verified_change(effect, models.refit(others, without_effect(last.values, effect)), last)
 
 
 def other_machines(

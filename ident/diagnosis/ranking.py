@@ -18,6 +18,7 @@ from ident.diagnosis.free_shapes import trial_from_everywhere
 from ident.diagnosis.model_comparison import finite_everywhere
 from ident.diagnosis.screening import Prediction, predict
 from ident.diagnosis.tie_breaking import stable_minimum, stable_ranking
+from ident.fit.wider_bounds import within_ranges
 from ident.parallel import each
 from ident.progress import Expected, Progress, Report, counted
 
@@ -215,10 +216,33 @@ def _side_by_side(
 def _predictions(models: CandidateModels, base: FittedModel, names: Sequence[str], report: Report) -> list[Prediction]:
     """The predictions of all effects, the best first."""
     report(Progress("predicting", 0, 1))
-    found = stable_ranking(predict(models, base, sorted(names, key=models.simplicity)), lambda one: one.after.score)
+    found = stable_ranking(_predicted(models, base, sorted(names, key=models.simplicity)), lambda one: one.after.score)
     first = tuple(Expected(one.effect, base.error * one.remaining) for one in found[: CRITERIA.ranking.finalists])
     report(Progress("predicting", 1, 1, base.error, first))
     return found
+
+
+def _predicted(models: CandidateModels, base: FittedModel, names: Sequence[str]) -> list[Prediction]:
+    """What adding each effect promises; also from within the ranges that a search begins with, if that promises more.
+
+    A mass or a lag that was fitted far beyond its range may make up for the missing effect: no step leads from there
+    to the machine with the effect.
+    """
+    predicted, within = predict(models, base, names), _within_ranges(models, base)
+    if within is None:
+        return predicted
+    of_within = (
+        replace(one, before=of.before) for one, of in zip(predict(models, within, names), predicted, strict=True)
+    )
+    return [min(both, key=lambda one: one.after.score) for both in zip(predicted, of_within, strict=True)]
+
+
+def _within_ranges(models: CandidateModels, base: FittedModel) -> FittedModel | None:
+    """The same model fitted within the ranges that a search begins with; None where it lies within them."""
+    given = {*models.given.fixed, *models.given.bounds}
+    start = within_ranges(models.fitness(base.effects), base.values, given)
+    refit = None if start is None else models.refit(base.effects, start)
+    return refit if refit is not None and refit.finite else None
 
 
 def _finalists(

@@ -128,6 +128,11 @@ def shows_nothing(change: VerifyChange, criteria: Criteria = CRITERIA) -> bool:
     return not contradicts(change, criteria) and not is_shown_without_mean and fall <= chance < change.due - fall
 
 
+def confirms(change: VerifyChange, criteria: Criteria = CRITERIA) -> bool:
+    """Whether validation data confirm an effect: they neither contradict it nor fail to show it."""
+    return not contradicts(change, criteria) and not shows_nothing(change, criteria)
+
+
 def contradiction(change: VerifyChange | None) -> Contradiction | None:
     """The contradiction of an effect or a term by validation data; None where they do not contradict it."""
     return None if change is None or not contradicts(change) else change.contradiction()

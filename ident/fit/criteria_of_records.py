@@ -91,6 +91,10 @@ class ReducedRecords:
     """[vectors] Of which the first is a leading one, evaluated exactly where it is doubtful. Why: the leading ones are
     the parents of the next generation, and each costs as much as many fast ones.
     Test: test_criteria_of_reduction.py::test_doubtful_vectors_are_evaluated_exactly_where_they_lead_or_are_few"""
+    simulated: int = 400_000
+    """[samples of all runs × vectors] That a generation simulates of its doubtful leading vectors. Why: a search of a
+    record of few samples then sees most of them exactly, and all its generations take about a second more.
+    Test: test_criteria_of_reduction.py::test_of_few_samples_more_of_the_doubtful_vectors_are_evaluated_exactly"""
     few_samples: int = 100_000
     """[samples] Of all runs up to which held commands are simulated for whole populations. Why: a search of more takes
     minutes.

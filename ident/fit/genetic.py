@@ -99,7 +99,7 @@ def paper_step(state: State, errors: Errors, options: dict[str, float]) -> State
 
 def default_step(state: State, errors: Errors, options: dict[str, float]) -> State:
     """One generation of the default search: elite kept, tournament parents, blend crossover, mutation that narrows."""
-    population, cost, rng = _evaluated(state, errors)
+    population, cost, rng = _evaluated(state, errors, int(options["elite"]))
     size, axes = population.shape
     order = np.argsort(cost, kind="stable")
     generation, last = len(state["history"]), int(options["generations"]) - 1
@@ -120,11 +120,14 @@ def default_step(state: State, errors: Errors, options: dict[str, float]) -> Sta
     return _next(state, population, cost, np.concatenate([elite, children]), rng, best=elite[0])
 
 
-def _evaluated(state: State, errors: Errors) -> tuple[Array, Array, np.random.Generator]:
+def _evaluated(state: State, errors: Errors, elite: int = 0) -> tuple[Array, Array, np.random.Generator]:
+    """The population, its costs and the generator. The first vectors are the `elite` of the last generation: their
+    costs are known, and may be more exact than those of all others."""
     population = np.array(state["population"])
     rng = np.random.default_rng()
     rng.bit_generator.state = state["rng"]
-    return population, errors(population), rng
+    known = np.sort([error for last in state["history"][-1:] for error in last["errors"]], kind="stable")[:elite]
+    return population, np.concatenate([known, errors(population[len(known) :])]), rng
 
 
 def _next(

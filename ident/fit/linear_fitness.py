@@ -67,9 +67,7 @@ class LinearFitness:
         The steps of a held command have power far beyond the band of any noise: what a model does there is not seen.
         Long records, and those with a first state of each model's own, would take too long.
         """
-        long = sum(run.length for run in self.runs) > _OF.few_samples or any(
-            run.begins == "moving" for run in self.runs
-        )
+        long = self._samples > _OF.few_samples or any(run.begins == "moving" for run in self.runs)
         return long or not any(run.hold == "zoh" and run.kind not in _IN_BAND for run in self.runs)
 
     def errors(self, points: Array) -> Array:
@@ -82,16 +80,36 @@ class LinearFitness:
         errors, doubt = self._fast(points) if self._reduces else (self._one_by_one(points), np.zeros(len(points)))
         errors[~self._followed(points)] = UNSTABLE
         self.unstable += int(np.sum(errors >= UNSTABLE))
-        few = max(1, len(points) // _OF.leading)
+        few = max(1, len(points) // _OF.leading, _OF.simulated // self._samples)
         leading = np.argsort(errors, kind="stable")[:few]
         doubtful = set(leading[(doubt > _OF.trusted * errors)[leading] & (errors[leading] < UNSTABLE)])
         wrong = np.flatnonzero((doubt > _OF.wrong * errors) & (errors < UNSTABLE))
         if len(wrong) <= few:  # where most are, as in a search without bounds, only the leading ones are worth it
             doubtful |= set(wrong)
-        for index in sorted(doubtful):
-            exact = self.exact(points[index], sensitivities=False).error
-            errors[index] = exact if np.isfinite(exact) else UNSTABLE
+        if doubtful:
+            again = sorted(doubtful)
+            errors[again] = self._exactly(points[again])
         return errors
+
+    def _is_doubtful(self, point: Array) -> bool:
+        """Whether the reduced runs of few samples may be wrong about a model: about one far slower than the band."""
+        if not self._reduces or self._samples > _OF.few_samples:
+            return False
+        errors, doubt = self._fast(point[None])
+        return bool(doubt[0] > _OF.wrong * errors[0])
+
+    def _exactly(self, points: Array) -> Array:
+        """Errors from the time domain, (v,)."""
+        if any(run.mean_counts for run in self.runs):
+            exact = np.array([self.exact(point, sensitivities=False).error for point in points])
+            return np.where(np.isfinite(exact), exact, UNSTABLE)
+        self.evaluations += len(points)
+        return self._one_by_one(points)
+
+    @cached_property
+    def _samples(self) -> int:
+        """Of all runs."""
+        return sum(run.length for run in self.runs)
 
     def _followed(self, points: Array) -> NDArray[np.bool_]:
         """Which vectors a simulation can follow, (v,).
@@ -189,8 +207,8 @@ class LinearFitness:
     def optimum(
         self, start: Array, way: Way | None = None, report: Steps = lambda _count, _error: None, roughly: bool = False
     ) -> tuple[Array, Local]:
-        """The optimum near a start; `roughly` of the reduced runs."""
-        evaluate = self.approximate if roughly else self.exact
+        """The optimum near a start; `roughly` of the reduced runs, where these say what the records say there."""
+        evaluate = self.approximate if roughly and not self._is_doubtful(start) else self.exact
         return levenberg_marquardt(evaluate, start, way, report, spans=self.space.spans)
 
     @property

@@ -221,15 +221,27 @@ def normal_matrices(run: Run, model: LinearModel, strides: Array) -> NormalMatri
 
 def errors_of(run: Run, model: LinearModel) -> Array:
     """Eq. (17) of each model of a batch, (v,), infinite where it ran away: many at once, without sensitivities."""
-    if run.begins == "moving":  # each has decays of its own
-        parts = (LinearModel(model.system[..., i : i + 1]) for i in range(len(model.B)))
-        return np.array([normal_matrices(run, part, np.empty(0)).error for part in parts])
+    if run.begins == "moving":
+        return _errors_moving(run, discretise(model, run.sample_rate, run.hold))
     measured, sums = run.centred, np.zeros((2, len(model.B)))
     for rows, first, last in responses(_begun(run, model), at_nodes(run)):
         residual = measured[first:last, None] - rows[: last - first, : len(model.B)]
         sums += residual.sum(axis=0), np.einsum("nv,nv->v", residual, residual)
     found = np.sqrt(np.maximum(sums[1] - sums[0] ** 2 / run.length, 0.0) / run.power)
     return np.where(np.isfinite(found), found, np.inf)
+
+
+def _errors_moving(run: Run, systems: Recursion) -> Array:
+    """The same of a record that starts moving: each model has decays of its own first state, which fit best."""
+    n, count = systems.C.shape[1], len(systems.D)
+    places = np.concatenate([np.arange(count)[:, None], count + np.arange(count * n).reshape(count, n)], axis=1)
+    both = systems.beside(_releases(systems)).at(places.ravel())  # each model, then its decays
+    sums = np.zeros((count, n + 2, n + 2))
+    for rows, first, last in responses(both, at_nodes(run)):
+        outputs = rows[: last - first, : both.D.size].reshape(-1, count, n + 1)
+        add_products(outputs, np.repeat(run.centred[first:last, None], count, axis=1), 0, sums)
+    found = normal_matrices_of([run] * count, completed(sums, np.empty(0))[:, None], 0)
+    return np.array([one.error for one in found])
 
 
 def normal_matrices_of(runs: Sequence[Run], blocks: Array, p: int) -> list[NormalMatrices]:
@@ -333,12 +345,17 @@ def _begun(run: Run, model: LinearModel) -> Recursion:
 
 def _with_releases(systems: Recursion) -> Recursion:
     """The batch and, behind it, the first system without input, released from each unit state."""
-    n = systems.C.shape[1]
-    scale = np.abs(systems.gamma[0]).sum(axis=0)
-    scale = np.where(scale > 0, scale, scale.max())
-    still = np.zeros((n, *systems.gamma.shape[1:]))
-    phi, C = np.repeat(systems.phi[:1], n, axis=0), np.repeat(systems.C[:1], n, axis=0)
-    return systems.beside(Recursion(phi, still, C, np.zeros(n), np.diag(scale)))
+    return systems.beside(_releases(systems.part(0, 1)))
+
+
+def _releases(systems: Recursion) -> Recursion:
+    """Each system of a batch without input, released from each unit state: those of the first one first."""
+    count, n = systems.C.shape
+    scale = np.abs(systems.gamma).sum(axis=1)
+    scale = np.where(scale > 0, scale, scale.max(axis=1, keepdims=True))
+    of_each = systems.at(np.repeat(np.arange(count), n))
+    start = (scale[:, :, None] * np.eye(n)).reshape(count * n, n)
+    return Recursion(of_each.phi, np.zeros_like(of_each.gamma), of_each.C, np.zeros(count * n), start)
 
 
 def _products(run: Run, systems: Recursion, strides: Array) -> Array:

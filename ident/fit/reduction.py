@@ -14,6 +14,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import lru_cache
 
 import numpy as np
 import scipy.fft
@@ -181,7 +182,7 @@ def _gram(run: Run, basis: Basis) -> tuple[Array, float]:
 
     Only the products of the filters with command, record and 1 are summed sample by sample; see :func:`_products`.
     """
-    filters, command = discretise(basis.filters, run.sample_rate, run.hold), at_nodes(run)
+    filters, command = _recursion(basis, run.sample_rate, run.hold), at_nodes(run)
     inputs = command.shape[1]
     if run.begins == "standing":
         filters = replace(filters, start=basis.filters.standing(run.command[0], 0.0))
@@ -205,6 +206,12 @@ def _gram(run: Run, basis: Basis) -> tuple[Array, float]:
     order = [*range(columns), count, *range(columns, count), count + 1]
     slowest = float(1.0 - np.abs(systems.phi[:, 0, 0]).max() ** 2)  # a filter's sums are divided by this
     return gram[np.ix_(order, order)], np.finfo(float).eps / slowest
+
+
+@lru_cache(maxsize=2)
+def _recursion(basis: Basis, sample_rate: float, hold: str) -> Recursion:
+    """The filters in discrete time: the same for all runs of a rate, and as dear as half of what a run takes."""
+    return discretise(basis.filters, sample_rate, hold)
 
 
 def _products(systems: Recursion, sums: Array, last: Array, record: Array, pairs: int) -> Array:

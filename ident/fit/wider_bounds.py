@@ -90,6 +90,19 @@ def searched_beyond(fitness: Fitness, given: Collection[str], found: Collection[
     return [p.in_equations for p in own if not p.of and p.unit in WIDENED and not {p.name, p.in_equations} & {*given}]
 
 
+def within_ranges(fitness: Fitness, values: Mapping[str, float], given: Collection[str]) -> dict[str, float] | None:
+    """The values, moved into the ranges that the objective searches; None where they lie within them.
+
+    Of the parameters that a fit searches beyond their ranges, by the equations' names; `given` as above.
+    """
+    bounds = fitness.space.bounds(values)
+    beyond = [name for name in searched_beyond(fitness, given, values) if _is_beyond(values[name], *bounds[name])]
+    if not beyond:
+        return None
+    inside = fitness.space.values(fitness.space.point(values)[None])
+    return {**values, **{name: float(value[0]) for name, value in inside.items()}}
+
+
 def _is_beyond(value: float, lower: float, upper: float) -> bool:
     """Whether a value lies outside of its bounds, but for rounding."""
     least = EPSILON * (upper - lower)

@@ -12,6 +12,8 @@ through its neighbours,
 
 from __future__ import annotations
 
+from functools import lru_cache
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -92,8 +94,16 @@ def not_repeated(signal: Array, frequency: float) -> float:
 
 def _windowed(signal: Array) -> Array:
     """A signal less its mean under Blackman's window, whose side lobes lie 58 dB below its main lobe (Harris 1978)."""
-    phase = 2 * np.pi * np.arange(len(signal)) / len(signal)
-    return np.asarray((signal - signal.mean()) * (0.42 - 0.5 * np.cos(phase) + 0.08 * np.cos(2 * phase)))
+    return np.asarray((signal - signal.mean()) * _blackman(len(signal)))
+
+
+@lru_cache(maxsize=2)
+def _blackman(length: int) -> Array:
+    """The window of Blackman (Harris 1978), (n,): the runs of a test matrix have few lengths."""
+    phase = 2 * np.pi * np.arange(length) / length
+    window = np.asarray(0.42 - 0.5 * np.cos(phase) + 0.08 * np.cos(2 * phase))
+    window.flags.writeable = False
+    return window
 
 
 def _between_bins(power: Array, highest: int) -> float:

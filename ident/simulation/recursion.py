@@ -53,6 +53,10 @@ class Recursion:
         """The systems first to last − 1 of the batch."""
         return Recursion(*(a[first:last] for a in self._parts))
 
+    def at(self, places: NDArray[np.int64]) -> Recursion:
+        """The systems at some places of the batch, in that order."""
+        return Recursion(*(a[places] for a in self._parts))
+
     def beside(self, other: Recursion) -> Recursion:
         """The systems of both batches in one."""
         return Recursion(*(np.concatenate(pair) for pair in zip(self._parts, other._parts, strict=True)))

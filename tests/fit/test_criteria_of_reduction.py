@@ -77,10 +77,15 @@ class Fast(LinearFitness):
     def _fast(self, points: np.ndarray) -> Any:
         return np.arange(1.0, 1.0 + 1e-9 * len(points), 1e-9)[: len(points)], self.doubts
 
-    def exact(self, *_: Any, **__: Any) -> Any:
-        """Of one more vector."""
-        self.exactly += 1
-        return SimpleNamespace(error=2.0)
+    def _exactly(self, points: np.ndarray) -> np.ndarray:
+        """Of so many vectors more."""
+        self.exactly += len(points)
+        return np.full(len(points), 2.0)
+
+
+def of_samples(count: int) -> Fast:
+    run = SimpleNamespace(length=count, begins="moving")
+    return Fast(None, None, (run,), SimpleNamespace(followed=False), None)
 
 
 @pytest.mark.parametrize(
@@ -89,11 +94,19 @@ class Fast(LinearFitness):
 )
 def test_doubtful_vectors_are_evaluated_exactly_where_they_lead_or_are_few(leading, others, exactly):
     """Of a hundred the first twentieth leads; three others are fewer than that."""
-    fitness = Fast(None, None, (), SimpleNamespace(followed=False), None)
+    fitness = of_samples(1_000_000)
     fitness.doubts = np.array([leading] * 5 + [0.0] * 92 + [others] * 3)
     fitness.doubts[5:9] = leading
     fitness.errors(np.zeros((100, 1)))
     assert fitness.exactly == exactly
+
+
+def test_of_few_samples_more_of_the_doubtful_vectors_are_evaluated_exactly():
+    """Of 20,000 samples twenty vectors a generation, where every one of a hundred is doubtful."""
+    fitness = of_samples(20_000)
+    fitness.doubts = np.ones(100)
+    fitness.errors(np.zeros((100, 1)))
+    assert fitness.exactly == 20
 
 
 @pytest.mark.parametrize(("samples", "simulated"), [(85_000, True), (115_000, False)])

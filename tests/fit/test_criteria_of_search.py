@@ -59,7 +59,10 @@ def test_the_best_vectors_of_a_generation_stay(settings, elite):
 def mutated(generation: int) -> np.ndarray:
     """The changes of the elements that a generation of equal vectors mutates, of all others zero."""
     options = usual()
-    state = begin(AXES, 0, options) | {"population": np.full((200, AXES), 0.5).tolist(), "history": [{}] * generation}
+    state = begin(AXES, 0, options) | {
+        "population": np.full((200, AXES), 0.5).tolist(),
+        "history": [{"errors": [0.0] * 200}] * generation,
+    }
     return np.array(default_step(state, rough, options)["population"])[10:] - 0.5
 
 
