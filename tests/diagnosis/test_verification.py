@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 from scipy.signal import lfilter
 
+from ident.diagnosis import challenges
 from ident.diagnosis.recommended import recommended
 from ident.diagnosis.result import Diagnosis
 from ident.diagnosis.sentences import _shows_nothing
@@ -169,3 +171,44 @@ def test_what_validation_data_show_nothing_of_is_said_and_not_named():
 def test_with_nothing_missing_nothing_stands():
     found = diagnose(motor(10), settings=Settings(model="motor"), most=1)
     assert (found.verdict.effects, found.verdict.standing) == ((), "nothing")
+
+
+class Ladder:
+    """Three models: the fitted one, with a constant force, and with friction as well; what each change does."""
+
+    def __init__(self, alone: float, given_friction: float) -> None:
+        self.base, self.force, self.both = (
+            SimpleNamespace(effects=effects, stable=True, values={})
+            for effects in ((), ("static_load",), ("static_load", "friction"))
+        )
+        self.friction = SimpleNamespace(effects=("friction",), stable=True, values={})
+        self.changes = {
+            ((), ("static_load",)): alone,
+            (("static_load",), ("static_load", "friction")): 0.1,
+            (("friction",), ("static_load", "friction")): given_friction,
+        }
+
+    def refit(self, effects: tuple[str, ...], _start: object) -> SimpleNamespace:
+        """The model of some effects."""
+        assert effects == ("friction",)
+        return self.friction
+
+    def verified_change(self, effect: str, less: SimpleNamespace, more: SimpleNamespace) -> VerifyChange:
+        """The change of an error of 0.4 by an effect, to a hundredth."""
+        return VerifyChange(effect, 0.4, self.changes[less.effects, more.effects], 0.01)
+
+    @property
+    def steps(self) -> list:
+        return [(None, self.base), ("static_load", self.force), ("friction", self.both)]
+
+
+@pytest.mark.parametrize(("alone", "given_friction", "after"), [(0.5, 0.2, 0.2), (0.5, 0.6, 0.5), (0.3, 0.6, 0.3)])
+def test_an_effect_that_validation_data_confirm_only_given_the_others_is_confirmed(
+    monkeypatch, alone, given_friction, after
+):
+    """A constant force alone may make up for friction, and harms other data. Given the friction it does not."""
+    ladder = Ladder(alone, given_friction)
+    monkeypatch.setattr(challenges, "verified_change", ladder.verified_change)
+    force, friction = challenges._verify_changes(ladder, ladder.steps)
+    assert (force.effect, force.after) == ("static_load", after)
+    assert friction.after == 0.1
