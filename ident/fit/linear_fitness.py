@@ -207,7 +207,7 @@ class LinearFitness:
     def optimum(
         self, start: Array, way: Way | None = None, report: Steps = lambda _count, _error: None, roughly: bool = False
     ) -> tuple[Array, Local]:
-        """The optimum near a start; `roughly` of the reduced runs, where these say what the records say there."""
+        """The optimum near a start; `roughly` of the reduced runs, where these are as good as the records."""
         evaluate = self.approximate if roughly and not self._is_doubtful(start) else self.exact
         return levenberg_marquardt(evaluate, start, way, report, spans=self.space.spans)
 
