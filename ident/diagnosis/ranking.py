@@ -223,7 +223,7 @@ def _predictions(models: CandidateModels, base: FittedModel, names: Sequence[str
 
 
 def _predicted(models: CandidateModels, base: FittedModel, names: Sequence[str]) -> list[Prediction]:
-    """What adding each effect promises; also from within the ranges that a search begins with, if that promises more.
+    """The prediction of each effect, also from within the ranges that a search begins with, if that promises more.
 
     A mass or a lag that was fitted far beyond its range may make up for the missing effect: no step leads from there
     to the machine with the effect.
