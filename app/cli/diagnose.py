@@ -100,7 +100,7 @@ def diagnose(
     from ident.custom.definition import read_effect, together
     from ident.diagnosis.criteria import CRITERIA
     from ident.diagnosis.unfitted import unfitted
-    from ident.fit.given import with_candidates_given
+    from ident.fit.parameter_bounds import with_candidates_given
     from ident.fit.settings import Settings
     from ident.readers import read_matrix
     from ident.time_budget import TimeBudget

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import Protocol
 
 from app.tables import LimitRow, SetRow
-from ident.fit.sheet import PREFIX
+from ident.fit.sheet_quantity import PREFIX
 
 
 class Bound(Protocol):

@@ -14,7 +14,7 @@ from app.tables import SetRow, ValueRow
 from app.verdicts.at_condition import at_condition
 from ident.bench.acceptance import QUANTITIES
 from ident.design.at_condition import condition_value
-from ident.fit.sheet import PREFIX
+from ident.fit.sheet_quantity import PREFIX
 from ident.rig.conditions import TEMPERATURE
 from schemas.limits import JudgedView, LineVerdictView, SheetLine, SheetView
 

@@ -16,7 +16,7 @@ from ident.bench.position_error import position_error
 from ident.bench.quantity import Found
 from ident.bench.straightness import of_table
 from ident.errors import Unusable
-from ident.fit.sheet import SheetQuantity
+from ident.fit.sheet_quantity import SheetQuantity
 from ident.readers.strict_yaml import read_yaml
 from ident.units.quantity import quantity
 from ident.words.nearest import did_you_mean

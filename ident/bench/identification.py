@@ -27,16 +27,16 @@ from ident.bench.residual import Residual
 from ident.bench.speed_table import MONOTONE
 from ident.custom.definition import preset_with
 from ident.effects.effect import off_values
-from ident.fit.ends import distinct
 from ident.fit.far_bounds import far_from
-from ident.fit.given import of_model
+from ident.fit.local_optima import distinct
+from ident.fit.parameter_bounds import of_model
 from ident.fit.result import Estimate, FitResult, RunError, Undetermined
 from ident.fit.run_errors import rmse_of
+from ident.fit.run_sizes import typical
 from ident.fit.search import Search, State, evolution, options_of
 from ident.fit.settings import Settings
 from ident.fit.space import Axis, Space
 from ident.fit.summary import HARDLY
-from ident.fit.typical import typical
 from ident.matrix import Matrix
 from ident.parallel import each
 from ident.parameter import Parameter, Starts

@@ -17,7 +17,7 @@ from ident.bench.model import Model
 from ident.bench.observed import Observed
 from ident.bench.residual import Residual
 from ident.fit.criteria import FIT_CRITERIA
-from ident.fit.ends import End, parted
+from ident.fit.local_optima import End, parted
 
 _OF = BENCH_CRITERIA.fits
 _ASTRAY = "No member of the search leads as near to the records as the procedures: the fit starts from their values."

@@ -9,7 +9,7 @@ from ident.custom.definition import Definition
 from ident.diagnosis.parameter_estimate import ParameterEstimate
 from ident.diagnosis.result import Diagnosis
 from ident.effects import CATALOGUE, unknown
-from ident.fit.extended import extended
+from ident.fit.added_effects import extended
 from ident.fit.settings import Settings
 
 Kept = Callable[[], Mapping[str, Definition]]
@@ -65,7 +65,7 @@ def with_named(
     """The settings of a fit with effects by name, and with all effects that `custom` defines.
 
     A name is first sought in the catalogue and the definitions, then in the `diagnosis`, then among the effects
-    that are `kept`, which are read only then. Raises Unusable as :func:`ident.fit.extended.extended`.
+    that are `kept`, which are read only then. Raises Unusable as :func:`ident.fit.added_effects.extended`.
     """
     known = {effect.name for effect in CATALOGUE} | {str(one["name"]) for one in (*settings.custom, *custom)}
     effects: list[str] = []

@@ -7,8 +7,8 @@ from typing import Any, TypedDict, cast
 
 from ident.custom.definition import definition_of, preset_with
 from ident.errors import Unusable
-from ident.fit.extended import extended
-from ident.fit.given import Value, bounds_in_si, values_in_si, with_candidates
+from ident.fit.added_effects import extended
+from ident.fit.parameter_bounds import Value, bounds_in_si, values_in_si, with_candidates
 from ident.fit.settings import Settings
 from ident.preprocessing import off_steps
 from ident.words.nearest import did_you_mean

@@ -15,13 +15,13 @@ from numpy.typing import NDArray
 from ident.errors import Unusable
 from ident.fit import genetic
 from ident.fit.criteria import FIT_CRITERIA
-from ident.fit.ends import End, distinct
 from ident.fit.fitness import Fitness, Local
-from ident.fit.given import of_model
 from ident.fit.identification import CANDIDATES, Identification
 from ident.fit.levenberg_marquardt import STEPS
 from ident.fit.linear_fitness import LinearFitness
+from ident.fit.local_optima import End, distinct
 from ident.fit.multistart import Optimum
+from ident.fit.parameter_bounds import of_model
 from ident.fit.reduction import Basis, excited_band
 from ident.fit.result import FitResult
 from ident.fit.search import State

@@ -9,9 +9,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ident.fit.criteria import FIT_CRITERIA
-from ident.fit.ends import End, agreeing, at_bound, rivals, valley
 from ident.fit.fitness import Fitness, Local
 from ident.fit.levenberg_marquardt import STEPS
+from ident.fit.local_optima import End, agreeing, at_bound, rivals, valley
 from ident.fit.result import Starts
 from ident.fit.simulated_fitness import SimulatedFitness
 from ident.fit.space import Space

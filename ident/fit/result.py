@@ -8,7 +8,7 @@ from dataclasses import dataclass, field, replace
 from typing import Any
 
 from ident.errors import Unusable
-from ident.fit.sheet import SheetQuantity
+from ident.fit.sheet_quantity import SheetQuantity
 from ident.matrix import Actuator, Matrix, StepOutcome
 from ident.plain import UNWRITTEN, WHERE_KNOWN, Misfit, read, written
 from ident.presets.description import description

@@ -19,16 +19,16 @@ from ident.cached import cached_property
 from ident.chain.chain import Chain, integrates, linear_model
 from ident.chain.conditions import conditions
 from ident.effects.effect import Effect
-from ident.fit.anchoring import Anchoring
 from ident.fit.criteria import FIT_CRITERIA
 from ident.fit.first_guesses import first_position, in_order, order_stays, with_followers
+from ident.fit.initial_state_estimation import Least, Settling, better
 from ident.fit.modes import extreme, fastest, motion
+from ident.fit.multiple_shooting import Anchoring
 from ident.fit.normal_matrices import NormalMatrices, at_point, block_length, first_state, normal_matrices_of
 from ident.fit.products import add_block_products, add_products, completed
 from ident.fit.reduction import excited_band
 from ident.fit.reversals import Reversals
-from ident.fit.settling import Least, Settling, better
-from ident.fit.standing import Held, standing
+from ident.fit.steady_states import Held, standing
 from ident.matrix import Matrix
 from ident.parallel import LEAST_SHARED, cores, each
 from ident.presets import Preset

@@ -17,10 +17,10 @@ from ident.beginning import beginning
 from ident.diagnosis.candidate_models import CandidateModels
 from ident.fit.first_guesses import begins_about_middle, in_order, order_stays
 from ident.fit.identification import Identification, completed
+from ident.fit.initial_state_estimation import Least, better
 from ident.fit.normal_matrices import NormalMatrices
 from ident.fit.result import FitResult
 from ident.fit.settings import Settings
-from ident.fit.settling import Least, better
 from ident.fit.simulated_fitness import SimulatedFitness
 from ident.fit.simulated_runs import SimulatedRuns, every_run
 from ident.linear import LinearModel

@@ -10,9 +10,9 @@ import pytest
 
 from ident.fit import continued
 from ident.fit.continued import ContinuedIdentification
+from ident.fit.initial_state_estimation import Least, Settling, better
 from ident.fit.normal_matrices import NormalMatrices, block_length, normal_matrices_of
 from ident.fit.products import shares_of
-from ident.fit.settling import Least, Settling, better
 from ident.fit.simulated_runs import SimulatedRuns
 from ident.run import Run
 from tests.fit.windows_of import record

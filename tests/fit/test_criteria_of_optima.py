@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from ident.fit.ends import End, agreeing, at_bound, rivals, valley
 from ident.fit.far_bounds import far_from
+from ident.fit.local_optima import End, agreeing, at_bound, rivals, valley
 from ident.fit.modes import FOLLOWED
 from ident.fit.multistart import _all_ends, bad_runs, multistart
 from ident.fit.settings import Settings

@@ -7,7 +7,7 @@ import pytest
 from scipy.linalg import solve_discrete_are
 
 from ident.fit import identification
-from ident.fit.anchoring import Anchoring, gains
+from ident.fit.multiple_shooting import Anchoring, gains
 from ident.fit.result import Combination, FitResult
 from ident.fit.settings import Settings
 from ident.matrix import Actuator, Matrix

@@ -18,7 +18,7 @@ from ident.diagnosis.candidate_models import CandidateModels
 from ident.diagnosis.discovery.candidate_terms import signals_of
 from ident.diagnosis.discovery.run_data import RunData
 from ident.errors import Unusable
-from ident.fit.anchoring import Anchoring
+from ident.fit.multiple_shooting import Anchoring
 from ident.fit.settings import Settings
 from ident.fit.simulated_runs import every_run
 from ident.matrix import Actuator, Matrix

@@ -21,7 +21,7 @@ from ident.diagnosis.discovery.term_candidate import TermCandidate, term_candida
 from ident.diagnosis.discovery.term_evidence import TermEvidence, _of_run
 from ident.diagnosis.discovery.term_library import TermLibrary
 from ident.diagnosis.discovery.term_to_effect import definition, searched_bounds
-from ident.fit.anchoring import Anchoring
+from ident.fit.multiple_shooting import Anchoring
 from ident.presets import preset
 from ident.run import Run
 

@@ -13,7 +13,7 @@ from ident.diagnosis.discovery import regressors
 from ident.diagnosis.discovery.regression import _rows
 from ident.diagnosis.discovery.regressors import Regressors
 from ident.diagnosis.discovery.term import Term
-from ident.fit.anchoring import Anchoring
+from ident.fit.multiple_shooting import Anchoring
 from ident.linear import LinearModel
 from ident.residuals.decimation import Response
 

@@ -7,8 +7,8 @@ import pytest
 import scipy.signal
 
 from ident.fit.identification import Identification
+from ident.fit.low_frequency_delay import NAME, lags
 from ident.fit.settings import Settings
-from ident.fit.slow_answer import NAME, lags
 from ident.matrix import Actuator, Matrix
 from ident.run import Run
 from ident.workflows import identify

@@ -7,9 +7,9 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 import pytest
 
-from ident.fit.ends import End, distinct, parted, rivals, valley
 from ident.fit.fitness import Local, Steps
 from ident.fit.levenberg_marquardt import levenberg_marquardt
+from ident.fit.local_optima import End, distinct, parted, rivals, valley
 from ident.fit.multistart import multistart
 from ident.fit.result import Starts
 from ident.fit.space import Axis, Space
