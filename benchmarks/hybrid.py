@@ -16,8 +16,8 @@ from websockets.sync.client import connect
 from benchmarks.table import Table, seconds_of
 from ident.effects import EFFECTS
 from ident.hybrid.case import qian
-from ident.hybrid.ground import Ground
-from ident.hybrid.rig import simulate_hybrid
+from ident.hybrid.ground_motion import Ground
+from ident.hybrid.hybrid_simulation import simulate_hybrid
 from ident.hybrid.share_map import SHARES, share_map
 from ident.hybrid.tracking import Tracker
 from tests.hybrid.cases import fitted

@@ -21,10 +21,10 @@ from ident.diagnosis.result import Diagnosis
 from ident.hybrid.changed_machine import Change
 from ident.hybrid.controller import no_controller
 from ident.hybrid.controller_design import design_controller
-from ident.hybrid.coupled_rig import machines_of, simulate_coupled
+from ident.hybrid.coupled_simulation import machines_of, simulate_coupled
 from ident.hybrid.coupled_stability import delay_map
-from ident.hybrid.followed import Followed
-from ident.hybrid.rig import simulate_hybrid
+from ident.hybrid.feedforward_tracking import Followed
+from ident.hybrid.hybrid_simulation import simulate_hybrid
 from ident.hybrid.share_map import share_map
 from ident.hybrid.tracked_run import track
 from ident.hybrid.what_if import what_if

@@ -22,9 +22,9 @@ from app.cli.whatif import specimen_of
 if TYPE_CHECKING:
     from ident.hybrid.case import Case
     from ident.hybrid.drawn_simulations import DrawnSimulations
-    from ident.hybrid.draws import Spread
-    from ident.hybrid.followed import Followed
-    from ident.hybrid.rig import HybridResult
+    from ident.hybrid.feedforward_tracking import Followed
+    from ident.hybrid.hybrid_simulation import HybridResult
+    from ident.hybrid.parameter_samples import Spread
     from ident.hybrid.share_map import ShareMap
 
 
@@ -75,12 +75,12 @@ def hybrid(
     """
     from dataclasses import replace
 
-    from ident.hybrid.acting import FEEDFORWARD, controller_called
     from ident.hybrid.controller import name_of
+    from ident.hybrid.controller_lookup import FEEDFORWARD, controller_called
     from ident.hybrid.coupled_case import CoupledCase
     from ident.hybrid.coupled_reading import read_system
-    from ident.hybrid.followed import followed_in
-    from ident.hybrid.rig import simulate_hybrid
+    from ident.hybrid.feedforward_tracking import followed_in
+    from ident.hybrid.hybrid_simulation import simulate_hybrid
     from ident.hybrid.specimen_effects import wanted_in
 
     check_target(json)
@@ -139,7 +139,7 @@ def _tell(
 
 def _drawn(wide: Spread | None, acting: Any, *rest: Any) -> DrawnSimulations | None:
     """The same on machines drawn from a spread, where one is stated: of linear controllers."""
-    from ident.hybrid.acting import linear
+    from ident.hybrid.controller_lookup import linear
     from ident.hybrid.drawn_simulations import drawn_simulations
 
     if wide is None:
@@ -167,7 +167,7 @@ def write_command(found: HybridResult, out: Path) -> None:
 
 def _map(asked: bool, acting: Any, *rest: Any) -> ShareMap | None:
     """The map, where it is asked for: of linear controllers, which run side by side."""
-    from ident.hybrid.acting import linear
+    from ident.hybrid.controller_lookup import linear
     from ident.hybrid.share_map import share_map
 
     if not asked:

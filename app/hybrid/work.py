@@ -11,22 +11,22 @@ from typing import Any
 from sqlalchemy.orm import Session
 
 from app.hybrid import repository
-from app.hybrid.acting import acting
-from app.hybrid.asked import AskedCase
-from app.hybrid.before import earlier_case
-from app.hybrid.parts import simulated
+from app.hybrid.controller_lookup import acting
+from app.hybrid.coupled_simulation import simulated
+from app.hybrid.earlier_loop import earlier_case
 from app.hybrid.records import packed, packed_parts
+from app.hybrid.request_parsing import AskedCase
 from app.hybrid.service import KIND
 from app.hybrid.spread import kept
 from app.jobs.work import InOnePiece, Kind, State, Task
 from app.tables import JobRow
 from ident.fit.result import FitResult
-from ident.hybrid.acting import FEEDFORWARD
 from ident.hybrid.controller import SampledController
+from ident.hybrid.controller_lookup import FEEDFORWARD
 from ident.hybrid.coupled_case import CoupledCase
 from ident.hybrid.drawn_simulations import drawn_simulations
-from ident.hybrid.followed import followed_in
-from ident.hybrid.rig import simulate_hybrid
+from ident.hybrid.feedforward_tracking import followed_in
+from ident.hybrid.hybrid_simulation import simulate_hybrid
 from ident.hybrid.share_map import share_map
 from ident.hybrid.specimen_effects import wanted_in
 from ident.plain import read

@@ -15,8 +15,8 @@ from ident.effects.effect import Effect
 from ident.figures import DRAWINGS, subjects
 from ident.figures.delay_map import DELAY_MAP
 from ident.fit.result import FitResult
-from ident.hybrid.acting import NAMED
-from ident.hybrid.followed import Followed
+from ident.hybrid.controller_lookup import NAMED
+from ident.hybrid.feedforward_tracking import Followed
 from ident.presets import preset
 from ident.presets.strano import STRANO
 from ident.stages import PLACES

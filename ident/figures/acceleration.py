@@ -12,7 +12,7 @@ from ident.figures.hybrid_time import legend_of
 from ident.figures.look import Look
 from ident.figures.render import Chart, Row, datasets
 from ident.figures.subjects import Simulated
-from ident.hybrid.rig import HybridResult
+from ident.hybrid.hybrid_simulation import HybridResult
 
 WITHIN = 1.0
 """dB: between these lines the spectrum of a table counts as that of its record."""

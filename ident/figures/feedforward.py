@@ -11,7 +11,7 @@ from ident.figures.drawing import Drawing, Options
 from ident.figures.look import Look
 from ident.figures.render import Chart, Panel
 from ident.figures.subjects import Simulated
-from ident.hybrid.followed import Followed, rounded
+from ident.hybrid.feedforward_tracking import Followed, rounded
 from ident.words.message import message
 
 REFERENCE, ALONE, BOTH, BAND = "reference", "feedback alone", "with feedforward", "band of 90 % of the draws"

@@ -16,7 +16,7 @@ from ident.figures.look import Look
 from ident.figures.render import Chart, Panel, Row, datasets
 from ident.figures.subjects import Simulated
 from ident.figures.thin import significant
-from ident.hybrid.rig import HybridResult
+from ident.hybrid.hybrid_simulation import HybridResult
 
 HIGHEST = 30.0
 """Hz: the range of the paper's figure."""

@@ -16,7 +16,7 @@ from ident.figures.look import Look
 from ident.figures.render import Chart, Panel, Row, datasets
 from ident.figures.subjects import Simulated
 from ident.figures.thin import Real, significant
-from ident.hybrid.rig import HybridResult
+from ident.hybrid.hybrid_simulation import HybridResult
 from ident.words.percent import percent_in_print
 
 REFERENCE = "reference: the whole structure"

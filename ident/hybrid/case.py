@@ -28,7 +28,7 @@ import scipy.linalg
 from numpy.typing import NDArray
 
 from ident.errors import Unusable
-from ident.hybrid.ground import Ground, ground_of
+from ident.hybrid.ground_motion import Ground, ground_of
 from ident.readers.fields import Fields
 from ident.readers.loop_settings import loop_gain, sample_rate
 from ident.readers.rig import rig_of

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from ident.errors import Unusable
 from ident.hybrid.case import Case
-from ident.hybrid.ground import Ground
+from ident.hybrid.ground_motion import Ground
 from ident.run import Specimen
 from ident.words.nearest import did_you_mean
 

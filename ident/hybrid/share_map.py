@@ -14,9 +14,9 @@ from ident.errors import Unusable
 from ident.fit.result import FitResult
 from ident.hybrid.case import Case
 from ident.hybrid.controller import SampledController, no_controller
+from ident.hybrid.hybrid_simulation import RUNAWAY
 from ident.hybrid.loop import LANES
 from ident.hybrid.machine import Machine, machine
-from ident.hybrid.rig import RUNAWAY
 from ident.hybrid.rig_assembly import rig_of, run
 from ident.hybrid.scores import rms
 from ident.hybrid.specimen_effects import references

@@ -10,8 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ident.errors import Unusable
+from ident.hybrid.innovation_test import Verdict
 from ident.hybrid.tracking import GAIN, TAU, Noise, Tracker
-from ident.hybrid.verdict import Verdict
 from ident.matrix import Matrix
 from ident.run import Run
 from ident.words.engineering import quantity

@@ -15,7 +15,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ident.errors import Unusable
 from ident.hybrid import kalman
-from ident.hybrid.verdict import Verdict, verdict
+from ident.hybrid.innovation_test import Verdict, verdict
 from ident.run import HOLDS
 
 Array = NDArray[np.float64]

@@ -16,11 +16,11 @@ from ident.fit.result import Estimate, FitResult
 from ident.hybrid.changed_machine import Carried, Change, ChangedMachine, changed_machine
 from ident.hybrid.chosen_gain import ChosenGain, GainTarget, choose_gain
 from ident.hybrid.drawn_loops import DrawnLoops, drawn_loops
-from ident.hybrid.draws import Spread
-from ident.hybrid.fig_19 import said_of_fig_19
 from ident.hybrid.oil_column import PeakSearch, find_peak
+from ident.hybrid.parameter_samples import Spread
 from ident.hybrid.peak_problem import PeakTarget
 from ident.hybrid.peaks import Peak, peaks
+from ident.hybrid.qian_figure_19 import said_of_fig_19
 from ident.hybrid.reached_limits import reached
 from ident.hybrid.root_locus import Pole, RootLocus, poles, root_locus
 from ident.hybrid.servo_loop import servo_loop, values_before

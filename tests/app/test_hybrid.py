@@ -17,8 +17,8 @@ from app.jobs.steps import Runs
 from ident.fit.result import FitResult
 from ident.hybrid.case import qian
 from ident.hybrid.controller import SampledController
-from ident.hybrid.ground import Ground
-from ident.hybrid.rig import simulate_hybrid
+from ident.hybrid.ground_motion import Ground
+from ident.hybrid.hybrid_simulation import simulate_hybrid
 from tests.app.conftest import archived
 from tests.app.test_bad_inputs import kept, refused_by_service
 from tests.app.test_diagnoses import ended

@@ -12,8 +12,8 @@ import pytest
 from app.cli.at_option import moved_to
 from ident.hybrid.controller import no_controller
 from ident.hybrid.coupled_reading import read_system
-from ident.hybrid.coupled_rig import simulate_coupled
-from ident.hybrid.followed import Followed
+from ident.hybrid.coupled_simulation import simulate_coupled
+from ident.hybrid.feedforward_tracking import Followed
 from ident.run import Specimen
 from tests.app.test_conditions import sets
 from tests.hybrid.cases import fitted

@@ -9,7 +9,7 @@ import pytest
 
 from ident.fit.result import Estimate, FitResult
 from ident.hybrid.case import Case, case_of, qian
-from ident.hybrid.ground import Ground
+from ident.hybrid.ground_motion import Ground
 from ident.presets import preset
 
 EL_CENTRO = Path(__file__).parents[3] / "shared" / "data" / "ground_motion" / "el_centro_1940_ns.txt"

@@ -10,7 +10,7 @@ import scipy.linalg
 
 from ident.errors import Unusable
 from ident.hybrid.case import BUILT_IN, benchmark2020, case_of, modal_damping, qian, read_case
-from ident.hybrid.ground import GRAVITY, Ground, read_record
+from ident.hybrid.ground_motion import GRAVITY, Ground, read_record
 from ident.hybrid.scores import delay, peak, rms, scores
 from ident.run import Specimen
 

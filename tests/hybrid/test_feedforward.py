@@ -16,7 +16,6 @@ from ident.figures.feedforward import feedforward_figure
 from ident.figures.look import look
 from ident.fit.result import FitResult
 from ident.fit.settings import Settings
-from ident.hybrid.draws import drawn_parameters
 from ident.hybrid.feedforward import (
     FeedforwardController,
     Plant,
@@ -26,8 +25,9 @@ from ident.hybrid.feedforward import (
     plant_of,
     tracked,
 )
-from ident.hybrid.followed import Followed
+from ident.hybrid.feedforward_tracking import Followed
 from ident.hybrid.inverse import Inverse
+from ident.hybrid.parameter_samples import drawn_parameters
 from ident.matrix import Actuator
 from ident.run import Specimen
 from ident.workflows import identify

@@ -12,13 +12,13 @@ import numpy as np
 import scipy.integrate
 
 from ident.fit.settings import Settings
-from ident.hybrid.acting import controller_called
 from ident.hybrid.case import qian
 from ident.hybrid.compensation import Compensation
+from ident.hybrid.controller_lookup import controller_called
 from ident.hybrid.feedforward import command
-from ident.hybrid.followed import followed_in
+from ident.hybrid.feedforward_tracking import followed_in
+from ident.hybrid.hybrid_simulation import simulate_hybrid
 from ident.hybrid.machine import machine
-from ident.hybrid.rig import simulate_hybrid
 from ident.hybrid.specimen_effects import reference_of
 from ident.hybrid.tracked_run import track
 from ident.hybrid.tracking import Tracker

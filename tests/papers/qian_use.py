@@ -12,11 +12,11 @@ from ident.hybrid.case import qian
 from ident.hybrid.changed_machine import Change, changed_machine
 from ident.hybrid.chosen_gain import GainTarget, choose_gain
 from ident.hybrid.controller_design import design_controller
-from ident.hybrid.coupled_rig import simulate_coupled
+from ident.hybrid.coupled_simulation import simulate_coupled
 from ident.hybrid.drawn_simulations import drawn_simulations
-from ident.hybrid.fig_19 import PRINTED
+from ident.hybrid.hybrid_simulation import simulate_hybrid
 from ident.hybrid.oil_column import PeakSearch, find_peak
-from ident.hybrid.rig import simulate_hybrid
+from ident.hybrid.qian_figure_19 import PRINTED
 from ident.hybrid.share_map import share_map
 from ident.hybrid.what_if import WhatIf, what_if
 from ident.matrix import Actuator

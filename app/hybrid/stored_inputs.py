@@ -8,7 +8,7 @@ from typing import Any
 from app.context import Context
 from app.errors import missing
 from app.hybrid import repository
-from app.hybrid.acting import named
+from app.hybrid.controller_lookup import named
 
 _FILE_KEYS = ("name", "sample_rate", "A", "B", "C", "D")
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
-from app.hybrid.asked import AskedCase, asked_case
+from app.hybrid.request_parsing import AskedCase, asked_case
 from ident.fit.result import FitResult
 from ident.hybrid.case import Case
 from ident.hybrid.coupled_case import CoupledCase

@@ -9,16 +9,16 @@ import pytest
 
 from ident.effects import EFFECTS
 from ident.errors import Cancelled, Unusable
-from ident.hybrid.acting import controller_called
 from ident.hybrid.case import qian
 from ident.hybrid.compensation import Compensation
 from ident.hybrid.controller import SampledController
-from ident.hybrid.ground import Ground
+from ident.hybrid.controller_lookup import controller_called
+from ident.hybrid.ground_motion import Ground
+from ident.hybrid.hybrid_simulation import simulate_hybrid, simulate_machine
+from ident.hybrid.ideal_actuator import perfect_machine
 from ident.hybrid.linear_plant import linear_plant
 from ident.hybrid.loop_shaping import design
 from ident.hybrid.machine import machine
-from ident.hybrid.perfect import perfect_machine
-from ident.hybrid.rig import simulate_hybrid, simulate_machine
 from ident.hybrid.share_map import share_map
 from ident.hybrid.stability import critical_delay
 from ident.presets import preset

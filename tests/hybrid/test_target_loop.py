@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from ident.errors import Unusable
-from ident.hybrid.target import QIAN2014_TARGET, Target, read_target
+from ident.hybrid.target_loop import QIAN2014_TARGET, Target, read_target
 
 
 def test_the_papers_target_is_eq_19():

@@ -9,22 +9,22 @@ from typing import Any
 
 from app.context import Context
 from app.fits import service as fits
-from app.hybrid.acting import acting
-from app.hybrid.asked import AskedCase, specimen_of
 from app.hybrid.at_condition import moved_to
-from app.hybrid.before import earlier_parts, stated
-from app.hybrid.keeping import kept_controller, kept_text
+from app.hybrid.controller_lookup import acting
+from app.hybrid.earlier_loop import earlier_parts, stated
+from app.hybrid.request_parsing import AskedCase, specimen_of
 from app.hybrid.spread import kept, spread_of
+from app.hybrid.stored_inputs import kept_controller, kept_text
 from ident.cached import cached_property
 from ident.fit.result import FitResult
-from ident.hybrid.acting import FEEDFORWARD, linear
 from ident.hybrid.controller import Controller, name_of
+from ident.hybrid.controller_lookup import FEEDFORWARD, linear
 from ident.hybrid.coupled_case import CoupledCase
 from ident.hybrid.coupled_loop import EarlierParts
-from ident.hybrid.coupled_rig import CoupledResult, machines_of, simulate_compared
+from ident.hybrid.coupled_simulation import CoupledResult, machines_of, simulate_compared
 from ident.hybrid.coupled_stability import with_poles
 from ident.hybrid.drawn_simulations import DrawnSimulations, drawn_coupled
-from ident.hybrid.draws import Spread
+from ident.hybrid.parameter_samples import Spread
 from ident.hybrid.substructure import reference
 from ident.plain import read, written
 from ident.progress import Report

@@ -15,7 +15,7 @@ from ident.hybrid.case import Case
 from ident.hybrid.compensation import Compensation
 from ident.hybrid.controller import Controller, SampledController, no_controller
 from ident.hybrid.feedforward import FeedforwardController
-from ident.hybrid.followed import plant_in
+from ident.hybrid.feedforward_tracking import plant_in
 from ident.hybrid.shaking_table import ahead_of
 from ident.hybrid.substructure import reference
 from ident.units.quantity import shown

@@ -11,9 +11,9 @@ from numpy.typing import NDArray
 
 from ident.fit.result import FitResult
 from ident.hybrid.case import Case
-from ident.hybrid.draws import Covariance, Spread, drawn_parameters
 from ident.hybrid.feedforward import Plant, Tracked, plant_of, tracked
 from ident.hybrid.machine import actuator
+from ident.hybrid.parameter_samples import Covariance, Spread, drawn_parameters
 from ident.hybrid.substructure import reference
 from ident.plain import read, written
 from ident.run import Specimen

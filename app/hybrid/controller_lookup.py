@@ -6,9 +6,9 @@ from typing import Any
 
 from ident.errors import Unusable
 from ident.fit.result import FitResult
-from ident.hybrid.acting import NAMED, for_rate
 from ident.hybrid.case import Case
 from ident.hybrid.controller import Controller, SampledController
+from ident.hybrid.controller_lookup import NAMED, for_rate
 from ident.units.quantity import shown
 from ident.words.nearest import did_you_mean
 
@@ -21,7 +21,7 @@ def named(given: str) -> bool:
 
 
 def acting(given: str | dict[str, Any], fit: FitResult, case: Case, wanted: Any = None) -> Controller:
-    """As :func:`ident.hybrid.acting.controller_called`: the controller of that name, or of that JSON."""
+    """As :func:`ident.hybrid.controller_lookup.controller_called`: the controller of that name, or of that JSON."""
     if isinstance(given, str):
         if given not in NAMED:
             raise Unusable(

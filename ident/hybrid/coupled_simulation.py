@@ -16,8 +16,8 @@ from ident.hybrid.controller import Controller, SampledController, name_of, no_c
 from ident.hybrid.coupled_case import CoupledCase
 from ident.hybrid.coupled_loop import CoupledLoop, EarlierParts, judge_coupled
 from ident.hybrid.coupled_stability import DelayMap, coupled_critical_delay, coupled_poles, delay_map, with_poles
+from ident.hybrid.hybrid_simulation import HELD, RUNAWAY, HybridResult, notes_of
 from ident.hybrid.machine import Machine, machine
-from ident.hybrid.rig import HELD, RUNAWAY, HybridResult, notes_of
 from ident.hybrid.rig_assembly import rig_of, run
 from ident.hybrid.rig_limits import leaving
 from ident.hybrid.scores import Scores, scores
@@ -134,7 +134,7 @@ def simulate_coupled(
 
     `effects` are further effects of every machine: values by name, SI. Each motion is held against the limits of its
     part. `before` is the case when its loop was stable, by which the cause of an unstable one is found. Raises Unusable
-    as :func:`ident.hybrid.rig.simulate_hybrid`.
+    as :func:`ident.hybrid.hybrid_simulation.simulate_hybrid`.
     """
     machines = machines_of(fits, case, effects)
     found = simulate_machines(machines, case, controllers, effects, report, before)
