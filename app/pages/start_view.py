@@ -14,7 +14,7 @@ from ident.fit.settings import METHODS
 from ident.preprocessing import STEPS
 from ident.preprocessing.step import Step
 from ident.presets import PRESETS, Preset
-from ident.presets.suited import in_question
+from ident.presets.suitable_models import in_question
 from ident.stages import PLACES
 from ident.words.engineering import power_of, with_unit
 from ident.words.number import trimmed

@@ -9,7 +9,7 @@ from ident.effects.effect import Effect
 from ident.effects.needs import electric, turns_round
 from ident.matrix import Matrix
 from ident.presets import Preset
-from ident.presets.middle import about
+from ident.presets.stroke_centre import about
 from ident.run import MOTIONS
 from ident.words.titles import title
 

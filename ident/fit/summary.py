@@ -35,7 +35,7 @@ from ident.matrix import Matrix
 from ident.noise.floor import Floors
 from ident.presets.preset import Combined
 from ident.presets.record_units import SAMPLE
-from ident.presets.suited import is_assumed_loop
+from ident.presets.suitable_models import is_assumed_loop
 from ident.run import Run, over_runs
 from ident.simulation.steps import FASTEST, MOST
 from ident.unstable import UNSTABLE

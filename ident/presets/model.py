@@ -10,13 +10,13 @@ from ident.cached import cached_property
 from ident.chain.chain import Chain
 from ident.chain.channels import READABLE
 from ident.chain.conditions import CONDITIONS
-from ident.chain.refusals import unfit
+from ident.chain.refused_effects import unfit
 from ident.effects.effect import Effect
 from ident.equations.equation import Equation
 from ident.errors import Unusable
 from ident.matrix import Matrix
 from ident.parameter import Parameter
-from ident.presets.middle import about
+from ident.presets.stroke_centre import about
 from ident.stages import MASS_SPRING_DAMPER, MEASURED_LOAD
 from ident.words.nearest import did_you_mean
 from ident.words.run_name import run_name

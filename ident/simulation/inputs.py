@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from ident.chain.chain import DISTURBANCE, FORCE, INPUT, INPUT_RATE
 from ident.chain.channels import BESIDE_MEAN, means
-from ident.chain.varying import MEASURED_CONDITIONS, is_measured
+from ident.chain.measured_conditions import MEASURED_CONDITIONS, is_measured
 from ident.run import DISTURBANCES, Run
 from ident.simulation.between import band_limited
 from ident.simulation.closed_way import covered, drift

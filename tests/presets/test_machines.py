@@ -19,7 +19,7 @@ from ident.errors import Unusable
 from ident.fit.settings import Settings
 from ident.matrix import Actuator, Matrix
 from ident.presets import preset
-from ident.presets.suited import in_question, suited
+from ident.presets.suitable_models import in_question, suited
 from ident.readers import read_matrix
 from ident.run import Run
 from ident.workflows import compare, diagnose, identify

@@ -12,7 +12,7 @@ from ident.diagnosis.candidate_models import CandidateModels
 from ident.fit.identification import Identification
 from ident.fit.settings import Settings
 from ident.matrix import Actuator, Matrix
-from ident.presets.suited import suited
+from ident.presets.suitable_models import suited
 from ident.run import Run
 from ident.workflows import diagnose, identify
 
