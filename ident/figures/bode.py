@@ -15,17 +15,17 @@ from ident.comparison.response_error import response_error
 from ident.errors import Unusable
 from ident.figures import words
 from ident.figures.candidate import called, candidate_of
-from ident.figures.choose import asked, by_gain, chosen, one, representative, typical
+from ident.figures.chart_template import Filled, Frame, blank, frame
 from ident.figures.drawing import Drawing, Options
-from ident.figures.frame import Filled, Frame, blank, frame
-from ident.figures.look import Look
 from ident.figures.options import AXIS, BAND, CANDIDATE, CONDITIONS, OTHER, RUN, USE
-from ident.figures.others import others_of, titles_of
+from ident.figures.other_fits import others_of, titles_of
 from ident.figures.render import Panel
 from ident.figures.responses import Responses
+from ident.figures.run_selection import asked, by_gain, chosen, one, representative, typical
 from ident.figures.selection import HIGH, LOW, OPEN, Band, band_of, band_values, brush, zoomed
 from ident.figures.study import Study
-from ident.figures.thin import decade_ticks, fine_ticks
+from ident.figures.theme import Look
+from ident.figures.thinning import decade_ticks, fine_ticks
 from ident.fit.result import FitResult
 from ident.hybrid.readouts import Readouts, in_words, readouts
 from ident.matrix import Actuator

@@ -8,9 +8,9 @@ from typing import Any
 import altair as alt
 
 from ident.figures.drawing import Drawing, Options
-from ident.figures.look import Look
 from ident.figures.render import Chart, Panel
 from ident.figures.subjects import Simulated
+from ident.figures.theme import Look
 from ident.hybrid.feedforward_tracking import Followed, rounded
 from ident.words.message import message
 

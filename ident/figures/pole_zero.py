@@ -9,12 +9,12 @@ import altair as alt
 import numpy as np
 
 from ident.figures import words
-from ident.figures.choose import one, typical
 from ident.figures.drawing import Drawing, Options
-from ident.figures.look import Look
 from ident.figures.options import RUN
 from ident.figures.render import Chart, datasets
+from ident.figures.run_selection import one, typical
 from ident.figures.study import Study
+from ident.figures.theme import Look
 from ident.hybrid.poles_and_zeros import Root, poles_and_zeros
 from ident.words.message import message
 from ident.words.number import plain

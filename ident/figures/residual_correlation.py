@@ -8,12 +8,12 @@ import altair as alt
 
 from ident.comparison.compare import RunComparison
 from ident.figures import words
-from ident.figures.choose import one, typical, unstable_on
 from ident.figures.drawing import Drawing, Option, Options
-from ident.figures.look import Look
 from ident.figures.options import RUN, whole_number
 from ident.figures.render import Chart, Panel, datasets
+from ident.figures.run_selection import one, typical, unstable_on
 from ident.figures.study import Study
+from ident.figures.theme import Look
 from ident.fit.result import FitResult
 from ident.matrix import Actuator
 from ident.residuals.correlation import SURE, Correlation, correlation

@@ -11,14 +11,14 @@ import altair as alt
 from ident.comparison.compare import Comparison
 from ident.errors import Unusable
 from ident.figures import words
-from ident.figures.choose import CONDITIONS, asked, chosen
 from ident.figures.drawing import Drawing, Options
-from ident.figures.look import Look
 from ident.figures.options import BAND, MANY
 from ident.figures.render import Chart, Panel, datasets
+from ident.figures.run_selection import CONDITIONS, asked, chosen
 from ident.figures.selection import HIGH, LOW, OPEN, RUN, Band, band_of, band_params, brush
 from ident.figures.study import Study
-from ident.figures.thin import decade_ticks
+from ident.figures.theme import Look
+from ident.figures.thinning import decade_ticks
 from ident.fit.result import FitResult
 from ident.matrix import Actuator
 from ident.residuals.breakdown import Breakdown, breakdown, noise_in_bands, stated_amplitude

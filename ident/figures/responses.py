@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from ident.cached import cached_property
 from ident.comparison.compare import RunComparison
 from ident.figures import words
-from ident.figures.thin import Real, excited_band, significant, spread
+from ident.figures.thinning import Real, excited_band, significant, spread
 from ident.hybrid.readouts import Readouts
 from ident.run import Run
 

@@ -12,14 +12,14 @@ from ident.comparison.side_by_side import titles
 from ident.comparison.step_response import StepResponse, duration, step_response
 from ident.decimation.envelope import envelope
 from ident.figures import words
-from ident.figures.choose import one, typical
 from ident.figures.drawing import Drawing, Option, Options
-from ident.figures.look import Look
 from ident.figures.options import OTHER, RUN, number
-from ident.figures.others import others_of
+from ident.figures.other_fits import others_of
 from ident.figures.render import Chart, datasets
+from ident.figures.run_selection import one, typical
 from ident.figures.study import Study
-from ident.figures.thin import significant
+from ident.figures.theme import Look
+from ident.figures.thinning import significant
 from ident.run import Run
 from ident.words.engineering import quantity
 from ident.words.number import plain

@@ -6,7 +6,7 @@ import textwrap
 from collections.abc import Iterable, Sequence
 
 from ident.comparison.compare import RunComparison
-from ident.figures.look import Look
+from ident.figures.theme import Look
 from ident.fit.result import FitResult
 from ident.matrix import Actuator
 from ident.run import USES, Run, Specimen

@@ -13,7 +13,7 @@ import pytest
 
 from ident.errors import Unusable
 from ident.figures.feedforward import feedforward_figure
-from ident.figures.look import look
+from ident.figures.theme import look
 from ident.fit.result import FitResult
 from ident.fit.settings import Settings
 from ident.hybrid.feedforward import (

@@ -34,7 +34,7 @@ from tests.hybrid import test_feedforward as inverse
 from tests.hybrid import test_shaking_table as table
 from tests.hybrid import test_specimen_effects as hysteretic
 from tests.hybrid.cases import el_centro, fitted, of_fifth_order, of_qian
-from tests.hybrid.test_rig import shaped
+from tests.hybrid.test_hybrid_simulation import shaped
 from tests.papers import data
 from tests.papers.row import Measured, Row, counted
 from tests.reference import first_order_reference as lag

@@ -28,7 +28,7 @@ from tests.hybrid.cases import el_centro, fitted, noise, of_qian
 from tests.hybrid.coupled_cases import beam
 from tests.hybrid.designs import STATED, decibel, degrees, designed, measured
 from tests.hybrid.test_coupled import NONE, TWO
-from tests.hybrid.test_rig import shaped
+from tests.hybrid.test_hybrid_simulation import shaped
 from tests.hybrid.test_spread import TWENTY, machines
 from tests.hybrid.test_what_if import AXES, SMALL, WIDER, fit_of
 from tests.papers.row import Measured, Row, counted

@@ -7,8 +7,8 @@ import pytest
 
 from ident.decimation.envelope import envelope
 from ident.figures import words
-from ident.figures.look import LOOKS
-from ident.figures.thin import decade_ticks, excited_band, spread
+from ident.figures.theme import LOOKS
+from ident.figures.thinning import decade_ticks, excited_band, spread
 
 
 def test_the_envelope_of_a_long_signal_keeps_a_single_spike():
