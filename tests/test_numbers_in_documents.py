@@ -13,7 +13,7 @@ from pathlib import Path
 
 import pytest
 
-from app.pages import next_view
+from app.pages import next_step_view
 from ident.bench import acceptance
 from ident.bench.criteria import BENCH_CRITERIA
 from ident.comparison import frequency_response, profile
@@ -139,7 +139,7 @@ def of_others() -> Iterator[Tie]:
     """What decides elsewhere."""
     yield "which-machine.md", "unless that is below {} % of it", (per_cent(CRITERIA.structure.unusual),)
     yield "which-machine.md", "which has no parts, is {} as probable", ({0.5: "half"}[CRITERIA.structure.no_parts],)
-    yield "lab.md", "within {} of it there is nothing left to find", (plain(next_view.NEAR),)
+    yield "lab.md", "within {} of it there is nothing left to find", (plain(next_step_view.NEAR),)
 
     P = "physics.md"
     yield (

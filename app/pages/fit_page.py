@@ -17,10 +17,10 @@ from app.pages.chain_view import Drawing, drawing
 from app.pages.diagnosis_view import MissingView
 from app.pages.figure_forms import MAP, FigureForm, forms, profile_form
 from app.pages.job_view import settings_facts
-from app.pages.kept_view import Keeping, KeptRow, keeping, kept_rows
 from app.pages.ladder_view import Step, steps
 from app.pages.matrix_view import counted
-from app.pages.next_view import Next
+from app.pages.next_step_view import Next
+from app.pages.own_effects_view import Keeping, KeptRow, keeping, kept_rows
 from app.pages.run_view import Conditions, conditions
 from app.parameters.error import error_of
 from ident.custom.definition import HANDED_ON, preset_with

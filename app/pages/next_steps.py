@@ -7,7 +7,7 @@ from collections.abc import Iterable, Mapping
 from app.context import Context
 from app.diagnoses import service as diagnoses
 from app.fits import service as fits
-from app.pages.next_view import Next, fit_step, next_step
+from app.pages.next_step_view import Next, fit_step, next_step
 from app.parameters import service as parameters
 from app.parameters.wanted import Wanted
 from schemas.fit import JobView

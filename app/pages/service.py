@@ -23,10 +23,10 @@ from app.pages.diagnosis_view import missing
 from app.pages.evidence_view import telling_run
 from app.pages.fit_page import FitPageView, fit_page
 from app.pages.job_view import JobPageView, job_page
-from app.pages.kept_view import kept_rows
 from app.pages.matrix_view import counted, matrix_view
 from app.pages.next_steps import next_steps, of_fit
-from app.pages.side_view import further, side_view
+from app.pages.own_effects_view import kept_rows
+from app.pages.side_by_side_view import further, side_view
 from app.pages.signals_view import SignalsView, signals_view
 from app.pages.start_view import start_view
 from app.pages.thumbnails import thumbnail

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from app.cli.arguments import bounds, method_options, values
 from app.cli.whatif import specimen_of
-from app.pages.what_if_asked import asked
+from app.pages.what_if_request import asked
 from ident.errors import Unusable
 from ident.presets import preset
 from ident.readers.description import describe

@@ -8,7 +8,7 @@ import pytest
 
 from app.pages.control_view import ControlView
 from app.pages.hybrid_view import hybrid_view
-from app.pages.what_if_asked import asked
+from app.pages.what_if_request import asked
 from app.pages.what_if_view import what_if_form
 from ident.errors import Unusable
 from ident.fit.result import FitResult

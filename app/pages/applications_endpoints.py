@@ -10,7 +10,7 @@ from pydantic import BaseModel, ConfigDict, Field
 
 from app.access.roles import READERS
 from app.context import Here
-from app.pages import assets, use_page
+from app.pages import applications_page, assets
 from app.pages.problems import PageRoute
 from app.pages.rendering import page
 from ident.hybrid.what_if import WhatIf
@@ -32,17 +32,17 @@ class Description(BaseModel):
 @pages.get("/fits/{fit}/use", dependencies=[READERS])
 def use(request: Request, here: Here, fit: str) -> HTMLResponse:
     """What the identified machine is good for; the query says what is asked and what is shown."""
-    shown, status = use_page.use(here, fit, dict(request.query_params))
+    shown, status = applications_page.use(here, fit, dict(request.query_params))
     return page(request, "use.html", status, use=shown, vega=assets.VEGA)
 
 
 @parts.get("/fits/{fit}/use/what-if.json", dependencies=[READERS])
 def what_if(request: Request, here: Here, fit: str) -> WhatIf:
     """All numbers of a what-if, as the API answers it."""
-    return use_page.numbers(here, fit, dict(request.query_params))
+    return applications_page.numbers(here, fit, dict(request.query_params))
 
 
 @parts.post("/use/reading", dependencies=[READERS])
 def reading(description: Description) -> Any:
     """A description in YAML as plain data, for a request that takes an object."""
-    return use_page.read(description.text, description.where)
+    return applications_page.read(description.text, description.where)

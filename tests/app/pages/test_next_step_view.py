@@ -8,7 +8,7 @@ import pytest
 
 from app.diagnoses.service import Search
 from app.fits.service import Yardstick
-from app.pages.next_view import Next, fit_step, next_step
+from app.pages.next_step_view import Next, fit_step, next_step
 from ident.diagnosis.result import Suspect, Verdict
 from ident.words.error import ErrorOf
 from schemas.fit import JobView, ProgressView

@@ -7,7 +7,7 @@ from dataclasses import replace
 import pytest
 
 from app.own_effects.kept import Kept, suggested, suited, view, written_down
-from app.pages.kept_view import kept_rows
+from app.pages.own_effects_view import kept_rows
 from tests.app.test_custom_effects import OWN
 
 

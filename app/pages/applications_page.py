@@ -11,14 +11,14 @@ from app.fits import service as fits
 from app.hybrid import controllers, position_loop, service, tracking, what_if
 from app.jobs import service as jobs
 from app.matrices import service as matrices
+from app.pages.applications_view import UseView, use_view
 from app.pages.control_view import ControlView, control_view
 from app.pages.hybrid_view import HybridSection, hybrid_view
 from app.pages.job_view import JobPageView, job_page
 from app.pages.position_loop_view import PositionLoopView, position_loop_form, position_loop_view
 from app.pages.position_loop_view import asked as position_loop_asked
 from app.pages.tracking_view import TrackingView, tracking_view
-from app.pages.use_view import UseView, use_view
-from app.pages.what_if_asked import asked
+from app.pages.what_if_request import asked
 from app.pages.what_if_view import WhatIfView, what_if_form, what_if_view
 from ident.errors import Unusable
 from ident.hybrid.what_if import WhatIf
