@@ -12,7 +12,7 @@ from starlette.datastructures import Headers
 from starlette.requests import cookie_parser
 from starlette.types import ASGIApp, Receive, Scope, Send
 
-from app.access.who import Who
+from app.access.caller import Who
 from ident.words.display import displaying, known
 
 COOKIE = "units"

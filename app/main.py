@@ -20,10 +20,10 @@ from uvicorn.middleware.proxy_headers import ProxyHeadersMiddleware
 
 from app import errors, openapi
 from app.access.audit import Audited
+from app.access.audited_changes import carry
 from app.access.gate import Gate
-from app.access.noting import carry
 from app.access.roles import refuse_undeclared
-from app.access.tries import Tries
+from app.access.token_attempts import Tries
 from app.blobs import open_storage
 from app.context import Context
 from app.database import connect, migrate, sessions
@@ -45,7 +45,7 @@ from app.settings import Settings
 from app.stream.service import LARGEST_MESSAGE
 from app.webhooks.courier import Courier
 from app.webhooks.hosts import origins
-from app.webhooks.told import told
+from app.webhooks.openapi_webhooks import told
 from app.workers.pulse import Pulse
 from ident.parallel import one_thread
 

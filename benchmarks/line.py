@@ -24,8 +24,8 @@ from app.context import Context
 from app.database import connect, sessions
 from app.main import create_app
 from app.parameters import export
-from app.parameters.repository.found import numbers
-from app.parameters.wanted import Wanted
+from app.parameters.repository.matching_sets import numbers
+from app.parameters.set_query import Wanted
 from app.settings import Settings
 from benchmarks import figures, process
 from benchmarks.line_filled import PARAMETERS, fill

@@ -354,7 +354,7 @@ def test_the_client_needs_httpx_and_pydantic_only():
 
 FRAME = {
     "app.access.roles",
-    "app.access.who",
+    "app.access.caller",
     "app.context",
     "app.errors",
     "app.form",

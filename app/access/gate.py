@@ -16,11 +16,11 @@ from starlette.responses import RedirectResponse, Response
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from app.access import sessions
+from app.access.caller import START, Who
 from app.access.identity import Shown, identify, shown_by
 from app.access.rates import Rate
 from app.access.roles import unknown
-from app.access.tries import Tries, too_often
-from app.access.who import START, Who
+from app.access.token_attempts import Tries, too_often
 from app.context import Context
 from app.errors import Failure, refusal, unavailable
 

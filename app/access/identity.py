@@ -13,8 +13,8 @@ from sqlalchemy.orm import Session
 from starlette.datastructures import Headers
 
 from app.access import repository
+from app.access.caller import START, Role, Who
 from app.access.secret import Secret, same
-from app.access.who import START, Role, Who
 from app.context import Context
 from app.tables import SessionRow, TokenRow, before, now
 

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from sqlalchemy import delete, select, update
 from sqlalchemy.orm import Session
 
-from app.access.who import Who
+from app.access.caller import Who
 from app.tables import AuditRow, DisplayUnitsRow, SessionRow, TokenRow, now
 
 

@@ -12,7 +12,7 @@ from typing import Any
 from fastapi import Depends
 from starlette.requests import HTTPConnection
 
-from app.access.who import Role, Who
+from app.access.caller import Role, Who
 from app.errors import Failure
 
 

@@ -5,13 +5,13 @@ from __future__ import annotations
 from sqlalchemy.orm import Session, sessionmaker
 
 from app.access import repository, sessions
+from app.access.audited_changes import about
+from app.access.caller import Role, Who
 from app.access.duration import duration
 from app.access.identity import Shown
-from app.access.noting import about
 from app.access.secret import Secret
 from app.access.sessions import drop, end, keep
-from app.access.tries import Tries
-from app.access.who import Role, Who
+from app.access.token_attempts import Tries
 from app.context import Context
 from app.errors import Failure, missing
 from app.paging import cursor, keys_of

@@ -5,9 +5,9 @@ from __future__ import annotations
 from starlette.responses import Response
 
 from app.access import repository
+from app.access.caller import START, Who
 from app.access.identity import COOKIE, LASTS
 from app.access.secret import Secret
-from app.access.who import START, Who
 from app.context import Context
 from app.request_id import request_id
 from app.tables import before

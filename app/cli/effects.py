@@ -14,7 +14,7 @@ from ident.errors import Unusable
 from ident.words.message import message
 
 if TYPE_CHECKING:
-    from app.own_effects.kept import Kept
+    from app.own_effects.own_effect import Kept
 
 Where = Annotated[
     str, typer.Option("--server", metavar="URL", help="Use the own effects of this service instead of the local ones.")
@@ -59,7 +59,7 @@ def effects(
 def _here() -> dict[str, Any]:
     from app.catalogue.service import effects as catalogue
     from app.cli.kept_here import every
-    from app.own_effects.kept import view
+    from app.own_effects.own_effect import view
 
     own = [view(kept).model_dump(by_alias=True) for kept in every()]
     return {"own": own, "catalogue": [effect.model_dump() for effect in catalogue()]}
@@ -145,7 +145,7 @@ def given(file: Path, name: str, proposal: int) -> Kept:
     """The effect of a file, or the term of a diagnosis, under a name. Raises Unusable."""
     from app.cli.arguments import is_diagnosis
     from app.cli.given import read_diagnosis
-    from app.own_effects.kept import meaning_of, proposed, suggested, written_down
+    from app.own_effects.own_effect import meaning_of, proposed, suggested, written_down
     from ident.custom.definition import definition_of
 
     if not is_diagnosis(file):

@@ -13,7 +13,7 @@ from ident.errors import Unusable
 from ident.words.nearest import did_you_mean
 
 if TYPE_CHECKING:
-    from app.own_effects.kept import Kept
+    from app.own_effects.own_effect import Kept
 
 
 def folder() -> Path:
@@ -42,7 +42,7 @@ def defined_here() -> dict[str, Mapping[str, Any]]:
 
 def beside(definitions: Sequence[Mapping[str, Any]], model: str) -> tuple[Mapping[str, Any], ...]:
     """These definitions, and of those that are kept under other names all that a model can take."""
-    from app.own_effects.kept import suited
+    from app.own_effects.own_effect import suited
 
     names = {definition["name"] for definition in definitions}
     return (*definitions, *(kept.definition for kept in suited(every(), model) if kept.name not in names))
@@ -96,7 +96,7 @@ def _file(name: str) -> Path:
 
 
 def _read(file: Path) -> Kept:
-    from app.own_effects.kept import Kept
+    from app.own_effects.own_effect import Kept
     from ident.plain import Misfit, read
 
     try:

@@ -12,7 +12,7 @@ from app.diagnoses import repository
 from app.fits import repository as fits
 from app.fits.history import put_apart
 from app.jobs.work import InOnePiece, Kind, MadeSoFar, State, Task
-from app.own_effects.kept import Kept, suited
+from app.own_effects.own_effect import Kept, suited
 from app.tables import JobRow
 from ident.custom.definition import read_effect
 from ident.diagnosis.result import Diagnosis

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from app.context import Context
 from app.hybrid.spread import sets_of
-from app.parameters.wanted import Wanted
+from app.parameters.set_query import Wanted
 from ident.design.at_condition import AtCondition, Moved
 from ident.errors import Unusable
 from ident.fit.result import FitResult

@@ -8,7 +8,7 @@ from typing import Any
 
 from sqlalchemy.exc import IntegrityError
 
-from app.access.noting import about
+from app.access.audited_changes import about
 from app.context import Context
 from app.errors import Failure, missing
 from app.fits import service as fits

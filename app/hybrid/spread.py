@@ -6,7 +6,7 @@ from typing import Any
 
 from app.context import Context
 from app.parameters import service as parameters
-from app.parameters.wanted import Wanted
+from app.parameters.set_query import Wanted
 from ident.design.scatter import Scatter
 from ident.design.spread import USUAL, Spread
 from ident.errors import Unusable

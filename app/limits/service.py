@@ -7,7 +7,7 @@ from itertools import groupby
 
 from app.context import Context
 from app.limits import repository
-from app.limits.broken import telling_broken
+from app.limits.violations import telling_broken
 from app.parameters.error import NAMES
 from app.tables import LimitRow
 from ident.bench.acceptance import QUANTITIES

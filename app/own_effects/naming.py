@@ -7,7 +7,7 @@ from typing import Any, TypeVar
 
 from app.context import Context
 from app.own_effects import repository
-from app.own_effects.kept import Kept
+from app.own_effects.own_effect import Kept
 from ident.custom.definition import definition_of, is_name
 from ident.effects import CATALOGUE, unknown
 from ident.errors import Unusable

@@ -8,7 +8,7 @@ from dataclasses import asdict, fields
 from sqlalchemy import select
 from sqlalchemy.orm import Session
 
-from app.own_effects.kept import Kept
+from app.own_effects.own_effect import Kept
 from app.tables import DiagnosisRow, OwnEffectRow
 from ident.diagnosis.result import Diagnosis
 

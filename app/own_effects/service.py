@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from sqlalchemy.exc import IntegrityError
 
-from app.access.noting import about
+from app.access.audited_changes import about
 from app.context import Context
 from app.errors import Failure, missing
 from app.own_effects import repository
-from app.own_effects.kept import Kept, proposed, view, written_down
 from app.own_effects.naming import every
+from app.own_effects.own_effect import Kept, proposed, view, written_down
 from app.paging import cursor, keys_of
 from ident.presets import preset
 from schemas.catalogue import OwnEffectPage, OwnEffectRequest, OwnEffectView

@@ -9,7 +9,7 @@ from app.diagnoses import service as diagnoses
 from app.fits import service as fits
 from app.pages.next_step_view import Next, fit_step, next_step
 from app.parameters import service as parameters
-from app.parameters.wanted import Wanted
+from app.parameters.set_query import Wanted
 from schemas.fit import JobView
 from schemas.parameters import ActuatorView, ParameterSetView
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 from markupsafe import Markup
 
-from app.own_effects.kept import SEARCHED, Kept, meaning_of, suggested, view
+from app.own_effects.own_effect import SEARCHED, Kept, meaning_of, suggested, view
 from app.pages.diagnosis_view import MissingView
 from ident.presets import preset
 from ident.words.number import plain

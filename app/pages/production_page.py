@@ -11,7 +11,7 @@ from app.errors import Failure
 from app.limits import service as limits
 from app.pages.limits_view import ERRORS, entries
 from app.parameters import service as parameters
-from app.parameters.wanted import Wanted
+from app.parameters.set_query import Wanted
 from app.regress import jobs as regressions
 from app.regress import words as rechecks
 from app.statistics import service as statistics

@@ -32,7 +32,7 @@ from app.pages.start_view import start_view
 from app.pages.thumbnails import thumbnail
 from app.parameters import service as parameters
 from app.parameters.error import USES, error_of
-from app.parameters.wanted import Wanted
+from app.parameters.set_query import Wanted
 from app.refits import lineage
 from app.verdicts.service import judge
 from app.workers import service as workers

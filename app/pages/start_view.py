@@ -6,7 +6,7 @@ from collections import Counter
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
-from app.own_effects.kept import Kept
+from app.own_effects.own_effect import Kept
 from ident.effects import CATALOGUE
 from ident.effects.effect import Effect
 from ident.errors import Unusable

@@ -9,7 +9,7 @@ from typing import Any
 
 from app.context import Context
 from app.parameters import repository
-from app.parameters.wanted import Wanted
+from app.parameters.set_query import Wanted
 
 _FORMULA = ("=", "+", "-", "@", "\t", "\r")  # a spreadsheet would run a text cell that begins so
 _BLOCK = 2000  # sets in memory

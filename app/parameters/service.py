@@ -11,7 +11,7 @@ from app.context import Context
 from app.errors import Failure
 from app.paging import cursor, keys_of
 from app.parameters import export, repository
-from app.parameters.wanted import Wanted, wanted
+from app.parameters.set_query import Wanted, wanted
 from app.tables import SetRow
 from schemas.parameters import ParameterSetPage, ParameterSetView
 

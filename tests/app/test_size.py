@@ -18,8 +18,8 @@ from sqlalchemy.orm import Session, sessionmaker
 from app.context import Context
 from app.database import sessions
 from app.parameters import export
-from app.parameters.repository import found
-from app.parameters.wanted import Wanted
+from app.parameters.repository import matching_sets
+from app.parameters.set_query import Wanted
 from benchmarks.line_filled import PARAMETERS, fill
 
 SETS = 20_000
@@ -36,9 +36,9 @@ def many(tmp_path_factory: pytest.TempPathFactory) -> Iterator[sessionmaker[Sess
 
 @pytest.fixture(autouse=True)
 def _small(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(found, "FEW", FEW)
-    monkeypatch.setattr(found, "_SAMPLE", FEW // 10)
-    monkeypatch.setattr(found, "_TESTED", FEW // 20)
+    monkeypatch.setattr(matching_sets, "FEW", FEW)
+    monkeypatch.setattr(matching_sets, "_SAMPLE", FEW // 10)
+    monkeypatch.setattr(matching_sets, "_TESTED", FEW // 20)
 
 
 def within(share: float, *names: str, **others: Any) -> Wanted:
@@ -76,7 +76,7 @@ def plans(session: Session, wanted: Wanted, before: int | None) -> list[list[str
 
     connection = session.connection()
     event.listen(connection, "before_cursor_execute", note)
-    found.numbers(session, wanted, before, 100)
+    matching_sets.numbers(session, wanted, before, 100)
     event.remove(connection, "before_cursor_execute", note)
     explained = [connection.exec_driver_sql(f"EXPLAIN QUERY PLAN {text}", given) for text, given in sent]
     return [[row[-1] for row in rows] for rows in explained]
@@ -99,7 +99,7 @@ def test_a_page_is_found_by_the_index_that_suits(many: sessionmaker[Session], ca
 def every(session: Session, wanted: Wanted, limit: int) -> list[int]:
     """The numbers on every page, one after the other."""
     seen: list[int] = []
-    while page := found.numbers(session, wanted, seen[-1] if seen else None, limit):
+    while page := matching_sets.numbers(session, wanted, seen[-1] if seen else None, limit):
         seen += page
     return seen
 

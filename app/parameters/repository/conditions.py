@@ -9,7 +9,7 @@ from typing import Any
 from sqlalchemy import BindParameter, ColumnElement, Select, bindparam, func, select
 from sqlalchemy.orm import aliased
 
-from app.parameters.wanted import Wanted
+from app.parameters.set_query import Wanted
 from app.tables import ApprovalRow, SetRow, ValueRow
 
 Numbers = Select[Any]

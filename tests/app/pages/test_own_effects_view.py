@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import pytest
 
-from app.own_effects.kept import Kept, suggested, suited, view, written_down
+from app.own_effects.own_effect import Kept, suggested, suited, view, written_down
 from app.pages.own_effects_view import kept_rows
 from tests.app.test_custom_effects import OWN
 

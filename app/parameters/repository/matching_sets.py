@@ -28,7 +28,7 @@ from app.parameters.repository.conditions import (
     shape,
     values,
 )
-from app.parameters.wanted import Wanted
+from app.parameters.set_query import Wanted
 
 FEW = 20_000
 """Sets of one condition that are collected at most, and of the newest that are looked through first."""

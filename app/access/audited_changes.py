@@ -16,8 +16,8 @@ from sqlalchemy.orm import Session, sessionmaker
 from starlette.types import Scope
 
 from app.access import repository
+from app.access.caller import Who
 from app.access.roles import declared
-from app.access.who import Who
 from app.database import on_commit
 from app.request_id import request_id
 

@@ -8,7 +8,7 @@ from contextlib import contextmanager
 from sqlalchemy.orm import Session
 
 from app.limits import repository
-from app.limits.holding import bounds_of
+from app.limits.bounds_in_force import bounds_of
 from app.limits.verdict import Judged, judged_by
 from app.tables import LimitRow, SetRow
 from app.webhooks.outbox import announce, is_heard

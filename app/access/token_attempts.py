@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from math import ceil
 
+from app.access.caller import Who
 from app.access.identity import Shown, identify
 from app.access.rates import Rate
 from app.access.roles import unknown
-from app.access.who import Who
 from app.context import Context
 from app.errors import Failure
 from app.lru import LRU

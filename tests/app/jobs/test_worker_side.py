@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 
-from app.jobs import at_work
+from app.jobs import worker_side
 from app.jobs.stored_state import unpacked, whole
 from app.jobs.work import State, Task, Work
 from app.storage import Storage
@@ -46,21 +46,21 @@ def searched(task: Task, turn: str, lost_after: int | None = None) -> tuple[Any,
     """What a search ends with as the queue has it done, and how many bytes each step was sent."""
     sent: list[int] = []
 
-    def asked(name: at_work.Step, state: State) -> State:
-        given = at_work.short(state)
+    def asked(name: worker_side.Step, state: State) -> State:
+        given = worker_side.short(state)
         try:
-            made: State = at_work.step(turn, Growing, task, name, pickle.loads(pickle.dumps(given)), silent)
-        except at_work.Unheld:
+            made: State = worker_side.step(turn, Growing, task, name, pickle.loads(pickle.dumps(given)), silent)
+        except worker_side.Unheld:
             given = state
-            made = at_work.step(turn, Growing, task, name, pickle.loads(pickle.dumps(given)), silent)
+            made = worker_side.step(turn, Growing, task, name, pickle.loads(pickle.dumps(given)), silent)
         sent.append(len(pickle.dumps(given)))
         return pickle.loads(pickle.dumps(made))
 
-    now = at_work.step(turn, Growing, task, "begin", silent)
+    now = worker_side.step(turn, Growing, task, "begin", silent)
     steps = 0
     while not now["state"]["done"]:
         if steps == lost_after:
-            at_work.leave(turn)
+            worker_side.leave(turn)
         now = whole(now["state"], asked("advance", now["state"]))
         steps += 1
     result = asked("finish", now["state"])
@@ -93,7 +93,7 @@ def test_a_process_that_was_lost_is_told_all_once(task: Task, lost_after: int) -
 
 
 def test_what_is_known_of_another_step_is_not_taken_for_it(task: Task) -> None:
-    first = at_work.step("d", Growing, task, "begin", silent)["state"]
-    at_work.step("d", Growing, task, "advance", at_work.short(first), silent)
-    with pytest.raises(at_work.Unheld):
-        at_work.step("d", Growing, task, "advance", at_work.short(first), silent)
+    first = worker_side.step("d", Growing, task, "begin", silent)["state"]
+    worker_side.step("d", Growing, task, "advance", worker_side.short(first), silent)
+    with pytest.raises(worker_side.Unheld):
+        worker_side.step("d", Growing, task, "advance", worker_side.short(first), silent)
