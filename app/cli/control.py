@@ -10,7 +10,7 @@ import typer
 from app.cli.at_option import At, Over, Sets, moved_to
 from app.cli.before_option import CaseBefore, EarlierFit, EarlierGain, earlier_case
 from app.cli.figure_files import FORMATS, write_figure
-from app.cli.given import read_fit
+from app.cli.input_files import read_fit
 from app.cli.output import write_bytes, write_json
 from app.cli.rig_option import RigFile, rig_in
 from app.cli.spread_option import SpreadGiven, spread_in

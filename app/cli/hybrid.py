@@ -11,8 +11,8 @@ from app.cli.arguments import effect_values
 from app.cli.at_option import At, Over, Sets, moved_to
 from app.cli.before_option import Before, CaseBefore, EarlierFit, EarlierGain, earlier_case
 from app.cli.figure_files import write_figures
-from app.cli.given import read_fit
 from app.cli.hybrid_parts import PartsAsked, show_parts
+from app.cli.input_files import read_fit
 from app.cli.output import STANDARD_OUTPUT, check_target, write_bytes, write_json
 from app.cli.progress import shown
 from app.cli.rig_option import RigFile, rig_in

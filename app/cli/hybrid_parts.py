@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 from app.cli.at_option import moved_to
 from app.cli.before_option import Before, earlier_parts
 from app.cli.figure_files import write_figures
-from app.cli.given import read_fit
+from app.cli.input_files import read_fit
 from app.cli.output import STANDARD_OUTPUT, write_json
 from app.cli.progress import shown
 from app.cli.spread_option import spread_in
