@@ -14,7 +14,7 @@ from ident.rig.limits import RigLimits
 from ident.rig.provenance import UNSTATED, Provenance
 from ident.rig.regulator import PositionControl
 from ident.run import Run
-from ident.words.shown import Listing, Shown
+from ident.words.result_tables import Listing, Shown
 
 
 @dataclass(frozen=True)

@@ -15,8 +15,8 @@ from ident.rounding import ROUNDING
 from ident.slopes import slopes
 from ident.words.engineering import multiple
 from ident.words.number import plain
+from ident.words.result_tables import Listing, Shown
 from ident.words.run_name import run_name
-from ident.words.shown import Listing, Shown
 
 Samples = NDArray[np.float64]
 

@@ -31,7 +31,7 @@ from ident.hybrid.what_if import what_if
 from ident.matrix import Actuator
 from ident.residuals.survey import survey
 from ident.run import Specimen
-from ident.words.shown import MOST_ROWS, Listing, Shown, html, text
+from ident.words.result_tables import MOST_ROWS, Listing, Shown, html, text
 from tests.hybrid.cases import fitted, of_qian
 from tests.hybrid.coupled_cases import beam as several
 

@@ -33,8 +33,7 @@ from ident.run import USES
 from ident.words.engineering import quantity
 from ident.words.error import ErrorOf, error_in_print, errors_line
 from ident.words.percent import percent_in_print
-from ident.words.titles import with_effects
-from ident.words.uses import data
+from ident.words.titles import data, with_effects
 from schemas.annotation import AnnotationView
 from schemas.deletion import DeletionView
 from schemas.fit import LadderView

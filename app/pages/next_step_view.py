@@ -10,8 +10,8 @@ from app.fits.service import Yardstick
 from app.parameters.error import Use, error_of
 from ident.diagnosis.result import Verdict
 from ident.words.error import ErrorOf
-from ident.words.listed import all_of
 from ident.words.number import plain
+from ident.words.sentence import all_of
 from ident.words.titles import title
 from schemas.fit import JobView
 from schemas.parameters import ActuatorView, ParameterSetView

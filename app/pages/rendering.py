@@ -17,8 +17,7 @@ from ident.words.error import ErrorOf
 from ident.words.percent import percent_in_print
 from ident.words.sentence import sentence
 from ident.words.severity import level
-from ident.words.titles import title
-from ident.words.uses import DATA
+from ident.words.titles import DATA, title
 
 HERE = Path(__file__).parent
 STATIC = HERE / "static"

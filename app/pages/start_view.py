@@ -18,7 +18,7 @@ from ident.presets.suitable_models import in_question
 from ident.stages import PLACES
 from ident.words.engineering import power_of, with_unit
 from ident.words.number import trimmed
-from ident.words.symbols import symbol
+from ident.words.titles import symbol
 from schemas.matrix import MatrixView
 
 

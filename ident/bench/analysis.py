@@ -31,7 +31,7 @@ from ident.errors import Unusable
 from ident.fit.levenberg_marquardt import Way
 from ident.parallel import each
 from ident.rig.regulator import PositionControl
-from ident.words.shown import Shown
+from ident.words.result_tables import Shown
 
 FIRST_T = BENCH_CRITERIA.time_constants.first
 """s, where the search for T begins."""

@@ -34,7 +34,7 @@ from ident.rig.regulator import Regulator
 from ident.words.engineering import quantity
 from ident.words.message import Message, message
 from ident.words.percent import PER_CENT
-from ident.words.shown import Listing, Shown
+from ident.words.result_tables import Listing, Shown
 
 Array = NDArray[np.float64]
 _OF = BENCH_CRITERIA.position_loop

@@ -7,8 +7,8 @@ from dataclasses import asdict, dataclass, field
 from typing import Any, Literal
 
 from ident.words.message import Message, message
+from ident.words.result_tables import Listing, Shown
 from ident.words.severity import level
-from ident.words.shown import Listing, Shown
 
 Severity = Literal["note", "doubt", "fault"]
 

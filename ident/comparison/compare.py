@@ -32,7 +32,7 @@ from ident.unstable import UNSTABLE, bounded
 from ident.words.engineering import quantity
 from ident.words.error import ErrorOf, first_line
 from ident.words.percent import percent
-from ident.words.shown import Listing, Shown
+from ident.words.result_tables import Listing, Shown
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]

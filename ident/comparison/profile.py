@@ -34,7 +34,7 @@ from ident.words.engineering import multiple, quantity
 from ident.words.error import error_said
 from ident.words.nearest import did_you_mean
 from ident.words.number import plain
-from ident.words.shown import Listing, Shown
+from ident.words.result_tables import Listing, Shown
 
 Array = NDArray[np.float64]
 BOUND = 3.841458820694124  # of chi squared with one degree of freedom: 95 % lie below

@@ -15,7 +15,7 @@ from ident.design.excitation import KINDS, PERIODIC, excitation
 from ident.run import Specimen
 from ident.words.conditions import amplitude
 from ident.words.percent import percent
-from ident.words.shown import Listing, Shown
+from ident.words.result_tables import Listing, Shown
 
 Array = NDArray[np.float64]
 

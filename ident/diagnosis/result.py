@@ -18,7 +18,7 @@ from ident.residuals.budget import Budget
 from ident.run import USES, Specimen
 from ident.words.engineering import quantity
 from ident.words.error import ErrorOf, first_line
-from ident.words.shown import Shown, in_brief
+from ident.words.result_tables import Shown, in_brief
 
 Errors = Mapping[str, float | None]
 """Eq. (17) averaged over the runs of a kind: fit, held_out, verify; None where there are none."""

@@ -10,11 +10,10 @@ from ident.diagnosis.summary import summary
 from ident.preprocessing.told import told
 from ident.words.error import error_said
 from ident.words.message import message
-from ident.words.percent import percent
+from ident.words.percent import percent, probability_said
 from ident.words.plus_minus import UNDETERMINED, plus_minus
-from ident.words.probability import probability_said
-from ident.words.shown import Listing, listings
-from ident.words.uses import DATA
+from ident.words.result_tables import Listing, listings
+from ident.words.titles import DATA
 
 Row = tuple[str, ...]
 

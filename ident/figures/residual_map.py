@@ -23,7 +23,7 @@ from ident.fit.result import FitResult
 from ident.matrix import Actuator
 from ident.residuals.breakdown import Breakdown, breakdown, noise_in_bands, stated_amplitude
 from ident.run import Run
-from ident.words.uses import DATA
+from ident.words.titles import DATA
 
 MOST = 100  # rows
 _ROWS = ((30, 15, 11), (60, 12, 10), (MOST, 10, 9))  # up to so many rows: pixels a row, and the size of its label

@@ -13,7 +13,7 @@ from ident.figures.render import Chart, datasets
 from ident.figures.subjects import Compared
 from ident.figures.theme import Look
 from ident.matrix import Actuator
-from ident.words.uses import DATA
+from ident.words.titles import DATA
 
 _STEP = 15  # pixels a run
 

@@ -16,7 +16,7 @@ from ident.words.engineering import power_of, printed_unit, scaled_unit
 from ident.words.error import ErrorOf
 from ident.words.percent import percent as in_percent
 from ident.words.run_name import run_name
-from ident.words.uses import DATA
+from ident.words.titles import DATA
 
 _ACROSS = 105
 """[letters] Of a caption that a figure of the usual width has room for. Test: tests/browser/test_pages.py."""

@@ -17,7 +17,7 @@ from ident.run import USES
 from ident.unstable import UNSTABLE
 from ident.words.engineering import quantity
 from ident.words.error import ErrorOf, first_line
-from ident.words.shown import Shown
+from ident.words.result_tables import Shown
 
 
 @dataclass(frozen=True)

@@ -9,8 +9,8 @@ from ident.preprocessing.told import told
 from ident.words.error import error_said
 from ident.words.percent import percent
 from ident.words.plus_minus import in_cells, plus_minus
-from ident.words.shown import Listing, listings
-from ident.words.uses import DATA
+from ident.words.result_tables import Listing, listings
+from ident.words.titles import DATA
 
 USES = tuple(DATA.values())
 

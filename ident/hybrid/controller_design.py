@@ -33,7 +33,7 @@ from ident.run import Specimen
 from ident.stability.judgement import Judgement, judge
 from ident.words.message import message
 from ident.words.number import trimmed
-from ident.words.shown import Listing, Shown
+from ident.words.result_tables import Listing, Shown
 
 _TITLES = {"gain": "gain margin", "phase": "phase margin", "sensitivity_peak": "sensitivity peak"}
 LITTLE_MARGIN = 2.5

@@ -28,7 +28,7 @@ from ident.progress import Report, silent
 from ident.words.engineering import quantity
 from ident.words.message import message
 from ident.words.percent import percent
-from ident.words.shown import Listing, Shown
+from ident.words.result_tables import Listing, Shown
 
 Array = NDArray[np.float64]
 

@@ -19,7 +19,7 @@ from ident.hybrid.stability import coupled_loop
 from ident.parallel import each, one_thread
 from ident.progress import Progress, Report, silent
 from ident.words.number import count
-from ident.words.shown import Listing, Shown
+from ident.words.result_tables import Listing, Shown
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]

@@ -19,7 +19,7 @@ from ident.plain import read, written
 from ident.run import Specimen
 from ident.words.engineering import quantity
 from ident.words.message import Message, message
-from ident.words.shown import Shown
+from ident.words.result_tables import Shown
 
 Array = NDArray[np.float64]
 _SHOWN = 600  # points of a curve that are kept

@@ -29,7 +29,7 @@ from ident.stability.judgement import STABLE, UNSTABLE, Judgement
 from ident.words.engineering import quantity
 from ident.words.message import message
 from ident.words.percent import percent
-from ident.words.shown import Listing, Shown
+from ident.words.result_tables import Listing, Shown
 
 Array = NDArray[np.float64]
 RUNAWAY = 50.0

@@ -25,7 +25,7 @@ from ident.parallel import each
 from ident.progress import Progress, Report, silent
 from ident.words.engineering import quantity
 from ident.words.percent import percent
-from ident.words.shown import Listing, Shown
+from ident.words.result_tables import Listing, Shown
 
 Array = NDArray[np.float64]
 SHARES = 20

@@ -18,8 +18,8 @@ from ident.words.engineering import quantity
 from ident.words.message import message
 from ident.words.nearest import did_you_mean
 from ident.words.number import plain, trimmed
+from ident.words.result_tables import Listing, Shown
 from ident.words.run_name import run_name
-from ident.words.shown import Listing, Shown
 
 Array = NDArray[np.float64]
 ROWS = 4096

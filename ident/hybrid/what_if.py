@@ -33,7 +33,7 @@ from ident.stability.gain_margin import WANTED
 from ident.stability.judgement import STABLE, UNSTABLE, Judgement, judge
 from ident.words.engineering import multiple
 from ident.words.number import plain, trimmed
-from ident.words.shown import Listing, Shown
+from ident.words.result_tables import Listing, Shown
 
 Array = NDArray[np.float64]
 USUAL_GAINS = (1.0, 10.0)

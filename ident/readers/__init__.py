@@ -30,8 +30,8 @@ from ident.readers.text import read_text
 from ident.run import Run
 from ident.words.arguments import of_kind
 from ident.words.number import count
+from ident.words.record_description import Stated
 from ident.words.run_name import run_name
-from ident.words.stated import Stated
 
 __all__ = ["Limits", "from_arrays", "from_table", "read_matrix", "read_source"]
 
@@ -61,7 +61,7 @@ def read_matrix(path: Path | str, limits: Limits = LIMITS, **stated: Unpack[Stat
     """The matrix in a folder, beside its matrix.yaml, or in a .zip, nothing being unpacked to disk.
 
     Of a bare record, as run.csv, the caller states what matrix.yaml would: the unit of each channel, the clock, and
-    what else is known, see :class:`ident.words.stated.Stated`.
+    what else is known, see :class:`ident.words.record_description.Stated`.
 
     Raises Unusable for everything that is wrong with it; docs/matrix-format.md lists the codes.
     """

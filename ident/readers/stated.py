@@ -25,8 +25,8 @@ from ident.readers.table import Array, Table
 from ident.units.quantity import shown
 from ident.words.arguments import of_kind
 from ident.words.nearest import did_you_mean
+from ident.words.record_description import Stated
 from ident.words.run_name import run_name
-from ident.words.stated import Stated
 
 _OF_NO_RUN = ("units", "columns", "actuator")
 _EXAMPLE = 'state them, as units={"command": "mm", "displacement": "mm"}'

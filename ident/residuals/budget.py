@@ -27,7 +27,7 @@ from ident.parallel import each
 from ident.residuals.decimation import averaged, stride
 from ident.run import Run
 from ident.words.percent import percent
-from ident.words.shown import Listing, Shown
+from ident.words.result_tables import Listing, Shown
 
 Array = NDArray[np.float64]
 _REACHES = (3, 8, 24)  # samples of the correction to either side of now; the best is taken

@@ -14,8 +14,8 @@ from ident.residuals.curves import Curve, curve_fits, curves_of, traced
 from ident.residuals.trends import Trend, trends
 from ident.residuals.whiteness import Whiteness, by_use
 from ident.words.percent import percent
-from ident.words.shown import Listing, Shown
-from ident.words.uses import data
+from ident.words.result_tables import Listing, Shown
+from ident.words.titles import data
 
 
 @dataclass(frozen=True)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from ident.words.listed import MOST, first_of
+from ident.words.sentence import MOST, first_of
 
 
 @pytest.mark.parametrize(

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from ident.words.shown import Listing, Shown, html
+from ident.words.result_tables import Listing, Shown, html
 
 
 class Result(Shown):
