@@ -12,7 +12,7 @@ import numpy as np
 
 from ident.drafts.answers import NONE, Answer, Answers, FileAnswers
 from ident.drafts.names import suggested, unit_of, unnamed_clock
-from ident.drafts.raw import Column, RawFile
+from ident.drafts.raw_file import Column, RawFile
 from ident.drafts.steps import moves_in_steps
 from ident.errors import Unusable
 from ident.readers import PACKED

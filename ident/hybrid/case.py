@@ -29,10 +29,10 @@ from numpy.typing import NDArray
 
 from ident.errors import Unusable
 from ident.hybrid.ground_motion import Ground, ground_of
-from ident.readers.fields import Fields
 from ident.readers.loop_settings import loop_gain, sample_rate
 from ident.readers.rig import rig_of
 from ident.readers.strict_yaml import read_yaml
+from ident.readers.typed_fields import Fields
 from ident.rig.limits import RigLimits
 from ident.run import Specimen
 from ident.units.quantity import quantity, shown, split

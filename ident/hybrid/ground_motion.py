@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ident.errors import Unusable
-from ident.readers.fields import Fields
+from ident.readers.typed_fields import Fields
 from ident.units.quantity import shown, unit_scale
 from ident.words.nearest import did_you_mean
 

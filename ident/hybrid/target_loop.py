@@ -9,8 +9,8 @@ import numpy as np
 
 from ident.errors import Unusable
 from ident.hybrid.rational import Rational
-from ident.readers.fields import Fields
 from ident.readers.strict_yaml import read_yaml
+from ident.readers.typed_fields import Fields
 from ident.units.quantity import parameter_value, shown
 
 KEYS = ("name", "numerator", "denominator", "roll_off")

@@ -11,7 +11,6 @@ from typing import Unpack
 
 from ident.errors import Unusable
 from ident.matrix import Matrix
-from ident.readers.apart import read_apart
 from ident.readers.archive import Archive
 from ident.readers.controldesk import read_controldesk
 from ident.readers.dat import read_dat
@@ -20,11 +19,12 @@ from ident.readers.dialect import FOUND, Dialect
 from ident.readers.gzipped import unpacked
 from ident.readers.hold import with_hold
 from ident.readers.limits import LIMITS, Limits, check_size
+from ident.readers.record_without_description import from_arrays, from_table, of_file
 from ident.readers.rig import rig_in
 from ident.readers.run import read_run
 from ident.readers.run_description import RunDescription
+from ident.readers.sandboxed_parser import read_apart
 from ident.readers.source import DESCRIPTION, Beside, Folder, Source, alone, beside
-from ident.readers.stated import from_arrays, from_table, of_file
 from ident.readers.table import Table
 from ident.readers.text import read_text
 from ident.run import Run

@@ -6,11 +6,11 @@ Those of MTS's station manager (793) are some lines about the test, names, units
 from __future__ import annotations
 
 from ident.errors import Unusable
-from ident.readers.apart import read_apart
 from ident.readers.diadem import HEADS, read_diadem
 from ident.readers.dialect import Dialect
 from ident.readers.layout import line_start
 from ident.readers.limits import Limits
+from ident.readers.sandboxed_parser import read_apart
 from ident.readers.source import Beside
 from ident.readers.table import Table
 from ident.readers.text import as_utf8, is_number, read_text

@@ -159,7 +159,7 @@ PARSERS = {
 @pytest.mark.parametrize(("parser", "code"), [("eats", "too-large"), ("hangs", "too-slow"), ("crashes", "broken-eats")])
 def test_a_parser_that_goes_astray_ends_as_a_refusal(parser, code, tmp_path, monkeypatch):
     """One that eats memory, one that never ends, one that takes its process down."""
-    from ident.readers.apart import read_apart
+    from ident.readers.sandboxed_parser import read_apart
 
     _install(tmp_path, monkeypatch, parser)
     limits = Limits(parser_seconds=1.0 if parser == "hangs" else 10.0, parser_memory=1 << 30)
@@ -169,7 +169,7 @@ def test_a_parser_that_goes_astray_ends_as_a_refusal(parser, code, tmp_path, mon
 
 
 def test_what_a_parser_prints_is_not_taken_for_its_answer(tmp_path, monkeypatch):
-    from ident.readers.apart import read_apart
+    from ident.readers.sandboxed_parser import read_apart
 
     _install(tmp_path, monkeypatch, "prints")
     table = read_apart("prints", b"x", "run", LIMITS)

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from ident.drafts.raw import read_raw
-from ident.drafts.tables_apart import with_tables_apart
+from ident.drafts.raw_file import read_raw
+from ident.drafts.separate_tables import with_tables_apart
 
 
 def cycles(first: str = "", ending: str = "\n") -> bytes:

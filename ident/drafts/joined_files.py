@@ -7,7 +7,7 @@ from pathlib import PurePosixPath
 
 import numpy as np
 
-from ident.drafts.raw import JOINED, Column, RawFile
+from ident.drafts.raw_file import JOINED, Column, RawFile
 from ident.drafts.steps import moves_in_steps
 from ident.errors import Unusable
 from ident.readers.clock import evened, read_clock

@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from pathlib import PurePosixPath
 
-from ident.drafts.raw import CUT
+from ident.drafts.raw_file import CUT
 from ident.errors import Unusable
 from ident.readers import TEXT, ending_of
 from ident.readers.layout import HEAD_LINES, Layout, line_start, recognise
