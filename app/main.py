@@ -88,7 +88,7 @@ _PATIENCE = 5  # s in which what is being answered ends, before the service does
 _KEPT = 75  # s that a connection waits for its next request: clients let go after 5, proxies after 60, and first
 _TURN = 1e-3  # s after which a figure that is drawn lets an answer take its turn: the interpreter's own are 5
 READERS = 2  # uploads that are read at once
-WORK = ("app.kinds", "ident.simulation.ready")  # what processes apart have imported when they begin
+WORK = ("app.kinds", "ident.simulation.numba_preload")  # what processes apart have imported when they begin
 _OF_EACH: dict[str, Any] = {
     "generate_unique_id_function": openapi.named,
     "dependencies": [Depends(refuse_undeclared)],

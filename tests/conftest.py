@@ -59,7 +59,8 @@ def pytest_collection_finish(session: pytest.Session) -> None:
                 if hasattr(function, "py_func"):
                     shared(function)
     if session.config.getoption("--workers") > 1:
-        for name in ("ident.simulation.ready", "control"):  # what each worker would import in its tests, for a second
+        # What each worker would import in its tests, for a second.
+        for name in ("ident.simulation.numba_preload", "control"):
             importlib.import_module(name)
     if "hypothesis" in sys.modules and not asked_for_full(session.config):
         from hypothesis.internal.conjecture import providers

@@ -27,7 +27,7 @@ from ident.custom.definition import HANDED_ON, preset_with
 from ident.equations.equation import Equation
 from ident.equations.mathml import mathml
 from ident.fit.result import FitResult, Undetermined
-from ident.preprocessing.told import told
+from ident.preprocessing.pipeline import outcome_sentences
 from ident.presets import Preset, preset
 from ident.run import USES
 from ident.words.engineering import quantity
@@ -143,7 +143,7 @@ def fit_page(
         errors=error_rows(fit),
         combinations=combination_rows(fit),
         undetermined=fit.undetermined,
-        notes=(*fit.notes, *told(fit.preprocessing, fit.notes)),
+        notes=(*fit.notes, *outcome_sentences(fit.preprocessing, fit.notes)),
         runs=tuple(
             FittedRun(conditions(known[run.id]), run.error, run.offset, run.words)
             for run in fit.runs

@@ -10,11 +10,11 @@ from typing import Any
 import numpy as np
 
 from ident.bench.analysis import Analysis
+from ident.bench.estimate import Found
 from ident.bench.least_margins import least_margins
 from ident.bench.model import dead_space
 from ident.bench.position_error import position_error
-from ident.bench.quantity import Found
-from ident.bench.straightness import of_table
+from ident.bench.speed_linearity import of_table
 from ident.errors import Unusable
 from ident.fit.sheet_quantity import SheetQuantity
 from ident.readers.strict_yaml import read_yaml

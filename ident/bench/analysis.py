@@ -19,8 +19,8 @@ from ident.bench.frequency import Response, frequency_response
 from ident.bench.least_squares import Solution, solve
 from ident.bench.model import CONSTANTS, Model
 from ident.bench.motion import groups
-from ident.bench.observed import Observed, errors, observe
 from ident.bench.records import BenchSet, Record, step_of
+from ident.bench.reduced_record import Observed, errors, observe
 from ident.bench.residual import Residual
 from ident.bench.scatter import scatter
 from ident.bench.speed import Speed, speed

@@ -19,10 +19,10 @@ from ident.bench.criteria import BENCH_CRITERIA
 from ident.bench.effect_ranking import centred, finely, with_effect
 from ident.bench.least_squares import Solution, solve
 from ident.bench.model import CONSTANTS, Model, Models
-from ident.bench.observed import Observed, observe
 from ident.bench.outputs import errors_of, model_of, noise_floor
 from ident.bench.polish import polished, weak
 from ident.bench.records import Record, bench_set
+from ident.bench.reduced_record import Observed, observe
 from ident.bench.residual import Residual
 from ident.bench.speed_table import MONOTONE
 from ident.custom.definition import preset_with

@@ -9,10 +9,10 @@ from functools import cache
 import numpy as np
 from numpy.typing import NDArray
 
+from ident.bench.estimate import Found
 from ident.bench.least_squares import Solution
 from ident.bench.model import DELAY, Model
 from ident.bench.position_loop import AmplitudeMargin, margins, usual_amplitudes
-from ident.bench.quantity import Found
 from ident.bench.time_constant import DelayCheck
 from ident.rig.regulator import PositionControl
 

@@ -14,7 +14,7 @@ import numpy as np
 from ident.bench.criteria import BENCH_CRITERIA
 from ident.bench.least_squares import Solution, solve
 from ident.bench.model import Model
-from ident.bench.observed import Observed
+from ident.bench.reduced_record import Observed
 from ident.bench.residual import Residual
 from ident.fit.criteria import FIT_CRITERIA
 from ident.fit.local_optima import End, parted

@@ -7,9 +7,9 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from ident.bench.estimate import Found
 from ident.bench.least_squares import Solution
-from ident.bench.observed import Observed
-from ident.bench.quantity import Found
+from ident.bench.reduced_record import Observed
 from ident.bench.scatter import PLACES
 from ident.noise.effective_sample_size import independent_samples
 from ident.rounding import TINY

@@ -15,12 +15,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ident.bench.criteria import BENCH_CRITERIA
+from ident.bench.estimate import Found
 from ident.bench.least_squares import Solution, solve
 from ident.bench.model import Model, dead_space
 from ident.bench.motion import groups, onsets
-from ident.bench.observed import Observed, observe
-from ident.bench.quantity import Found
 from ident.bench.records import Record
+from ident.bench.reduced_record import Observed, observe
 from ident.bench.residual import Residual
 from ident.bench.scatter import scatter
 from ident.bench.speed_table import SpeedTable

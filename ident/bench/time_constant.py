@@ -14,10 +14,10 @@ import scipy  # optimize, which takes a third of a second to load, is loaded whe
 from numpy.typing import NDArray
 
 from ident.bench.criteria import BENCH_CRITERIA
+from ident.bench.estimate import Found
 from ident.bench.least_squares import Solution, solve
 from ident.bench.model import Model
-from ident.bench.observed import Observed
-from ident.bench.quantity import Found
+from ident.bench.reduced_record import Observed
 from ident.bench.residual import Residual
 from ident.bench.scatter import scatter
 from ident.effects.command_delay import COMMAND_DELAY

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from ident.diagnosis.discovery.term_count_curve import term_count_curve
 from ident.diagnosis.result import Diagnosis, Ranked
 from ident.diagnosis.summary import summary
-from ident.preprocessing.told import told
+from ident.preprocessing.pipeline import outcome_sentences
 from ident.words.error import error_said
 from ident.words.message import message
 from ident.words.percent import percent, probability_said
@@ -43,7 +43,7 @@ def diagnosis_listings(diagnosis: Diagnosis) -> Iterator[Listing | str]:
         yield "each on top of those before"
     for note in diagnosis.notes:
         yield f"note: {note}"
-    for said in told(diagnosis.preprocessing, diagnosis.notes):
+    for said in outcome_sentences(diagnosis.preprocessing, diagnosis.notes):
         yield f"preprocessing: {said}"
     yield diagnosis.verdict.text
     yield "\n".join(summary(diagnosis))

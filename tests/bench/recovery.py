@@ -8,7 +8,7 @@ from functools import cached_property
 
 import numpy as np
 
-from ident.bench import quantity
+from ident.bench import estimate
 from ident.bench.acceptance import found_quantities
 from ident.bench.analysis import Analysis, analyse
 from ident.bench.model import Model
@@ -25,7 +25,7 @@ class Found:
     records: list[reference.Record]
 
     @cached_property
-    def quantities(self) -> dict[str, quantity.Found]:
+    def quantities(self) -> dict[str, estimate.Found]:
         """Those of the sheet, as found."""
         return found_quantities(self.analysis)
 

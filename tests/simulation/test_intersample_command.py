@@ -8,8 +8,8 @@ import pytest
 from ident.linear import LinearModel
 from ident.presets import PRESETS, preset
 from ident.run import Run
-from ident.simulation.between import at_nodes, band_limited, nodes
 from ident.simulation.inputs import fine
+from ident.simulation.intersample_command import at_nodes, band_limited, nodes
 from ident.simulation.recursion import discretise, respond
 from ident.simulation.simulate import responses
 from ident.simulation.steps import steps_needed

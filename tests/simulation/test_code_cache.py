@@ -11,14 +11,14 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from ident.simulation import cache, kept
+from ident.simulation import cache, code_cache
 from ident.simulation.kernel import machine_code
 from tests.simulation.test_machine_code import CASES, given, with_machine
 
 
 @pytest.fixture
 def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    monkeypatch.setattr(kept, "cache_folder", lambda: tmp_path)
+    monkeypatch.setattr(code_cache, "cache_folder", lambda: tmp_path)
     return tmp_path
 
 
@@ -52,7 +52,7 @@ def test_threads_that_need_one_at_once_compile_it_once(folder):  # noqa: ARG001
 
     def asked(_: int) -> bytes:
         begun.wait()
-        return kept.kept("a text", lambda: compiled.append("once") or time.sleep(0.1) or b"code")  # type: ignore[func-returns-value]
+        return code_cache.kept("a text", lambda: compiled.append("once") or time.sleep(0.1) or b"code")  # type: ignore[func-returns-value]
 
     with ThreadPoolExecutor(4) as threads:
         assert set(threads.map(asked, range(4))) == {b"code"}
