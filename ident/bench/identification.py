@@ -32,7 +32,7 @@ from ident.fit.local_optima import distinct
 from ident.fit.parameter_bounds import of_model
 from ident.fit.result import Estimate, FitResult, RunError, Undetermined
 from ident.fit.run_errors import rmse_of
-from ident.fit.run_sizes import typical
+from ident.fit.run_sizes import run_sizes
 from ident.fit.search import Search, State, evolution, options_of
 from ident.fit.settings import Settings
 from ident.fit.space import Axis, Space
@@ -96,7 +96,7 @@ class BenchIdentification:
         """What the ranges of effects are measured by; the current is the command of a bench."""
         runs = [run.driven_by("current") for run in self.matrix.of_use("fit") if run.kind in BENCH]
         fastest = max((record.frequency or 0.0 for record in self.bench.records), default=0.0)
-        return typical(self.matrix, runs, 2.0 * np.pi * fastest)
+        return run_sizes(self.matrix, runs, 2.0 * np.pi * fastest)
 
     @property
     def generations(self) -> int:

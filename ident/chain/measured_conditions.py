@@ -14,7 +14,7 @@ MEASURED_CONDITIONS = {"Ps": (SUPPLY, "supply_pressure", "Pa"), "Nv": (VERTICAL,
 """The condition, which is the mean, with the input that is the rest of it, the channel, and its unit."""
 
 
-def varying(chain: Chain, runs: Iterable[Run]) -> Chain:
+def with_measured_conditions(chain: Chain, runs: Iterable[Run]) -> Chain:
     """The chain with every condition that some run measured followed sample by sample; other runs hold theirs."""
     runs = tuple(runs)
     for condition, (beside, channel, unit) in MEASURED_CONDITIONS.items():

@@ -13,7 +13,7 @@ EFFECT_THERE = "effect-there"
 """The code of a refusal to add what a fit has."""
 
 
-def extended(settings: Settings, effects: Sequence[str], custom: Sequence[Definition] = ()) -> Settings:
+def with_added_effects(settings: Settings, effects: Sequence[str], custom: Sequence[Definition] = ()) -> Settings:
     """The settings with further effects: those named, of the catalogue or defined, and all that `custom` defines.
 
     Definitions that the settings have already, of terms or own effects that were ranked, are found by name. Bounds,

@@ -16,7 +16,7 @@ _OF = FIT_CRITERIA.first_states
 
 
 @dataclass(frozen=True)
-class Least:
+class BestInitialState:
     """The first states (n,) with the smallest residual of a run, what was found there, and the damping of a step.
 
     `vain` rounds have passed since that counted; the steps go `back` to there once straight ones led nowhere.
@@ -30,7 +30,7 @@ class Least:
 
 
 @dataclass
-class Settling:
+class InitialStateEstimation:
     """The runs that settle, by their ids, with the `least` so far.
 
     Gauss and Newton's steps often lead to where the model is straight over a place where it is not, so the residual may
@@ -38,11 +38,11 @@ class Settling:
     that shrink (Levenberg and Marquardt).
     """
 
-    least: dict[str, Least] = field(default_factory=dict)
+    least: dict[str, BestInitialState] = field(default_factory=dict)
 
     def step(self, run: str, start: Array, found: NormalMatrices) -> tuple[Array, Array] | None:
         """From which states (n,) a run goes on, and how far along those that are free; None where they hold."""
-        best = self.least.get(run) or Least(start, found)
+        best = self.least.get(run) or BestInitialState(start, found)
         vain = 0 if found.power < (1.0 - _OF.helps) * best.found.power else best.vain + 1
         if found.power < best.found.power:
             best = replace(best, start=start, found=found, vain=vain, damping=best.damping / _OF.less)
@@ -57,7 +57,7 @@ class Settling:
         return (best.start, best.found.step(best.damping)) if best.back else (start, found.release)
 
 
-def better(ends: Sequence[Least]) -> Least:
+def better(ends: Sequence[BestInitialState]) -> BestInitialState:
     """Of the ends of several guesses that with the smallest residual of a run; of those as good, that with less offset.
 
     In saturation a position that is shifted changes nothing else.

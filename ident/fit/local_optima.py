@@ -16,7 +16,7 @@ _OF = FIT_CRITERIA.optima
 
 
 @dataclass(frozen=True)
-class End:
+class LocalOptimum:
     """Where the polish of one start ended: the error, the values by name, the point of the search space."""
 
     error: float
@@ -35,33 +35,35 @@ def distinct(points: Iterable[Array], most: int) -> list[Array]:
     return chosen
 
 
-def valley(ends: Sequence[End]) -> list[Array]:
+def equivalent_points(ends: Sequence[LocalOptimum]) -> list[Array]:
     """The points of the ends that have the error of the first: what differs among them the data do not determine."""
     return [end.point for end in ends if end.error <= ends[0].error * (1 + _OF.same)]
 
 
-def agreeing(ends: Sequence[End], best: End) -> int:
+def agreeing(ends: Sequence[LocalOptimum], best: LocalOptimum) -> int:
     """How many ends have the error of the best."""
     return sum(bool(end.error <= best.error * (1 + _OF.agree)) for end in ends)
 
 
-def at_bound(end: End) -> bool:
+def at_bound(end: LocalOptimum) -> bool:
     """Whether an axis ended at its bound."""
     return bool(np.any((end.point < _OF.edge) | (end.point > 1 - _OF.edge)))
 
 
-def rivals(ends: Sequence[End]) -> list[End]:
+def competing_optima(ends: Sequence[LocalOptimum]) -> list[LocalOptimum]:
     """The ends whose error is nearly that of the first, but not in one valley with it."""
     return [end for end in ends if ends[0].error * (1 + _OF.same) < end.error <= ends[0].error * (1 + _OF.near)]
 
 
-def parted(ends: Sequence[End], deviations: Mapping[str, float], label: Mapping[str, str]) -> Iterator[str]:
+def disagreements(
+    ends: Sequence[LocalOptimum], deviations: Mapping[str, float], label: Mapping[str, str]
+) -> Iterator[str]:
     """In words, where other starts ended within 1 % of the first one's error, but a standard error or more from it.
 
     `deviations` holds the standard errors of what is determined, `label` how each is called. Ends of the same error
     are a valley, and part of the standard errors.
     """
-    near = rivals(ends)
+    near = competing_optima(ends)
     far = {
         name: max(abs(end.values[name] - ends[0].values[name]) for end in near) / deviation
         for name, deviation in deviations.items()

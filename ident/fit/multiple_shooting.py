@@ -26,7 +26,7 @@ Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
-class Anchoring:
+class ShootingWindows:
     """Windows of so many samples, 0 for the whole run; `memory` (samples) of the speed's filter, 0: positions alone."""
 
     window: int
@@ -56,7 +56,7 @@ class Anchoring:
 class Stream:
     """A signal that is anchored part by part."""
 
-    def __init__(self, anchoring: Anchoring) -> None:
+    def __init__(self, anchoring: ShootingWindows) -> None:
         self._of = anchoring
         self._state: Array | None = None
         self._origin = np.zeros(())

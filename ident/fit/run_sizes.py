@@ -11,7 +11,7 @@ from ident.matrix import Matrix
 from ident.run import Run
 
 
-def typical(matrix: Matrix, runs: Sequence[Run], band: float) -> dict[str, float]:
+def run_sizes(matrix: Matrix, runs: Sequence[Run], band: float) -> dict[str, float]:
     """The mean conditions of the runs and :data:`ident.stages.scale.OF_THE_RUNS`, SI: all that a scale may read.
 
     `band` is the angular frequency up to which the command excites the machine, rad/s.

@@ -16,7 +16,7 @@ from ident.errors import Unusable
 from ident.fit.criteria import FIT_CRITERIA
 from ident.fit.parameter_bounds import of_model
 from ident.fit.run_sizes import measured_by
-from ident.fit.run_sizes import typical as sizes_of
+from ident.fit.run_sizes import run_sizes as sizes_of
 from ident.fit.settings import Settings
 from ident.matrix import Matrix
 from ident.presets import Preset

@@ -16,7 +16,7 @@ Held = tuple[float, float]
 """A command that is held, and where the output is of a position that nothing holds."""
 
 
-def standing(preset: Preset, runs: Sequence[Run], values: Mapping[str, Array], held: Sequence[Held]) -> Array:
+def steady_states(preset: Preset, runs: Sequence[Run], values: Mapping[str, Array], held: Sequence[Held]) -> Array:
     """The states in which runs of one kind stand, near those of the linear chain, (runs, v, n).
 
     `values` has every symbol of the chain, each an array that broadcasts to (runs, v); `held` is that of each run.

@@ -18,7 +18,7 @@ from ident.fit.criteria import FIT_CRITERIA
 from ident.fit.far_bounds import far_bounds
 from ident.fit.fitness import Fitness
 from ident.fit.information import aic
-from ident.fit.local_optima import parted
+from ident.fit.local_optima import disagreements
 from ident.fit.low_frequency_delay import slow_lag
 from ident.fit.multistart import Optimum
 from ident.fit.normal_matrices import NormalMatrices
@@ -109,7 +109,7 @@ def summarise(
     label = _labels(objective)
     known = {name: error for name, error in deviation.items() if name not in weak}
     against = () if window else tuple(contradicting(verify_runs, verify_errors))
-    told = parted(optimum.ends, known, {name: label[name][0] for name in known})
+    told = disagreements(optimum.ends, known, {name: label[name][0] for name in known})
     return FitResult(
         model=preset.name,
         effects=settings.effects,

@@ -20,7 +20,7 @@ from ident.chain.conditions import zeros
 from ident.effects.effect import off_values
 from ident.fit.criteria import FIT_CRITERIA
 from ident.fit.levenberg_marquardt import STEPS
-from ident.fit.local_optima import End
+from ident.fit.local_optima import LocalOptimum
 from ident.fit.multiple_shooting import innovations
 from ident.fit.multistart import Optimum
 from ident.fit.simulated_fitness import SimulatedFitness
@@ -84,7 +84,7 @@ def _best(
         left = _left(trial, point, memory)
         if left < least:
             values = {name: float(value[0]) for name, value in trial.space.values(point[None]).items()}
-            ends = (End(here.error, values, point),)
+            ends = (LocalOptimum(here.error, values, point),)
             best, least = replace(optimum, fitness=trial, point=point, here=here, as_good=point[None], ends=ends), left
     return best
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field, replace
 from ident.cached import cached_property
 from ident.chain.channels import refuse_unmeasured
 from ident.chain.disturbance import disturbed
-from ident.chain.measured_conditions import varying
+from ident.chain.measured_conditions import with_measured_conditions
 from ident.errors import Unusable
 from ident.matrix import Matrix
 from ident.parameter import Parameter
@@ -116,7 +116,7 @@ class Preset(Model):
             preset = replace(preset, data=replace(preset.data, share_force=()))
         preset = preset.disturbed_as(matrix, load)
         if preset.kind == "chain":
-            preset = replace(preset, chain=varying(preset.chain, matrix.runs))
+            preset = replace(preset, chain=with_measured_conditions(preset.chain, matrix.runs))
         return preset, matrix
 
     def _driven_as(self, matrix: Matrix) -> Preset:

@@ -8,7 +8,7 @@ from ident.effects.effect import Effect
 from ident.parameter import Starts
 
 
-def about(effect: Effect, middle: float) -> Effect:
+def about_stroke_centre(effect: Effect, middle: float) -> Effect:
     """The effect with its middle there, where it has one that nobody stated."""
     if effect.own or not middle:
         return effect

@@ -51,7 +51,7 @@ class Described(Protocol):
         ...
 
 
-def suited(runs: Sequence[Described], oil: bool = False) -> tuple[Preset, ...]:
+def suitable_models(runs: Sequence[Described], oil: bool = False) -> tuple[Preset, ...]:
     """The models that every run drives and shows, the likeliest first, of equals that with the fewest parameters.
 
     `oil` is whether parts of a machine with oil are stated (:attr:`ident.matrix.Actuator.states_oil`): without them no
@@ -80,7 +80,7 @@ def in_question(runs: Sequence[Described], machine: str = "", oil: bool = False)
     """
     if machine:
         return (preset(machine),)
-    found = suited(runs, oil)
+    found = suitable_models(runs, oil)
     if _rank(found[0], runs, oil) < _OPEN:
         return found[:1]
     return tuple(known for known in found if not known.chain.reads("Kp"))
@@ -93,7 +93,7 @@ def is_assumed_loop(model: Preset, runs: Sequence[Described]) -> bool:
 
 def without_loop(runs: Sequence[Described], oil: bool = False) -> tuple[Preset, ...]:
     """The models in question where nothing compares the output with the command, as on both sides of a gear."""
-    return tuple(known for known in suited(runs, oil) if not known.chain.reads("Kp"))
+    return tuple(known for known in suitable_models(runs, oil) if not known.chain.reads("Kp"))
 
 
 def on_a_spring(models: Collection[Preset], runs: Sequence[Described], oil: bool = False) -> tuple[Preset, ...]:

@@ -9,7 +9,7 @@ import pytest
 
 from ident.fit.fitness import Local, Steps
 from ident.fit.levenberg_marquardt import levenberg_marquardt
-from ident.fit.local_optima import End, distinct, parted, rivals, valley
+from ident.fit.local_optima import LocalOptimum, competing_optima, disagreements, distinct, equivalent_points
 from ident.fit.multistart import multistart
 from ident.fit.result import Starts
 from ident.fit.space import Axis, Space
@@ -74,7 +74,7 @@ def test_an_optimum_at_a_bound_is_begun_again():
 
 
 def said(ends, deviation: float = 0.1) -> list[str]:
-    return list(parted(ends, {"a": deviation}, LABEL))
+    return list(disagreements(ends, {"a": deviation}, LABEL))
 
 
 def test_two_optima_of_nearly_one_error_are_told():
@@ -108,18 +108,20 @@ def test_what_is_better_on_every_sample_is_the_fit():
 
 def test_ends_of_one_error_are_a_valley_and_no_rivals():
     """They widen the standard errors instead."""
-    ends = [End(error, {}, np.array([place])) for error, place in ((1.0, 0.1), (1.0 + 1e-8, 0.9), (1.001, 0.5))]
-    assert np.array(valley(ends)) == pytest.approx(np.array([[0.1], [0.9]]))
-    assert rivals(ends) == ends[2:]
+    ends = [
+        LocalOptimum(error, {}, np.array([place])) for error, place in ((1.0, 0.1), (1.0 + 1e-8, 0.9), (1.001, 0.5))
+    ]
+    assert np.array(equivalent_points(ends)) == pytest.approx(np.array([[0.1], [0.9]]))
+    assert competing_optima(ends) == ends[2:]
 
 
 def test_every_parameter_that_differs_is_named_the_farthest_first():
     """By the name under which it is reported; what is not determined has no standard error to count in."""
     ends = [
-        End(1.0, {"a": 1.0, "b": 5.0, "c": 0.0}, np.zeros(1)),
-        End(1.002, {"a": 3.0, "b": 6.0, "c": 9.0}, np.ones(1)),
+        LocalOptimum(1.0, {"a": 1.0, "b": 5.0, "c": 0.0}, np.zeros(1)),
+        LocalOptimum(1.002, {"a": 3.0, "b": 6.0, "c": 9.0}, np.ones(1)),
     ]
-    (text,) = parted(ends, {"a": 1.0, "b": 0.1}, LABEL)
+    (text,) = disagreements(ends, {"a": 1.0, "b": 0.1}, LABEL)
     assert text.endswith("differ from this fit: b/A^2 by 10, a by 2.")
 
 
