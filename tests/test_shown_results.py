@@ -31,7 +31,7 @@ from ident.hybrid.what_if import what_if
 from ident.matrix import Actuator
 from ident.residuals.survey import survey
 from ident.run import Specimen
-from ident.words.result_tables import MOST_ROWS, Listing, Shown, html, text
+from ident.words.result_tables import MOST_ROWS, Listing, TabularResult, html, text
 from tests.hybrid.cases import fitted, of_qian
 from tests.hybrid.coupled_cases import beam as several
 
@@ -42,7 +42,7 @@ STORED = Path(__file__).parent / "stored" / "diagnosis.json"
 
 
 @cache
-def results() -> dict[str, Shown]:
+def results() -> dict[str, TabularResult]:
     """One of each kind, by the name of its class."""
     matrix = ident.simulate(seconds=0.25, small=True)
     fit = ident.identify(matrix, fixed={"tau": "3.6 ms"}, seed=1, options={"population": 20, "generations": 4})
@@ -137,7 +137,7 @@ def test_a_long_table_shows_its_ends_and_counts_what_lies_between():
 
 
 def test_a_result_without_tables_is_refused_by_its_name():
-    class Bare(Shown):
+    class Bare(TabularResult):
         """Nothing is registered for it."""
 
     with pytest.raises(NotImplementedError, match="Bare"):

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 
 @dataclass(frozen=True)
-class Found:
+class BenchEstimate:
     """`value` ± `deviation` in `unit`; currents are in rated currents ("1")."""
 
     value: float

@@ -33,7 +33,7 @@ from ident.run import Specimen
 from ident.stability.judgement import Judgement, judge
 from ident.words.message import message
 from ident.words.number import trimmed
-from ident.words.result_tables import Listing, Shown
+from ident.words.result_tables import Listing, TabularResult
 
 _TITLES = {"gain": "gain margin", "phase": "phase margin", "sensitivity_peak": "sensitivity peak"}
 LITTLE_MARGIN = 2.5
@@ -41,7 +41,7 @@ LITTLE_MARGIN = 2.5
 
 
 @dataclass(frozen=True)
-class ControllerDesign(Shown):
+class ControllerDesign(TabularResult):
     """A design, its margins, its robustness over the fitted covariance (None where that is unknown), and notes.
 
     `beyond` says what leaves the limits of the rig where the controller runs its case, `stability` whether that loop is

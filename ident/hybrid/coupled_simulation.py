@@ -28,13 +28,13 @@ from ident.progress import Report, silent
 from ident.words.engineering import quantity
 from ident.words.message import message
 from ident.words.percent import percent
-from ident.words.result_tables import Listing, Shown
+from ident.words.result_tables import Listing, TabularResult
 
 Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class CoupledResult(Shown):
+class CoupledResult(TabularResult):
     """What a hybrid simulation with several actuators gave: of each part, by its name, what one actuator gives.
 
     `stable`, `ended` (s), `radius`, `critical_delay` (s) and `stability` are those of the whole loop, and stand with

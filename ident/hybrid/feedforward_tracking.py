@@ -19,7 +19,7 @@ from ident.plain import read, written
 from ident.run import Specimen
 from ident.words.engineering import quantity
 from ident.words.message import Message, message
-from ident.words.result_tables import Shown
+from ident.words.result_tables import TabularResult
 
 Array = NDArray[np.float64]
 _SHOWN = 600  # points of a curve that are kept
@@ -27,7 +27,7 @@ _RATE = 1000.0  # Hz: no structure moves so fast that more samples would show mo
 
 
 @dataclass(frozen=True, kw_only=True)
-class Followed(Shown):
+class Followed(TabularResult):
     """Errors (m) of a machine that follows a reference with the feedback alone and with feedforward beside it.
 
     `gain` and `limit`, from which the loop is unstable (None where it is stable at any gain), in V/m. `feedback_rms`

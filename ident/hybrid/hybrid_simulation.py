@@ -29,7 +29,7 @@ from ident.stability.judgement import STABLE, UNSTABLE, Judgement
 from ident.words.engineering import quantity
 from ident.words.message import message
 from ident.words.percent import percent
-from ident.words.result_tables import Listing, Shown
+from ident.words.result_tables import Listing, TabularResult
 
 Array = NDArray[np.float64]
 RUNAWAY = 50.0
@@ -38,7 +38,7 @@ HELD = "the reference holds, of the specimen,"
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class HybridResult(Shown):
+class HybridResult(TabularResult):
     """What a hybrid simulation gave, SI; the records are (n,) at `sample_rate` (Hz).
 
     `measured` is what the displacement transducer read, `numerical` what the substructure asked for, `reference` what

@@ -31,7 +31,7 @@ _CHAIN = Chain(
 )
 
 
-def perfect_machine(case: Case, delay: float) -> Machine:
+def ideal_actuator(case: Case, delay: float) -> Machine:
     """The machine whose measured displacement in the loop of a case lags what is wanted by `delay` s and no more.
 
     The computing delay of the case is part of it: at least that is needed. Springs alone give back what they should.

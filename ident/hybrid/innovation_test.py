@@ -18,7 +18,7 @@ _FEW_SAMPLES = 0.05  # may be outliers
 
 
 @dataclass(frozen=True)
-class Verdict:
+class InnovationTest:
     """`holds`, with the reason in words; `nis_mean` over the samples that were taken up, None without any."""
 
     holds: bool
@@ -28,14 +28,14 @@ class Verdict:
     changes: int
 
 
-def verdict(state: Any) -> Verdict:
+def innovation_test(state: Any) -> InnovationTest:
     """What the counts in a filter's state say."""
     used, windows, failed = int(state[kalman.USED]), int(state[kalman.WINDOWS]), int(state[kalman.FAILED])
     mean = float(state[kalman.NIS]) / used if used else None
     outliers, changes = int(state[kalman.GATED]), int(state[kalman.REOPENED])
 
-    def judged(holds: bool, reason: str) -> Verdict:
-        return Verdict(holds, reason, mean, outliers, changes)
+    def judged(holds: bool, reason: str) -> InnovationTest:
+        return InnovationTest(holds, reason, mean, outliers, changes)
 
     if not windows or mean is None:
         return judged(False, f"too few samples for a verdict: at least {2 * kalman.WINDOW} are needed")

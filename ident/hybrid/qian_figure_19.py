@@ -16,7 +16,7 @@ labelled dB."""
 _SAME, _TABLE_4 = 0.01, 0.1  # of a size, of a fitted value
 
 
-def said_of_fig_19(machine: ChangedMachine, peaks: tuple[Peak, ...]) -> str | None:
+def note_on_figure_19(machine: ChangedMachine, peaks: tuple[Peak, ...]) -> str | None:
     """What is to be said where a machine is that of Fig. 19 and has no such peak; None for any other."""
     size, specimen = machine.actuator, machine.specimen
     given = (size.piston_area, size.stroke, specimen.mass, specimen.stiffness)

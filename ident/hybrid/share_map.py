@@ -25,7 +25,7 @@ from ident.parallel import each
 from ident.progress import Progress, Report, silent
 from ident.words.engineering import quantity
 from ident.words.percent import percent
-from ident.words.result_tables import Listing, Shown
+from ident.words.result_tables import Listing, TabularResult
 
 Array = NDArray[np.float64]
 SHARES = 20
@@ -35,7 +35,7 @@ LARGEST = 0.95
 
 
 @dataclass(frozen=True, eq=False)
-class ShareMap(Shown):
+class ShareMap(TabularResult):
     """Of each pair of shares (0 to 1) of mass and stiffness, (masses, stiffnesses).
 
     `stable`; `reference_rms` and `tracking_rms` as in :class:`ident.hybrid.scores.Scores`, NaN where it ran away;

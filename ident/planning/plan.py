@@ -31,7 +31,7 @@ from ident.rig.limits import RigLimits, Utilisation
 from ident.run import Run
 from ident.words.number import count, plain
 from ident.words.percent import percent
-from ident.words.result_tables import Listing, Shown
+from ident.words.result_tables import Listing, TabularResult
 from ident.words.run_name import run_name
 from ident.words.sentence import first_of
 
@@ -44,7 +44,7 @@ _STAGE = "plan"
 
 
 @dataclass(frozen=True)
-class Plan(Shown):
+class Plan(TabularResult):
     """The runs of a program on a rig. `model` is that of the fit, "" where the commands alone were judged.
 
     `unjudged` are limits that are stated and that nothing predicts.

@@ -23,7 +23,7 @@ from ident.readers.record_without_description import from_arrays, from_table, of
 from ident.readers.rig import rig_in
 from ident.readers.run import read_run
 from ident.readers.run_description import RunDescription
-from ident.readers.sandboxed_parser import read_apart
+from ident.readers.sandboxed_parser import read_sandboxed
 from ident.readers.source import DESCRIPTION, Beside, Folder, Source, alone, beside
 from ident.readers.table import Table
 from ident.readers.text import read_text
@@ -206,7 +206,7 @@ def read_table(data: bytes, name: str, stated: Dialect, limits: Limits, where: s
     if stated != FOUND:
         raise Unusable("bad-dialect", "a dialect is for text files", f"{where} dialect".strip(), "leave it out")
     if ending in FOREIGN:
-        return read_apart(FOREIGN[ending], data, name, limits)
+        return read_sandboxed(FOREIGN[ending], data, name, limits)
     kind = BINARY[ending]
     if kind == "dat":
         return read_dat(data, name, limits, near)

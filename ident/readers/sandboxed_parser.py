@@ -27,7 +27,7 @@ _WHOLE = "install servoident whole, or save it as .csv"
 _REMEDIES = {"mdf": "install servoident[mdf], or save it as .csv"}  # where a parser is an extra
 
 
-def read_apart(format_: str, data: bytes, where: str, limits: Limits) -> Table:
+def read_sandboxed(format_: str, data: bytes, where: str, limits: Limits) -> Table:
     """The columns, with their units, that ``ident.foreign.FORMAT`` finds.
 
     Raises Unusable: ``broken-FORMAT``, ``not-installed``, ``too-large``, ``too-slow``, and on loading ``not-numeric``.

@@ -1,4 +1,4 @@
-"""Results as tables: one builder, :meth:`Shown.listings`, serves notebooks, ``print`` and the interactive prompt.
+"""Results as tables: one builder, :meth:`TabularResult.listings`, serves notebooks, ``print`` and the prompt.
 
 A result is data. Where its tables take a file of their own, that file registers them for its type (:func:`listings`):
 the result knows nothing of how it is shown.
@@ -113,13 +113,13 @@ def _registered(function: Any, result: Any) -> Any:
     return found
 
 
-class Shown:
+class TabularResult:
     """A result that shows itself: as HTML in a notebook, as the same tables in plain text to `print` and the prompt."""
 
     def __init_subclass__(cls, **kwargs: Any) -> None:
         super().__init_subclass__(**kwargs)
         # Before @dataclass sees the class: where a class has no __repr__ it writes one that holds every array.
-        cls.__repr__ = Shown.__repr__  # type: ignore[method-assign]
+        cls.__repr__ = TabularResult.__repr__  # type: ignore[method-assign]
 
     def listings(self) -> Iterable[Listing | str]:
         """Its tables and sentences, in the order in which they are read."""

@@ -15,7 +15,7 @@ from ident.hybrid.controller import SampledController
 from ident.hybrid.controller_lookup import controller_called
 from ident.hybrid.ground_motion import Ground
 from ident.hybrid.hybrid_simulation import simulate_hybrid, simulate_machine
-from ident.hybrid.ideal_actuator import perfect_machine
+from ident.hybrid.ideal_actuator import ideal_actuator
 from ident.hybrid.linear_plant import linear_plant
 from ident.hybrid.loop_shaping import design
 from ident.hybrid.machine import machine
@@ -151,7 +151,7 @@ def test_the_critical_delay_by_analysis_and_by_simulation(ratio, expected, tmp_p
     push.write_text("0.1\n" + "0\n" * 2000)
     pushed = replace(case, ground=Ground()).with_ground(push)
     for delay, grows in ((0.99 * expected, False), (1.01 * expected, True)):
-        d = np.abs(simulate_machine(perfect_machine(pushed, delay), pushed).numerical)
+        d = np.abs(simulate_machine(ideal_actuator(pushed, delay), pushed).numerical)
         assert (np.max(d[-16384:]) > np.max(d[16384:32768])) == grows
 
 

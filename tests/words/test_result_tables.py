@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from ident.words.result_tables import Listing, Shown, html
+from ident.words.result_tables import Listing, TabularResult, html
 
 
-class Result(Shown):
+class Result(TabularResult):
     def listings(self):
         return [Listing("T < 1", ("run", "error"), [("<script>", "1 %")], ("error",)), "a & b"]
 
