@@ -23,7 +23,7 @@ from app.access.audit import Audited
 from app.access.audited_changes import carry
 from app.access.gate import Gate
 from app.access.roles import refuse_undeclared
-from app.access.token_attempts import Tries
+from app.access.token_attempts import TokenAttempts
 from app.blobs import open_storage
 from app.context import Context
 from app.database import connect, migrate, sessions
@@ -38,7 +38,7 @@ from app.operation.metrics import Requests
 from app.operation.observed import Observed
 from app.pages import router as pages
 from app.pages.problems import sign_in
-from app.processes import Apart, Here
+from app.processes import Here, WorkerProcesses
 from app.request_id import RequestId
 from app.security import Guard
 from app.settings import Settings
@@ -105,7 +105,7 @@ def create_app(settings: Settings, apart: bool = False) -> FastAPI:
     origins(settings.webhook_hosts)  # before anything is opened: what cannot be a host is refused
     app = routed()
     app.state.context = make_context(settings, apart)
-    app.state.tries = Tries(settings.failures)
+    app.state.tries = TokenAttempts(settings.failures)
     app.state.requests = Requests()
     errors.install(app)
     _surround(app, settings)
@@ -201,7 +201,7 @@ def make_context(settings: Settings, apart: bool = False) -> Context:
     engine = connect(settings.database)
     makers, storage = sessions(engine), open_storage(settings)
     carry(makers)
-    worker, readers = (Apart(1, *WORK), Apart(READERS, *WORK)) if apart else (Here(), Here())
+    worker, readers = (WorkerProcesses(1, *WORK), WorkerProcesses(READERS, *WORK)) if apart else (Here(), Here())
     runs = Runs(makers, storage, settings.executor, *KINDS, place=worker)
     return Context(settings, engine, makers, storage, Jobs(settings, runs), readers, worker)
 

@@ -16,7 +16,7 @@ from sqlalchemy.orm import Session, sessionmaker
 from starlette.types import Scope
 
 from app.access import repository
-from app.access.caller import Who
+from app.access.caller import Caller
 from app.access.roles import declared
 from app.database import on_commit
 from app.request_id import request_id
@@ -34,7 +34,7 @@ class Change:
     def waits(self) -> bool:
         """Whether it is to leave a line, and has not."""
         declaration, who = declared(self.scope.get("route")), self.scope.get("state", {}).get("who")
-        return not self.noted and declaration is not None and declaration.stores and isinstance(who, Who)
+        return not self.noted and declaration is not None and declaration.stores and isinstance(who, Caller)
 
     def note(self, session: Session) -> None:
         """Add its line to a transaction."""

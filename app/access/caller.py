@@ -24,7 +24,7 @@ class Role(StrEnum):
 
 
 @dataclass(frozen=True)
-class Who:
+class Caller:
     """The bearer of a token: its name, role and id; the session, where a browser asks, and its display units."""
 
     name: str
@@ -38,14 +38,14 @@ class Who:
         return self.role is Role.ADMIN or self.role in roles
 
 
-START = Who("start token", Role.ADMIN, "start")
+START = Caller("start token", Role.ADMIN, "start")
 """The operator, who started the service: that token is in no database."""
 
 
-def who_of(connection: HTTPConnection) -> Who:
+def who_of(connection: HTTPConnection) -> Caller:
     """Who sent a request that a route's roles have let in."""
-    who: Who = connection.state.who
+    who: Caller = connection.state.who
     return who
 
 
-Me = Annotated[Who, Depends(who_of)]
+Me = Annotated[Caller, Depends(who_of)]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from math import ceil
 
-from app.access.caller import Who
+from app.access.caller import Caller
 from app.access.identity import Shown, identify
 from app.access.rates import Rate
 from app.access.roles import unknown
@@ -15,14 +15,14 @@ from app.lru import LRU
 _KNOWN = 10_000
 
 
-class Tries:
+class TokenAttempts:
     """Counts what fails. What was right before is looked at also where others at its address are wrong too often."""
 
     def __init__(self, a_minute: float) -> None:
         self._failures = Rate(a_minute / 60, a_minute)
         self._known: LRU[bool] = LRU(_KNOWN)
 
-    def identify(self, context: Context, shown: Shown, address: str) -> Who:
+    def identify(self, context: Context, shown: Shown, address: str) -> Caller:
         """Whose token it is. Raises Failure 401, and 429 where too many of the address were wrong."""
         wait = 0.0 if shown.print in self._known else self._failures.wait(address)
         if wait:

@@ -14,7 +14,7 @@ from ident.errors import Unusable
 from ident.words.message import message
 
 if TYPE_CHECKING:
-    from app.own_effects.own_effect import Kept
+    from app.own_effects.own_effect import OwnEffect
 
 Where = Annotated[
     str, typer.Option("--server", metavar="URL", help="Use the own effects of this service instead of the local ones.")
@@ -141,7 +141,7 @@ def keep(
     print(message("kept.saved_by" if new else "kept.already_by", name=stored["name"], where=server))
 
 
-def given(file: Path, name: str, proposal: int) -> Kept:
+def given(file: Path, name: str, proposal: int) -> OwnEffect:
     """The effect of a file, or the term of a diagnosis, under a name. Raises Unusable."""
     from app.cli.arguments import is_diagnosis
     from app.cli.input_files import read_diagnosis

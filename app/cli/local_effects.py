@@ -13,7 +13,7 @@ from ident.errors import Unusable
 from ident.words.nearest import did_you_mean
 
 if TYPE_CHECKING:
-    from app.own_effects.own_effect import Kept
+    from app.own_effects.own_effect import OwnEffect
 
 
 def folder() -> Path:
@@ -23,12 +23,12 @@ def folder() -> Path:
     return default_data() / "effects"
 
 
-def every() -> list[Kept]:
+def every() -> list[OwnEffect]:
     """All of them by name. Raises Unusable for a file that holds none."""
     return [_read(file) for file in sorted(folder().glob("*.json"))]
 
 
-def look(name: str) -> Kept | None:
+def look(name: str) -> OwnEffect | None:
     """The effect of a name, None where none is kept."""
     from ident.custom.definition import is_name
 
@@ -48,7 +48,7 @@ def beside(definitions: Sequence[Mapping[str, Any]], model: str) -> tuple[Mappin
     return (*definitions, *(kept.definition for kept in suited(every(), model) if kept.name not in names))
 
 
-def find(name: str) -> Kept:
+def find(name: str) -> OwnEffect:
     """The effect of a name. Raises Unusable where none is kept."""
     file = _file(name)
     if not file.is_file():
@@ -58,7 +58,7 @@ def find(name: str) -> Kept:
     return _read(file)
 
 
-def keep(kept: Kept) -> bool:
+def keep(kept: OwnEffect) -> bool:
     """Keep an effect under its name; False where it is kept already. Raises Unusable where another one has the name."""
     from app.cli.output import write_json
     from ident.plain import written
@@ -95,12 +95,12 @@ def _file(name: str) -> Path:
     return folder() / f"{name}.json"
 
 
-def _read(file: Path) -> Kept:
-    from app.own_effects.own_effect import Kept
+def _read(file: Path) -> OwnEffect:
+    from app.own_effects.own_effect import OwnEffect
     from ident.plain import Misfit, read
 
     try:
-        found = read(Kept, json.loads(file.read_bytes()))
+        found = read(OwnEffect, json.loads(file.read_bytes()))
     except (ValueError, RecursionError, Misfit):
         found = None
     if found is None or found.name != file.stem:

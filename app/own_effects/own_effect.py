@@ -32,7 +32,7 @@ _WORDS = 40  # characters of a name that is made of a meaning
 
 
 @dataclass(frozen=True, kw_only=True)
-class Kept:
+class OwnEffect:
     """An effect by its name; `model` is the one that it was made for, None for any that can read it.
 
     Of one that was `proposed by search`: the diagnosis, the data's hash, by how many `nats` it was confirmed and how
@@ -65,12 +65,12 @@ class Kept:
         return self.model is None or found.units == made.units
 
 
-def suited(entries: Iterable[Kept], model: str) -> Iterator[Kept]:
+def suited(entries: Iterable[OwnEffect], model: str) -> Iterator[OwnEffect]:
     """Those that a model can take."""
     return (entry for entry in entries if entry.suits(model))
 
 
-def written_down(definition: Mapping[str, Any] | str, name: str, meaning: str = "", model: str = "") -> Kept:
+def written_down(definition: Mapping[str, Any] | str, name: str, meaning: str = "", model: str = "") -> OwnEffect:
     """A definition under a name. Raises Unusable where it cannot be read, or the name is not free for an effect."""
     data = definition_of(definition) | {"name": name} | ({"meaning": meaning} if meaning else {})
     try:
@@ -80,10 +80,10 @@ def written_down(definition: Mapping[str, Any] | str, name: str, meaning: str = 
     effect = read_effect(data, model=model)
     refuse_symbol(name, tuple(PRESETS.values()))
     origin = SEARCHED if effect.source == SEARCHED else WRITTEN
-    return Kept(name=name, definition=data, model=model or None, meaning=effect.meaning, origin=origin)
+    return OwnEffect(name=name, definition=data, model=model or None, meaning=effect.meaning, origin=origin)
 
 
-def proposed(found: Diagnosis, rank: int, name: str, meaning: str = "", diagnosis: str | None = None) -> Kept:
+def proposed(found: Diagnosis, rank: int, name: str, meaning: str = "", diagnosis: str | None = None) -> OwnEffect:
     """A term that a diagnosis proposes, counted from 0, under a name. Raises Unusable where there is no such term."""
     terms = found.proposals or ()
     if not 0 <= rank < len(terms):
@@ -92,7 +92,7 @@ def proposed(found: Diagnosis, rank: int, name: str, meaning: str = "", diagnosi
     term = terms[rank]
     said = meaning or meaning_of(term.meaning, term.place)
     made = written_down({**term.effect, "source": SEARCHED}, name, said, found.model)
-    return Kept(
+    return OwnEffect(
         name=name,
         definition=made.definition,
         model=found.model,
@@ -134,7 +134,7 @@ def _free(name: str) -> bool:
     return is_name(name) and name not in {effect.name for effect in CATALOGUE}
 
 
-def view(kept: Kept) -> OwnEffectView:
+def view(kept: OwnEffect) -> OwnEffectView:
     """A kept effect as it is sent; of one that this version cannot read, why."""
     said, refused = {"class" if name == "alike" else name: entry for name, entry in written(kept).items()}, ""
     try:
@@ -144,7 +144,7 @@ def view(kept: Kept) -> OwnEffectView:
     return OwnEffectView(**said | shown.model_dump(), refused=refused)
 
 
-def _unread(kept: Kept) -> EffectView:
+def _unread(kept: OwnEffect) -> EffectView:
     return EffectView(
         name=kept.name,
         place=str(kept.definition.get("place", "")),

@@ -12,7 +12,7 @@ from markupsafe import Markup
 from app.fits.objections import FAR
 from app.fits.rows import Determined, ErrorRow, ParameterRow, combination_rows, error_rows, parameter_rows
 from app.fits.service import Stored
-from app.own_effects.own_effect import Kept, suited
+from app.own_effects.own_effect import OwnEffect, suited
 from app.pages.chain_view import Drawing, drawing
 from app.pages.diagnosis_view import MissingView
 from app.pages.figure_forms import MAP, FigureForm, forms, profile_form
@@ -113,7 +113,7 @@ def fit_page(
     objections: tuple[str, ...],
     others: Iterable[ParameterSetView] = (),
     newer: str | None = None,
-    kept: Sequence[Kept] = (),
+    kept: Sequence[OwnEffect] = (),
     written: AnnotationView | None = None,
     deletion: DeletionView | None = None,
 ) -> FitPageView:

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 from markupsafe import Markup
 
-from app.own_effects.own_effect import SEARCHED, Kept, meaning_of, suggested, view
+from app.own_effects.own_effect import SEARCHED, OwnEffect, meaning_of, suggested, view
 from app.pages.diagnosis_view import MissingView
 from ident.presets import preset
 from ident.words.number import plain
@@ -37,7 +37,7 @@ class KeptRow:
     there: bool
 
 
-def kept_rows(kept: Iterable[Kept], there: Container[str] = ()) -> Iterator[KeptRow]:
+def kept_rows(kept: Iterable[OwnEffect], there: Container[str] = ()) -> Iterator[KeptRow]:
     """A row for each, `there` being the effects of the fit that they stand beside."""
     for one in kept:
         shown, searched = view(one), one.origin == SEARCHED
@@ -67,7 +67,7 @@ class Keeping:
     kept: str
 
 
-def keeping(lacks: MissingView, kept: Iterable[Kept]) -> Iterator[Keeping]:
+def keeping(lacks: MissingView, kept: Iterable[OwnEffect]) -> Iterator[Keeping]:
     """One for each term that a diagnosis proposes."""
     kept = tuple(kept)
     taken = {one.name for one in kept}
@@ -76,5 +76,5 @@ def keeping(lacks: MissingView, kept: Iterable[Kept]) -> Iterator[Keeping]:
         yield Keeping(suggested(meaning_of(term.meaning, term.place), taken), next(mine, ""))
 
 
-def _lines(one: Kept) -> object:
+def _lines(one: OwnEffect) -> object:
     return one.definition.get("equation")

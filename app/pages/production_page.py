@@ -11,7 +11,7 @@ from app.errors import Failure
 from app.limits import service as limits
 from app.pages.limits_view import ERRORS, entries
 from app.parameters import service as parameters
-from app.parameters.set_query import Wanted
+from app.parameters.set_query import SetQuery
 from app.regress import jobs as regressions
 from app.regress import words as rechecks
 from app.statistics import service as statistics
@@ -77,6 +77,6 @@ def regression(context: Context, identity: str) -> Shown:
 def _latest(context: Context, model: str | None = None) -> ParameterSetView | None:
     """The newest set in force, whose parameters are offered to choose from."""
     try:
-        return next(iter(parameters.page(context, Wanted(current=True, model=model), None, 1).items), None)
+        return next(iter(parameters.page(context, SetQuery(current=True, model=model), None, 1).items), None)
     except Unusable:
         return None

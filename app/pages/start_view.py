@@ -6,7 +6,7 @@ from collections import Counter
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
-from app.own_effects.own_effect import Kept
+from app.own_effects.own_effect import OwnEffect
 from ident.effects import CATALOGUE
 from ident.effects.effect import Effect
 from ident.errors import Unusable
@@ -46,7 +46,7 @@ class StartView:
     runs: tuple[tuple[str, str], ...]
 
 
-def start_view(matrix: MatrixView, kept: Sequence[Kept] = ()) -> StartView:
+def start_view(matrix: MatrixView, kept: Sequence[OwnEffect] = ()) -> StartView:
     """The form for this matrix; `kept` are the lab's own effects."""
     uses = Counter(run.use for run in matrix.runs)
     models = _in_question(matrix)

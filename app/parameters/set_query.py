@@ -12,7 +12,7 @@ from app.errors import Failure
 
 
 @dataclass(frozen=True)
-class Wanted:
+class SetQuery:
     """Which sets: by id, serial, batch, model, time of approval, and ranges of any parameter (SI)."""
 
     ids: Sequence[str] | None = None
@@ -35,11 +35,11 @@ class Wanted:
 
 def wanted(
     query: Mapping[str, str], *, approved_after: str | None = None, approved_before: str | None = None, **filters: Any
-) -> Wanted:
+) -> SetQuery:
     """What a request asks for; raises Failure where a time or a range cannot be read."""
     lowest, highest = _ranges(query)
     after, before = moment(approved_after, "approved_after"), moment(approved_before, "approved_before")
-    return Wanted(approved_after=after, approved_before=before, lowest=lowest, highest=highest, **filters)
+    return SetQuery(approved_after=after, approved_before=before, lowest=lowest, highest=highest, **filters)
 
 
 def _ranges(query: Mapping[str, str]) -> tuple[dict[str, float], dict[str, float]]:

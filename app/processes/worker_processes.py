@@ -21,7 +21,7 @@ _LATER = 5.0  # s after the start at which what they need is imported, if nothin
 _PATIENCE = 2.0  # s for a process to end
 
 
-class Apart:
+class WorkerProcesses:
     """So many processes, each of which works one call out at a time; begun when they are needed first.
 
     What they need is imported when the first is, or some seconds after the start, when a service has been opened.

@@ -28,7 +28,7 @@ from app.parameters.repository.conditions import (
     shape,
     values,
 )
-from app.parameters.set_query import Wanted
+from app.parameters.set_query import SetQuery
 
 FEW = 20_000
 """Sets of one condition that are collected at most, and of the newest that are looked through first."""
@@ -38,7 +38,7 @@ _LAST = select(func.max(SET))
 _TESTED = 1000  # of those that were collected, tested at once for whether they remain
 
 
-def numbers(session: Session, wanted: Wanted, before: int | None, limit: int) -> list[int]:
+def numbers(session: Session, wanted: SetQuery, before: int | None, limit: int) -> list[int]:
     """The numbers of a page, from the one before this number on."""
     asked = _asked(shape(wanted))
     given = values(wanted)
@@ -63,7 +63,7 @@ def numbers(session: Session, wanted: Wanted, before: int | None, limit: int) ->
     return _tested(session, common.tolist(), tests, given, limit) if tests else common[:limit].tolist()
 
 
-def every(wanted: Wanted) -> Numbers:
+def every(wanted: SetQuery) -> Numbers:
     """The query for all of them, in no order."""
     asked = shape(wanted)
     query = select(SET)

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import pytest
 
-from app.own_effects.own_effect import Kept, suggested, suited, view, written_down
+from app.own_effects.own_effect import OwnEffect, suggested, suited, view, written_down
 from app.pages.own_effects_view import kept_rows
 from tests.app.test_custom_effects import OWN
 
@@ -42,7 +42,7 @@ def test_another_model_takes_it_where_it_counts_in_the_same_units():
 
 def test_what_this_version_cannot_read_is_listed_with_the_reason():
     """A later catalogue may have an effect of the name."""
-    kept = Kept(name="dead_zone", definition=OWN | {"name": "dead_zone"}, meaning="of an earlier version")
+    kept = OwnEffect(name="dead_zone", definition=OWN | {"name": "dead_zone"}, meaning="of an earlier version")
     assert "the effect library has an effect dead_zone" in view(kept).refused
     (row,) = kept_rows([kept])
     assert (row.title, row.meaning, row.equations) == ("dead zone", "of an earlier version", ())

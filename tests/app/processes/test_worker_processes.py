@@ -20,7 +20,7 @@ from numba.core.registry import cpu_target
 from app.errors import Removed
 from app.jobs.lease import Superseded
 from app.main import WORK
-from app.processes import Apart, Here, Place, Stopped
+from app.processes import Here, Place, Stopped, WorkerProcesses
 from app.processes.child import LESS
 from ident.errors import Cancelled, Unusable
 from ident.progress import Progress
@@ -30,18 +30,18 @@ ROOT = Path(__file__).resolve().parents[3]
 
 
 @pytest.fixture(scope="module")
-def apart() -> Iterator[Apart]:
-    place = Apart(1, "ident.progress")
+def apart() -> Iterator[WorkerProcesses]:
+    place = WorkerProcesses(1, "ident.progress")
     yield place
     place.stop()
 
 
 @pytest.fixture(params=["here", "apart"])
-def place(request: pytest.FixtureRequest, apart: Apart) -> Place:
+def place(request: pytest.FixtureRequest, apart: WorkerProcesses) -> Place:
     return apart if request.param == "apart" else Here()
 
 
-def test_it_is_another_process_that_stands_back(apart: Apart) -> None:
+def test_it_is_another_process_that_stands_back(apart: WorkerProcesses) -> None:
     """The same for one call after the other: what it has prepared is there for the next."""
     first, second = apart.call(acts.where), apart.call(acts.where)
     assert first == second
@@ -79,14 +79,14 @@ def test_what_work_raises_is_raised(place: Place, error: BaseException) -> None:
     assert getattr(caught.value, "errno", None) == getattr(error, "errno", None)
 
 
-def test_an_error_that_cannot_be_sent_is_described(apart: Apart) -> None:
+def test_an_error_that_cannot_be_sent_is_described(apart: WorkerProcesses) -> None:
     with pytest.raises(RuntimeError, match="Odd"):
         apart.call(acts.odd)
     with pytest.raises(RuntimeError, match="cannot be sent"):
         apart.call(acts.unsent)
 
 
-def test_where_an_error_came_from_is_told(apart: Apart) -> None:
+def test_where_an_error_came_from_is_told(apart: WorkerProcesses) -> None:
     with pytest.raises(ValueError, match="x") as caught:
         apart.call(acts.raised, ValueError("x"))
     assert any("acts.py" in note for note in caught.value.__notes__)
@@ -107,14 +107,14 @@ def test_reports_are_made_here_and_end_the_work_there(place: Place) -> None:
     assert place.call(acts.told, 1, report=report) == "all told"
 
 
-def test_threads_that_report_at_once_are_each_heard(apart: Apart) -> None:
+def test_threads_that_report_at_once_are_each_heard(apart: WorkerProcesses) -> None:
     """Two that read one pipe together tear each other's answers: a diagnosis failed by it, once in many."""
     heard: list[Progress] = []
     assert apart.call(acts.told_by_many, 4, 300, report=heard.append) == "all told"
     assert Counter(progress.stage for progress in heard) == {f"thread {thread}": 300 for thread in range(4)}
 
 
-def test_work_whose_process_was_ended_is_done_again(apart: Apart, tmp_path: Path) -> None:
+def test_work_whose_process_was_ended_is_done_again(apart: WorkerProcesses, tmp_path: Path) -> None:
     assert apart.call(acts.ended_at_first, tmp_path) == "lives"
     with pytest.raises(MemoryError):
         apart.call(acts.dies)
@@ -124,7 +124,7 @@ def test_work_whose_process_was_ended_is_done_again(apart: Apart, tmp_path: Path
 @pytest.mark.skipif("forkserver" not in multiprocessing.get_all_start_methods(), reason="each is begun by itself here")
 def test_what_begins_processes_is_begun_again() -> None:
     """It was ended, and then what works was, too."""
-    place = Apart(1, "ident.progress")
+    place = WorkerProcesses(1, "ident.progress")
     first, _ = place.call(acts.where)
     os.kill(_begun_by(first), signal.SIGKILL)
     os.kill(first, signal.SIGKILL)
@@ -133,7 +133,7 @@ def test_what_begins_processes_is_begun_again() -> None:
 
 
 def test_what_is_under_way_is_let_go_at_the_stop(tmp_path: Path) -> None:
-    place, ended = Apart(1, "ident.progress"), []
+    place, ended = WorkerProcesses(1, "ident.progress"), []
 
     def call() -> None:
         with pytest.raises(Stopped):
@@ -155,9 +155,9 @@ def test_it_ends_with_the_process_that_began_it(tmp_path: Path) -> None:
     """Also where that was killed, and is busy."""
     begun = f"""
 from pathlib import Path
-from app.processes import Apart
+from app.processes import WorkerProcesses
 from tests.app.processes import acts
-Apart(1, "ident.progress").call(acts.sleeps, Path({str(tmp_path)!r}))
+WorkerProcesses(1, "ident.progress").call(acts.sleeps, Path({str(tmp_path)!r}))
 """
     parent = subprocess.Popen([sys.executable, "-c", begun], cwd=ROOT)
     pid = _worker(tmp_path)
