@@ -42,10 +42,10 @@ def defined_here() -> dict[str, Mapping[str, Any]]:
 
 def beside(definitions: Sequence[Mapping[str, Any]], model: str) -> tuple[Mapping[str, Any], ...]:
     """These definitions, and of those that are kept under other names all that a model can take."""
-    from app.own_effects.own_effect import suited
+    from app.own_effects.own_effect import usable_on
 
     names = {definition["name"] for definition in definitions}
-    return (*definitions, *(kept.definition for kept in suited(every(), model) if kept.name not in names))
+    return (*definitions, *(kept.definition for kept in usable_on(every(), model) if kept.name not in names))
 
 
 def find(name: str) -> OwnEffect:

@@ -15,12 +15,12 @@ from ident.words.nearest import did_you_mean
 MOST_STATES, _LONGEST = 200, 200  # of a controller that is sent; characters of its name
 
 
-def named(given: str) -> bool:
+def is_named(given: str) -> bool:
     """Whether a controller goes by this name."""
     return given in NAMED
 
 
-def acting(given: str | dict[str, Any], fit: FitResult, case: Case, wanted: Any = None) -> Controller:
+def controller_of(given: str | dict[str, Any], fit: FitResult, case: Case, wanted: Any = None) -> Controller:
     """As :func:`ident.hybrid.controller_lookup.controller_called`: the controller of that name, or of that JSON."""
     if isinstance(given, str):
         if given not in NAMED:

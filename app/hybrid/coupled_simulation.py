@@ -10,7 +10,7 @@ from typing import Any
 from app.context import Context
 from app.fits import service as fits
 from app.hybrid.at_condition import moved_to
-from app.hybrid.controller_lookup import acting
+from app.hybrid.controller_lookup import controller_of
 from app.hybrid.earlier_loop import earlier_parts, stated
 from app.hybrid.request_parsing import AskedCase, specimen_of
 from app.hybrid.spread import kept, spread_of
@@ -123,7 +123,7 @@ class Simulation:
             reference(of, ground) if name == FEEDFORWARD else None
             for name, of in zip(self.given, self.case.cases, strict=True)
         ]
-        return [acting(*one) for one in zip(self.given, self.fits, self.known.cases, wanted, strict=True)]
+        return [controller_of(*one) for one in zip(self.given, self.fits, self.known.cases, wanted, strict=True)]
 
     def check(self, effects: Mapping[str, float], *, mapped: bool, spread: bool) -> None:
         """Raise Unusable where it cannot be run."""

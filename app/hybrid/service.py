@@ -11,7 +11,7 @@ from app.errors import missing
 from app.fits import service as fits
 from app.hybrid import coupled_simulation, repository
 from app.hybrid.at_condition import moved_to
-from app.hybrid.controller_lookup import acting
+from app.hybrid.controller_lookup import controller_of
 from app.hybrid.earlier_loop import earlier_case, stated
 from app.hybrid.request_parsing import AskedCase, asked_case, effects_of, specimen_of
 from app.hybrid.spread import spread_of
@@ -50,7 +50,7 @@ def submit(context: Context, request: HybridRequest, job: str) -> JobView:
     fit, case = moved.fit, case_of_part(system, request.isolator_part)
     isolator = None if request.isolator is None else specimen_of(request.isolator, "isolator")
     given, stored = kept_controller(context, request.controller)
-    chosen = acting(given, fit, case)
+    chosen = controller_of(given, fit, case)
     _check(fit, case if isolator is None else case.with_isolator(isolator), effects, chosen, request.map)
     spread = spread_of(context, request.spread, fit.model)
     if spread is not None and given == FEEDFORWARD:

@@ -8,7 +8,7 @@ from typing import Any
 from app.context import Context
 from app.errors import missing
 from app.hybrid import repository
-from app.hybrid.controller_lookup import named
+from app.hybrid.controller_lookup import is_named
 
 _FILE_KEYS = ("name", "sample_rate", "A", "B", "C", "D")
 
@@ -17,7 +17,7 @@ def kept_controller(context: Context, given: str | dict[str, Any]) -> tuple[str 
     """A controller by its name or as JSON, and the id of the stored one that it is; raises Failure 404."""
     if isinstance(given, dict):
         return {name: given.get(name) for name in _FILE_KEYS}, None
-    if named(given):
+    if is_named(given):
         return given, None
     with context.sessions() as session:
         row = repository.controller(session, given)

@@ -11,7 +11,7 @@ from typing import Any
 from sqlalchemy.orm import Session
 
 from app.hybrid import repository
-from app.hybrid.controller_lookup import acting
+from app.hybrid.controller_lookup import controller_of
 from app.hybrid.coupled_simulation import simulated
 from app.hybrid.earlier_loop import earlier_case
 from app.hybrid.records import packed, packed_parts
@@ -53,7 +53,7 @@ class HybridWork(InOnePiece):
         given: Any = json.loads(self._blob(asked["controller"])) if asked["inline"] else asked["controller"]
         effects, isolator = asked["effects"], read(Specimen, asked["isolator"]) if asked.get("isolator") else None
         known, case = case, case if isolator is None else case.with_isolator(isolator)
-        chosen = acting(given, fit, known, wanted_in(fit, case, effects) if given == FEEDFORWARD else None)
+        chosen = controller_of(given, fit, known, wanted_in(fit, case, effects) if given == FEEDFORWARD else None)
         before = earlier_case(asked.get("before"), fit, case, self._fit)
         main = simulate_hybrid(fit, case, chosen, effects, report, before)
         main = replace(main, notes=(*moved["notes"], *main.notes)) if moved else main

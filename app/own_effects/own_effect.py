@@ -65,7 +65,7 @@ class OwnEffect:
         return self.model is None or found.units == made.units
 
 
-def suited(entries: Iterable[OwnEffect], model: str) -> Iterator[OwnEffect]:
+def usable_on(entries: Iterable[OwnEffect], model: str) -> Iterator[OwnEffect]:
     """Those that a model can take."""
     return (entry for entry in entries if entry.suits(model))
 

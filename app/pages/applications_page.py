@@ -18,7 +18,7 @@ from app.pages.job_view import JobPageView, job_page
 from app.pages.position_loop_view import PositionLoopView, position_loop_form, position_loop_view
 from app.pages.position_loop_view import asked as position_loop_asked
 from app.pages.tracking_view import TrackingView, tracking_view
-from app.pages.what_if_request import asked
+from app.pages.what_if_request import what_if_request
 from app.pages.what_if_view import WhatIfView, what_if_form, what_if_view
 from ident.errors import Unusable
 from ident.hybrid.what_if import WhatIf
@@ -84,7 +84,7 @@ def _what_if(context: Context, stored: fits.Stored, given: Query) -> WhatIfView:
     if not given:
         return WhatIfView(stored.id, form)
     try:
-        request = asked(given)
+        request = what_if_request(given)
         return what_if_view(stored, form, request, what_if.what_if(context, stored.id, request))
     except (Unusable, Failure) as error:
         return WhatIfView(stored.id, form, problem=_sentence(error))
@@ -113,7 +113,7 @@ def _tracking(context: Context, stored: fits.Stored, given: Query) -> TrackingVi
 
 def numbers(context: Context, fit_id: str, given: Query) -> WhatIf:
     """All numbers of a what-if, as the API answers it. Raises Failure 404, 422, Unusable."""
-    return what_if.what_if(context, fit_id, asked(given))
+    return what_if.what_if(context, fit_id, what_if_request(given))
 
 
 def read(text: str, where: str) -> Any:

@@ -12,7 +12,7 @@ from markupsafe import Markup
 from app.fits.objections import FAR
 from app.fits.rows import Determined, ErrorRow, ParameterRow, combination_rows, error_rows, parameter_rows
 from app.fits.service import Stored
-from app.own_effects.own_effect import OwnEffect, suited
+from app.own_effects.own_effect import OwnEffect, usable_on
 from app.pages.chain_view import Drawing, drawing
 from app.pages.diagnosis_view import MissingView
 from app.pages.figure_forms import MAP, FigureForm, forms, profile_form
@@ -171,7 +171,7 @@ def fit_page(
         on_bench=preset(fit.model).kind == "bench",
         free_run=_free_run(fit),
         aic="" if fit.aic is None else f"{fit.aic:.6g}".replace("-", "\u2212"),
-        kept=tuple(kept_rows(suited(kept, fit.model), fit.effects)),
+        kept=tuple(kept_rows(usable_on(kept, fit.model), fit.effects)),
         keeping=tuple(keeping(lacks, kept)),
         written=written or AnnotationView(),
         deletion=deletion or DeletionView(fit=stored.id, serial=stored.serial),

@@ -14,7 +14,7 @@ _SPECIMEN = {name: name for name in ("mass", "stiffness", "damping")}
 _PEAK = dict.fromkeys(("peak", "tolerance", "up_to"), "frequency")
 
 
-def asked(given: Mapping[str, str]) -> WhatIfRequest:
+def what_if_request(given: Mapping[str, str]) -> WhatIfRequest:
     """The request; raises Unusable for what is no number, or a size, specimen or frequency without its unit."""
     stated = {name: text.strip() for name, text in given.items() if text.strip()}
     gain = _gains(stated)

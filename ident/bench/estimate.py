@@ -1,4 +1,4 @@
-"""A found quantity: value, standard deviation, unit."""
+"""An estimated quantity of a bench: value, standard deviation, unit."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Conditions of a run that were measured sample by sample: a chain reads what is beside their mean as well."""
+"""Conditions of a run that were measured sample by sample: a chain reads their deviation from the mean, too."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What is said of an effect that a chain does not take."""
+"""Errors that refuse an effect: a chain has no place for it, or its signals have other units."""
 
 from ident.effects.effect import Effect
 from ident.errors import Unusable

@@ -21,7 +21,7 @@ from ident.figures.options import AXIS, BAND, CANDIDATE, CONDITIONS, OTHER, RUN,
 from ident.figures.other_fits import others_of, titles_of
 from ident.figures.render import Panel
 from ident.figures.responses import Responses
-from ident.figures.run_selection import asked, by_gain, chosen, one, representative, typical
+from ident.figures.run_selection import by_gain, chosen, filter_in, representative, selected_run, typical_run
 from ident.figures.selection import HIGH, LOW, OPEN, Band, band_of, band_values, brush, zoomed
 from ident.figures.study import Study
 from ident.figures.theme import Look
@@ -324,7 +324,7 @@ def _drawn(study: Study, look: Look, options: Options) -> Filled:
     logarithmic, band = _axis(options) == "log", band_of(options)
     if several := others_of(options):
         return _several(study, several, look, options)
-    candidates = chosen(study.matrix, asked(options))
+    candidates = chosen(study.matrix, filter_in(options))
     runs, other = readable(candidates), candidate_of(options)
     compared = study.compared(runs).runs
     responses = Responses(
@@ -343,7 +343,7 @@ def _drawn(study: Study, look: Look, options: Options) -> Filled:
 
 def _several(study: Study, several: Sequence[FitResult], look: Look, options: Options) -> Filled:
     """One run, each model in a colour of its own."""
-    run = one(study.matrix, options) or typical(study.matrix, study.fit)
+    run = selected_run(study.matrix, options) or typical_run(study.matrix, study.fit)
     studies = (study, *map(study.beside, several))
     compared = [each.compared((run,)).runs[0] for each in studies]
     fits = [each.fit for each in studies]

@@ -14,7 +14,7 @@ from ident.figures import words
 from ident.figures.drawing import Drawing, Options
 from ident.figures.options import BAND, MANY
 from ident.figures.render import Chart, Panel, datasets
-from ident.figures.run_selection import CONDITIONS, asked, chosen
+from ident.figures.run_selection import CONDITIONS, chosen, filter_in
 from ident.figures.selection import HIGH, LOW, OPEN, RUN, Band, band_of, band_params, brush
 from ident.figures.study import Study
 from ident.figures.theme import Look
@@ -212,7 +212,9 @@ def _totals(order: Sequence[str], look: Look, height: int, size: int) -> Panel:
 
 def _drawn(study: Study, look: Look, options: Options) -> Chart:
     """Of every run where none is asked for; the one in `run` is marked."""
-    shown = chosen(study.matrix, asked(options, CONDITIONS)) if any(map(options.get, CONDITIONS)) else study.matrix.runs
+    shown = (
+        chosen(study.matrix, filter_in(options, CONDITIONS)) if any(map(options.get, CONDITIONS)) else study.matrix.runs
+    )
     run = str(options.get("run") or "")
     return residual_map(
         study.compared(shown),

@@ -23,7 +23,7 @@ RUNS = ("run", *CONDITIONS)
 
 
 @dataclass(frozen=True)
-class Wish:
+class RunFilter:
     """Filters by run id, Kp, RMS amplitude (m), specimen (as legends print it) and use; None takes any."""
 
     run: Sequence[str] | None = None
@@ -35,7 +35,7 @@ class Wish:
     @property
     def open(self) -> bool:
         """True where nothing was asked for."""
-        return self == Wish()
+        return self == RunFilter()
 
     def allows(self, run: Run) -> bool:
         """Whether a run passes every filter."""
@@ -48,11 +48,11 @@ class Wish:
         )
 
 
-def wish(
+def run_filter(
     run: Several = None, kp: Several = None, amplitude: Several = None, specimen: Several = None, use: Several = None
-) -> Wish:
-    """A Wish from what a request or a notebook gives: one value or several, numbers also as text."""
-    return Wish(
+) -> RunFilter:
+    """The filter from what a request or a notebook gives: one value or several, numbers also as text."""
+    return RunFilter(
         run=_texts(run),
         kp=_numbers("kp", kp),
         amplitude=_numbers("amplitude", amplitude),
@@ -80,28 +80,28 @@ def _same(stated: float | None, wanted: float) -> bool:
     return stated is not None and abs(stated - wanted) <= 0.01 * abs(wanted)
 
 
-def chosen(matrix: Matrix, wish: Wish) -> tuple[Run, ...]:
-    """The runs that pass; with no wish the verify runs, or all without these. Raises Unusable where none pass."""
-    if wish.open:
+def chosen(matrix: Matrix, wanted: RunFilter) -> tuple[Run, ...]:
+    """The runs that pass; without a filter the verify runs, or all without these. Raises Unusable where none pass."""
+    if wanted.open:
         return matrix.of_use("verify") or matrix.runs
-    runs = tuple(run for run in matrix.runs if wish.allows(run))
+    runs = tuple(run for run in matrix.runs if wanted.allows(run))
     if not runs:
-        asked = ", ".join(f"{name} {value}" for name, value in vars(wish).items() if value is not None)
+        asked = ", ".join(f"{name} {value}" for name, value in vars(wanted).items() if value is not None)
         raise Unusable("no-such-run", f"no run with {asked}", "figure", "choose among the runs of the matrix")
     return runs
 
 
-def asked(options: Mapping[str, Any], names: Sequence[str] = RUNS) -> Wish:
-    """The wish among the options of a figure."""
-    return wish(**{name: options[name] for name in names if name in options})
+def filter_in(options: Mapping[str, Any], names: Sequence[str] = RUNS) -> RunFilter:
+    """The filter among the options of a figure."""
+    return run_filter(**{name: options[name] for name in names if name in options})
 
 
-def one(matrix: Matrix, options: Mapping[str, Any]) -> Run | None:
+def selected_run(matrix: Matrix, options: Mapping[str, Any]) -> Run | None:
     """The run that was asked for by its id."""
-    return None if not options.get("run") else chosen(matrix, wish(run=options["run"]))[0]
+    return None if not options.get("run") else chosen(matrix, run_filter(run=options["run"]))[0]
 
 
-def typical(matrix: Matrix, fit: FitResult) -> Run:
+def typical_run(matrix: Matrix, fit: FitResult) -> Run:
     """The verify run (or, without one, the run) whose error is the middle one."""
     runs = matrix.of_use("verify") or matrix.runs
     errors = {entry.id: entry.error for entry in fit.runs}

@@ -19,7 +19,7 @@ from ident.figures.chart_template import Filled, Frame, blank, frame
 from ident.figures.drawing import Drawing, Options
 from ident.figures.options import RUN
 from ident.figures.render import Panel
-from ident.figures.run_selection import one
+from ident.figures.run_selection import selected_run
 from ident.figures.study import Study
 from ident.figures.theme import Look
 from ident.figures.thinning import decade_ticks, excited_band, significant
@@ -195,7 +195,7 @@ def _panel(data: alt.NamedData, x: alt.X, y: alt.Y, look: Look, width: int, **he
 
 
 def _drawn(study: Study, look: Look, options: Options) -> Filled:
-    run = one(study.matrix, options) or loaded(study.matrix.of_use("verify") or study.matrix.runs)
+    run = selected_run(study.matrix, options) or loaded(study.matrix.of_use("verify") or study.matrix.runs)
     return sensitivity(run, study.matrix.actuator, study.fit, look)
 
 

@@ -16,7 +16,7 @@ from ident.figures.drawing import Drawing, Option, Options
 from ident.figures.options import OTHER, RUN, number
 from ident.figures.other_fits import others_of
 from ident.figures.render import Chart, datasets
-from ident.figures.run_selection import one, typical
+from ident.figures.run_selection import selected_run, typical_run
 from ident.figures.study import Study
 from ident.figures.theme import Look
 from ident.figures.thinning import significant
@@ -91,7 +91,7 @@ def _rows(name: str, of: StepResponse, factor: float, points: int) -> list[dict[
 
 
 def _drawn(study: Study, look: Look, options: Options) -> Chart:
-    run, others = one(study.matrix, options) or typical(study.matrix, study.fit), others_of(options)
+    run, others = selected_run(study.matrix, options) or typical_run(study.matrix, study.fit), others_of(options)
     actuator = study.matrix.actuator
     studies = (study, *map(study.beside, others))
     seconds = number(options, "seconds") or max(duration(each.fit, run, actuator) for each in studies)

@@ -12,7 +12,7 @@ Real = NDArray[np.float64]
 Places = NDArray[np.intp]
 
 
-def spread(frequency: Real, lower: float, upper: float, count: int, logarithmic: bool) -> Places:
+def evenly_spaced(frequency: Real, lower: float, upper: float, count: int, logarithmic: bool) -> Places:
     """Indices of at most `count` of the given frequencies, evenly spaced on a logarithmic or linear axis."""
     inside = np.flatnonzero((frequency >= lower) & (frequency <= upper) & (frequency > 0))
     if len(inside) <= count:

@@ -1,4 +1,4 @@
-"""First states on their way to where they hold: how far to go on from what a record shows of them."""
+"""Estimation of the initial states of runs: full steps of Gauss and Newton, damped ones where these stall."""
 
 from __future__ import annotations
 
@@ -19,14 +19,15 @@ _OF = FIT_CRITERIA.first_states
 class BestInitialState:
     """The first states (n,) with the smallest residual of a run, what was found there, and the damping of a step.
 
-    `vain` rounds have passed since that counted; the steps go `back` to there once straight ones led nowhere.
+    `stalled_rounds` have passed since it became smaller. The steps are `damped` and begin at these states once full
+    steps led nowhere.
     """
 
     start: Array
     found: NormalMatrices
     damping: float = _OF.damping
-    vain: int = 0
-    back: bool = False
+    stalled_rounds: int = 0
+    damped: bool = False
 
 
 @dataclass
@@ -43,18 +44,22 @@ class InitialStateEstimation:
     def step(self, run: str, start: Array, found: NormalMatrices) -> tuple[Array, Array] | None:
         """From which states (n,) a run goes on, and how far along those that are free; None where they hold."""
         best = self.least.get(run) or BestInitialState(start, found)
-        vain = 0 if found.power < (1.0 - _OF.helps) * best.found.power else best.vain + 1
+        stalled_rounds = 0 if found.power < (1.0 - _OF.helps) * best.found.power else best.stalled_rounds + 1
         if found.power < best.found.power:
-            best = replace(best, start=start, found=found, vain=vain, damping=best.damping / _OF.less)
+            best = replace(
+                best, start=start, found=found, stalled_rounds=stalled_rounds, damping=best.damping / _OF.less
+            )
         else:
-            best = replace(best, vain=vain, damping=best.damping * (_OF.more if best.back else 1.0))
-        over = best.found.settled or best.vain > (_OF.in_vain_of_much if best.found.promises else _OF.in_vain)
-        if over and not best.back and best.found.promises:
-            best, over = replace(best, vain=0, back=True, damping=_OF.damping), False
+            best = replace(
+                best, stalled_rounds=stalled_rounds, damping=best.damping * (_OF.more if best.damped else 1.0)
+            )
+        over = best.found.settled or best.stalled_rounds > (_OF.in_vain_of_much if best.found.promises else _OF.in_vain)
+        if over and not best.damped and best.found.promises:
+            best, over = replace(best, stalled_rounds=0, damped=True, damping=_OF.damping), False
         self.least[run] = best
         if over:
             return None
-        return (best.start, best.found.step(best.damping)) if best.back else (start, found.release)
+        return (best.start, best.found.step(best.damping)) if best.damped else (start, found.release)
 
 
 def better(ends: Sequence[BestInitialState]) -> BestInitialState:

@@ -1,4 +1,4 @@
-"""The polish of a search's best members: where it starts, and what is said where the starts do not end together."""
+"""Local optima that a search ends at: its distinct starts, optima of the same error, and those that compete."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ def distinct(points: Iterable[Array], most: int) -> list[Array]:
 
 
 def equivalent_points(ends: Sequence[LocalOptimum]) -> list[Array]:
-    """The points of the ends that have the error of the first: what differs among them the data do not determine."""
+    """The points of the optima that have the error of the first: the data do not determine what differs among them."""
     return [end.point for end in ends if end.error <= ends[0].error * (1 + _OF.same)]
 
 
@@ -51,7 +51,7 @@ def at_bound(end: LocalOptimum) -> bool:
 
 
 def competing_optima(ends: Sequence[LocalOptimum]) -> list[LocalOptimum]:
-    """The ends whose error is nearly that of the first, but not in one valley with it."""
+    """The optima whose error is nearly that of the first, but not the same."""
     return [end for end in ends if ends[0].error * (1 + _OF.same) < end.error <= ends[0].error * (1 + _OF.near)]
 
 

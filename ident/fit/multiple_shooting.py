@@ -1,4 +1,4 @@
-"""How windows begin anew: at the measured position, and where a machine integrates twice with the speed found before.
+"""Multiple shooting: a window begins at the measured position, and of a double integrator with the speed until there.
 
 Beside a free run only what deviates from it is begun anew. Its position is the measured one at the first sample of a
 window; its speed is what the steady Kalman filter of a double integrator, ẍ = w, with white w and white noise of the

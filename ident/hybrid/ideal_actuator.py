@@ -1,4 +1,4 @@
-"""A machine without a fault but a delay: what a critical delay is the limit of."""
+"""An ideal actuator: it lags its command by a delay and has no other fault, as a critical delay supposes."""
 
 from __future__ import annotations
 

@@ -8,7 +8,7 @@ import pytest
 from ident.decimation.envelope import envelope
 from ident.figures import words
 from ident.figures.theme import LOOKS
-from ident.figures.thinning import decade_ticks, excited_band, spread
+from ident.figures.thinning import decade_ticks, evenly_spaced, excited_band
 
 
 def test_the_envelope_of_a_long_signal_keeps_a_single_spike():
@@ -21,7 +21,7 @@ def test_the_envelope_of_a_long_signal_keeps_a_single_spike():
 
 def test_spread_frequencies_are_given_ones_evenly_apart_on_a_logarithmic_axis():
     frequency = np.arange(1, 20_000) * 0.01
-    kept = frequency[spread(frequency, 0.1, 100.0, 50, logarithmic=True)]
+    kept = frequency[evenly_spaced(frequency, 0.1, 100.0, 50, logarithmic=True)]
     assert kept[0] == pytest.approx(0.1)
     assert kept[-1] == pytest.approx(100.0)
     assert np.diff(np.log(kept))[20:].std() < 0.01

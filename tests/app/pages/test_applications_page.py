@@ -8,7 +8,7 @@ import pytest
 
 from app.pages.control_view import ControlView
 from app.pages.hybrid_view import hybrid_view
-from app.pages.what_if_request import asked
+from app.pages.what_if_request import what_if_request
 from app.pages.what_if_view import what_if_form
 from ident.errors import Unusable
 from ident.fit.result import FitResult
@@ -33,14 +33,14 @@ def test_a_form_that_is_filled_in_is_the_request_of_the_service():
         "ask": "what-if", "area": "239 mm^2", "stroke": " ", "set.tau": "2 ms", "fitted.stroke": "6 in", "mass": "2 kg",
         "gain_from": "2", "gain_to": "3", "peak": "45 Hz", "axes_to": "0.5:2", "seed": "7",
     }  # fmt: skip
-    request = asked(given).model_dump(exclude_defaults=True)
+    request = what_if_request(given).model_dump(exclude_defaults=True)
     assert request["set"] == {"area": pytest.approx(239e-6), "tau": "2 ms"}
     assert request["fitted"] == {"stroke": pytest.approx(0.1524)}
     assert request["specimen"] == {"mass": 2.0}
     assert request["gain"] == (2.0, 3.0)
     assert (request["peak"], request["seed"]) == (45.0, 7)
     assert request["axes"] == [{"gain": 3.0, "lower": 0.5, "upper": 2.0}]
-    assert asked({"ask": "what-if"}).model_dump(exclude_defaults=True) == {}
+    assert what_if_request({"ask": "what-if"}).model_dump(exclude_defaults=True) == {}
 
 
 @pytest.mark.parametrize(
@@ -58,7 +58,7 @@ def test_a_form_that_is_filled_in_is_the_request_of_the_service():
 )
 def test_what_is_no_quantity_is_refused_by_the_name_of_its_field(given, where):
     with pytest.raises(Unusable) as refused:
-        asked(given)
+        what_if_request(given)
     assert where in refused.value.where
     assert refused.value.remedy
 

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import pytest
 
-from app.own_effects.own_effect import OwnEffect, suggested, suited, view, written_down
+from app.own_effects.own_effect import OwnEffect, suggested, usable_on, view, written_down
 from app.pages.own_effects_view import kept_rows
 from tests.app.test_custom_effects import OWN
 
@@ -34,10 +34,10 @@ def test_a_name_is_suggested_that_is_free_and_can_be_read(meaning, name):
 def test_another_model_takes_it_where_it_counts_in_the_same_units():
     """A valve counts in metres of its drive signal, a bench's in rated currents."""
     any_, of_one, of_bench = (written_down(OWN, "lapped", model=model) for model in ("", "qian2014", "kononykhin"))
-    assert list(suited([any_, of_one, of_bench], "qian2014")) == [any_, of_one]
-    assert list(suited([any_, of_one, of_bench], "open_valve")) == [any_, of_one]
-    assert list(suited([any_, of_one, of_bench], "kononykhin")) == [any_, of_bench]
-    assert list(suited([any_, of_one, of_bench], "specimen")) == []
+    assert list(usable_on([any_, of_one, of_bench], "qian2014")) == [any_, of_one]
+    assert list(usable_on([any_, of_one, of_bench], "open_valve")) == [any_, of_one]
+    assert list(usable_on([any_, of_one, of_bench], "kononykhin")) == [any_, of_bench]
+    assert list(usable_on([any_, of_one, of_bench], "specimen")) == []
 
 
 def test_what_this_version_cannot_read_is_listed_with_the_reason():
