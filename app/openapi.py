@@ -30,7 +30,7 @@ RESULTS: Mapping[str, str] = {
     "Carried": "CarriedView",
     "Cause": "CauseView",
     "FactorRange": "FactorRangeView",
-    "Followed": "FeedforwardView",
+    "FeedforwardTracking": "FeedforwardView",
     "DrawnSimulations": "DrawnSimulationsView",
     "Interval": "Spread",
     "JointChange": "JointChangeView",

@@ -3,7 +3,7 @@
 from pydantic import BaseModel, Field
 
 from ident.hybrid.drawn_simulations import DrawnSimulations
-from ident.hybrid.feedforward_tracking import Followed
+from ident.hybrid.feedforward_tracking import FeedforwardTracking
 from ident.hybrid.interval import Interval
 from ident.hybrid.margins import Margins
 from ident.hybrid.shaking_table import Acceleration
@@ -171,7 +171,7 @@ class HybridView(HybridResultView):
     controller_id: str | None
     without: HybridResultView | None
     map: ShareMapView | None
-    feedforward: Followed | None = None
+    feedforward: FeedforwardTracking | None = None
     spread: DrawnSimulations | None = None
     figures: list[str]
 

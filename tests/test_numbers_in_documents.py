@@ -239,12 +239,12 @@ def of_hybrid() -> Iterator[Tie]:
         H,
         "`{{kind: blwn, band: {} Hz, amplitude: {} g, duration: 30 s, seed: {}}}` (the default)",
         (
-            plain(ground_motion.Ground().band[1]),
-            plain(ground_motion.Ground().amplitude / ground_motion.GRAVITY),
-            ground_motion.Ground().seed,
+            plain(ground_motion.GroundMotion().band[1]),
+            plain(ground_motion.GroundMotion().amplitude / ground_motion.GRAVITY),
+            ground_motion.GroundMotion().seed,
         ),
     )
-    yield H, "else g and {} s), a YAML file", (plain(ground_motion.Ground().step),)
+    yield H, "else g and {} s), a YAML file", (plain(ground_motion.GroundMotion().step),)
 
 
 def of_figures() -> Iterator[Tie]:

@@ -23,7 +23,7 @@ from ident.hybrid.controller import no_controller
 from ident.hybrid.controller_design import design_controller
 from ident.hybrid.coupled_simulation import machines_of, simulate_coupled
 from ident.hybrid.coupled_stability import delay_map
-from ident.hybrid.feedforward_tracking import Followed
+from ident.hybrid.feedforward_tracking import FeedforwardTracking
 from ident.hybrid.hybrid_simulation import simulate_hybrid
 from ident.hybrid.share_map import share_map
 from ident.hybrid.tracked_run import track
@@ -80,7 +80,7 @@ def results() -> dict[str, TabularResult]:
         (beam := simulate_coupled((machine, machine), several(0.25)[0], [no_controller(4096.0)] * 2)),
         delay_map(machines_of((machine, machine), beam.case), beam.case, [no_controller(4096.0)] * 2, (1, 2)),
         design_controller(machine, Specimen(8.75, 17.5e3), sample_rate=4096.0, gain=2.0, piston_area=497e-6, delay=1),
-        Followed(gain=20.0, limit=40.0, draws=0, feedback_rms=1e-3, both_rms=1e-4, drawn_feedback_rms=None,
+        FeedforwardTracking(gain=20.0, limit=40.0, draws=0, feedback_rms=1e-3, both_rms=1e-4, drawn_feedback_rms=None,
                  drawn_both_rms=None, drawn_ratio=None, t=curve, reference=curve, feedback=curve, both=curve,
                  low=curve, high=curve),
         PositionLoop("kononykhin", Regulator(100.0), 0.003, (AmplitudeMargin(0.05, 0.1, -5.0, False, text="at 5 %"),),

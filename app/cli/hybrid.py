@@ -22,7 +22,7 @@ from app.cli.whatif import specimen_of
 if TYPE_CHECKING:
     from ident.hybrid.case import Case
     from ident.hybrid.drawn_simulations import DrawnSimulations
-    from ident.hybrid.feedforward_tracking import Followed
+    from ident.hybrid.feedforward_tracking import FeedforwardTracking
     from ident.hybrid.hybrid_simulation import HybridResult
     from ident.hybrid.parameter_samples import Spread
     from ident.hybrid.share_map import ShareMap
@@ -123,7 +123,7 @@ def hybrid(
 def _tell(
     main: HybridResult,
     found: ShareMap | None,
-    worth: Followed | None,
+    worth: FeedforwardTracking | None,
     drawn: DrawnSimulations | None,
     json: Path | None,
 ) -> None:
@@ -148,7 +148,9 @@ def _drawn(wide: Spread | None, acting: Any, *rest: Any) -> DrawnSimulations | N
     return drawn_simulations(fit, case, linear(acting, "spread"), effects, wide, report=report)
 
 
-def _draw(runs: dict[str, HybridResult], of: Case, found: ShareMap | None, worth: Followed | None, out: Path) -> None:
+def _draw(
+    runs: dict[str, HybridResult], of: Case, found: ShareMap | None, worth: FeedforwardTracking | None, out: Path
+) -> None:
     """The figures, and of a shaking table its command."""
     from ident.figures.subjects import Simulated
 

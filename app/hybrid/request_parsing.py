@@ -15,7 +15,7 @@ from ident.hybrid.case import BUILT_IN, NAMES, Case
 from ident.hybrid.changed_machine import SIZES, Change, model_of
 from ident.hybrid.coupled_case import CoupledCase, System, case_of_part
 from ident.hybrid.coupled_reading import system_of
-from ident.hybrid.ground_motion import Ground, ground_of
+from ident.hybrid.ground_motion import GroundMotion, ground_of
 from ident.hybrid.peak_problem import Axes, PeakTarget
 from ident.presets import preset
 from ident.run import Specimen
@@ -52,7 +52,7 @@ class AskedCase:
             return of
         return of.changed(ground=motion) if isinstance(of, CoupledCase) else replace(of, ground=motion)
 
-    def _motion(self, own: Ground) -> Ground | None:
+    def _motion(self, own: GroundMotion) -> GroundMotion | None:
         """The motion in place of the case's own; None where there is none."""
         if self.ground is None:
             return None

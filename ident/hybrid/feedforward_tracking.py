@@ -27,7 +27,7 @@ _RATE = 1000.0  # Hz: no structure moves so fast that more samples would show mo
 
 
 @dataclass(frozen=True, kw_only=True)
-class Followed(TabularResult):
+class FeedforwardTracking(TabularResult):
     """Errors (m) of a machine that follows a reference with the feedback alone and with feedforward beside it.
 
     `gain` and `limit`, from which the loop is unstable (None where it is stable at any gain), in V/m. `feedback_rms`
@@ -84,12 +84,12 @@ class Followed(TabularResult):
         return data
 
     @classmethod
-    def from_json(cls, data: Mapping[str, Any]) -> Followed:
+    def from_json(cls, data: Mapping[str, Any]) -> FeedforwardTracking:
         """What :meth:`to_json` gave."""
         return read(cls, data)
 
     @classmethod
-    def of(cls, found: Tracked, draws: int, spread: str = str(Covariance())) -> Followed:
+    def of(cls, found: Tracked, draws: int, spread: str = str(Covariance())) -> FeedforwardTracking:
         """Of what was tracked: at most 600 points of each curve."""
         places = np.unique(np.linspace(0, len(found.reference) - 1, _SHOWN).astype(np.intp))
         low, high = found.band()
@@ -131,7 +131,7 @@ def plant_in(fit: FitResult, case: Case) -> Plant:
 
 def followed_in(
     fit: FitResult, case: Case, seed: int = 0, spread: Spread | None = None, isolator: Specimen | None = None
-) -> Followed:
+) -> FeedforwardTracking:
     """How the machine of a fit follows the reference solution of a case, and so do 100 drawn machines.
 
     They are drawn from a `spread`, without one from the covariance of the fit. The feedforward is that of the fitted
@@ -142,4 +142,4 @@ def followed_in(
     wanted = reference(moved, case.ground.samples(case.sample_rate))[::every]
     plant, drawn = plant_in(fit, case), drawn_parameters(fit, seed=seed, spread=spread)
     found = tracked(plant, plant_in(fit, moved), wanted, case.sample_rate / every, drawn)
-    return Followed.of(found, len(next(iter(drawn.values()), ())), str(spread or Covariance()))
+    return FeedforwardTracking.of(found, len(next(iter(drawn.values()), ())), str(spread or Covariance()))

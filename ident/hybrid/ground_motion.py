@@ -28,7 +28,7 @@ _NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eEdD][+-]?\d+)?")
 
 
 @dataclass(frozen=True)
-class Ground:
+class GroundMotion:
     """A ground acceleration, SI.
 
     `kind` "record": the numbers of `file` in rows, one after the other, each times `factor` (m/s² for one of the file's
@@ -105,7 +105,7 @@ def _count(seconds: float, sample_rate: float) -> int:
     return count
 
 
-def _white(count: int, of: Ground, sample_rate: float) -> Array:
+def _white(count: int, of: GroundMotion, sample_rate: float) -> Array:
     """Noise whose spectrum is flat in the band and zero elsewhere, of exactly the RMS value asked for."""
     frequency = np.fft.rfftfreq(count, 1 / sample_rate)
     used = (frequency > 0) & (frequency >= of.band[0]) & (frequency <= of.band[1])
@@ -161,7 +161,7 @@ def record_of(text: str, where: str, column: int | None = None) -> Array:
     return values
 
 
-def ground_of(data: Any, base: Path | None, default: Ground) -> Ground:
+def ground_of(data: Any, base: Path | None, default: GroundMotion) -> GroundMotion:
     """The motion of a description; what a record's entry leaves out (unit, step) is that of `default`.
 
     `base` is the folder from which a file's name counts; without one no file is read, and a record is the `text` of the
@@ -176,7 +176,7 @@ def ground_of(data: Any, base: Path | None, default: Ground) -> Ground:
     if "unit" in fields:
         factor = unit_scale(fields.text("unit"), "acceleration", "ground unit").factor
     scale = fields.number("scale")
-    return Ground(
+    return GroundMotion(
         kind=kind,
         file=file,
         text=text,
@@ -205,12 +205,12 @@ def _record(fields: Fields, base: Path | None) -> tuple[str, str]:
     return str(base / file) if base is not None and file else "", ""
 
 
-def _amplitude(fields: Fields, default: Ground) -> float:
+def _amplitude(fields: Fields, default: GroundMotion) -> float:
     found = fields.not_negative("amplitude", "acceleration")
     return default.amplitude if found is None else found
 
 
-def _band(fields: Fields, default: Ground) -> tuple[float, float]:
+def _band(fields: Fields, default: GroundMotion) -> tuple[float, float]:
     pair = fields.pair("band") if isinstance(fields.data.get("band"), list) else None
     if pair is None:
         top = fields.positive("band", "frequency") if "band" in fields else None

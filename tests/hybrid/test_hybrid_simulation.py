@@ -13,7 +13,7 @@ from ident.hybrid.case import qian
 from ident.hybrid.compensation import Compensation
 from ident.hybrid.controller import SampledController
 from ident.hybrid.controller_lookup import controller_called
-from ident.hybrid.ground_motion import Ground
+from ident.hybrid.ground_motion import GroundMotion
 from ident.hybrid.hybrid_simulation import simulate_hybrid, simulate_machine
 from ident.hybrid.ideal_actuator import ideal_actuator
 from ident.hybrid.linear_plant import linear_plant
@@ -149,7 +149,7 @@ def test_the_critical_delay_by_analysis_and_by_simulation(ratio, expected, tmp_p
     assert critical_delay(case) == pytest.approx(expected, rel=0.01)
     push = tmp_path / "push.txt"
     push.write_text("0.1\n" + "0\n" * 2000)
-    pushed = replace(case, ground=Ground()).with_ground(push)
+    pushed = replace(case, ground=GroundMotion()).with_ground(push)
     for delay, grows in ((0.99 * expected, False), (1.01 * expected, True)):
         d = np.abs(simulate_machine(ideal_actuator(pushed, delay), pushed).numerical)
         assert (np.max(d[-16384:]) > np.max(d[16384:32768])) == grows
