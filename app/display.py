@@ -12,7 +12,7 @@ from starlette.datastructures import Headers
 from starlette.requests import cookie_parser
 from starlette.types import ASGIApp, Receive, Scope, Send
 
-from app.access.who import Who
+from app.access.caller import Caller
 from ident.words.display import displaying, known
 
 COOKIE = "units"
@@ -35,7 +35,7 @@ class Display:
 
 def _asked(scope: Scope) -> str:
     """The units' names with commas between."""
-    who: Who | None = scope.get("state", {}).get("who")
+    who: Caller | None = scope.get("state", {}).get("who")
     if who is not None and who.units is not None:
         return ",".join(who.units)
     cookies = Headers(scope=scope).get("cookie", "")

@@ -17,7 +17,7 @@ from starlette.requests import ClientDisconnect
 from app.nearest_field import body_of, remedy
 from app.storage import Unreachable
 from ident.errors import Unusable
-from ident.fit.extended import EFFECT_THERE
+from ident.fit.added_effects import EFFECT_THERE
 from ident.words.nearest import did_you_mean
 from schemas.problem import Problem
 

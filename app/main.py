@@ -20,10 +20,10 @@ from uvicorn.middleware.proxy_headers import ProxyHeadersMiddleware
 
 from app import errors, openapi
 from app.access.audit import Audited
+from app.access.audited_changes import carry
 from app.access.gate import Gate
-from app.access.noting import carry
 from app.access.roles import refuse_undeclared
-from app.access.tries import Tries
+from app.access.token_attempts import TokenAttempts
 from app.blobs import open_storage
 from app.context import Context
 from app.database import connect, migrate, sessions
@@ -38,14 +38,14 @@ from app.operation.metrics import Requests
 from app.operation.observed import Observed
 from app.pages import router as pages
 from app.pages.problems import sign_in
-from app.processes import Apart, Here
+from app.processes import Here, WorkerProcesses
 from app.request_id import RequestId
 from app.security import Guard
 from app.settings import Settings
 from app.stream.service import LARGEST_MESSAGE
 from app.webhooks.courier import Courier
 from app.webhooks.hosts import origins
-from app.webhooks.told import told
+from app.webhooks.openapi_webhooks import told
 from app.workers.pulse import Pulse
 from ident.parallel import one_thread
 
@@ -88,7 +88,7 @@ _PATIENCE = 5  # s in which what is being answered ends, before the service does
 _KEPT = 75  # s that a connection waits for its next request: clients let go after 5, proxies after 60, and first
 _TURN = 1e-3  # s after which a figure that is drawn lets an answer take its turn: the interpreter's own are 5
 READERS = 2  # uploads that are read at once
-WORK = ("app.kinds", "ident.simulation.ready")  # what processes apart have imported when they begin
+WORK = ("app.kinds", "ident.simulation.numba_preload")  # what processes apart have imported when they begin
 _OF_EACH: dict[str, Any] = {
     "generate_unique_id_function": openapi.named,
     "dependencies": [Depends(refuse_undeclared)],
@@ -105,7 +105,7 @@ def create_app(settings: Settings, apart: bool = False) -> FastAPI:
     origins(settings.webhook_hosts)  # before anything is opened: what cannot be a host is refused
     app = routed()
     app.state.context = make_context(settings, apart)
-    app.state.tries = Tries(settings.failures)
+    app.state.tries = TokenAttempts(settings.failures)
     app.state.requests = Requests()
     errors.install(app)
     _surround(app, settings)
@@ -201,7 +201,7 @@ def make_context(settings: Settings, apart: bool = False) -> Context:
     engine = connect(settings.database)
     makers, storage = sessions(engine), open_storage(settings)
     carry(makers)
-    worker, readers = (Apart(1, *WORK), Apart(READERS, *WORK)) if apart else (Here(), Here())
+    worker, readers = (WorkerProcesses(1, *WORK), WorkerProcesses(READERS, *WORK)) if apart else (Here(), Here())
     runs = Runs(makers, storage, settings.executor, *KINDS, place=worker)
     return Context(settings, engine, makers, storage, Jobs(settings, runs), readers, worker)
 

@@ -13,8 +13,8 @@ from fastapi.openapi.utils import get_openapi
 from fastapi.routing import APIRoute, iter_route_contexts
 from pydantic.json_schema import models_json_schema
 
+from app.access.caller import Role
 from app.access.roles import READERS, May, declared
-from app.access.who import Role
 from schemas.problem import Problem
 
 router = APIRouter(include_in_schema=False)
@@ -30,7 +30,7 @@ RESULTS: Mapping[str, str] = {
     "Carried": "CarriedView",
     "Cause": "CauseView",
     "FactorRange": "FactorRangeView",
-    "Followed": "FeedforwardView",
+    "FeedforwardTracking": "FeedforwardView",
     "DrawnSimulations": "DrawnSimulationsView",
     "Interval": "Spread",
     "JointChange": "JointChangeView",

@@ -16,8 +16,8 @@ from websockets.sync.client import connect
 from benchmarks.table import Table, seconds_of
 from ident.effects import EFFECTS
 from ident.hybrid.case import qian
-from ident.hybrid.ground import Ground
-from ident.hybrid.rig import simulate_hybrid
+from ident.hybrid.ground_motion import GroundMotion
+from ident.hybrid.hybrid_simulation import simulate_hybrid
 from ident.hybrid.share_map import SHARES, share_map
 from ident.hybrid.tracking import Tracker
 from tests.hybrid.cases import fitted
@@ -120,7 +120,7 @@ def streams() -> Table:
 
 def rig() -> Table:
     """Qian's case without and with every effect, against the flat reference; and a map of shares on every core."""
-    fit, case = fitted(), replace(qian(), ground=Ground(duration=RUN))
+    fit, case = fitted(), replace(qian(), ground=GroundMotion(duration=RUN))
     on = {effect.name: effect.strength.upper / 10 for effect in EFFECTS}
     ground = case.ground.samples(case.sample_rate)
     part = ground[: round(FLAT * case.sample_rate)]

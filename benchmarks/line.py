@@ -24,8 +24,8 @@ from app.context import Context
 from app.database import connect, sessions
 from app.main import create_app
 from app.parameters import export
-from app.parameters.repository.found import numbers
-from app.parameters.wanted import Wanted
+from app.parameters.repository.matching_sets import numbers
+from app.parameters.set_query import SetQuery
 from app.settings import Settings
 from benchmarks import figures, process
 from benchmarks.line_filled import PARAMETERS, fill
@@ -62,11 +62,11 @@ def _ranges(share: float, names: tuple[str, ...], at: float) -> Asked:
     return asked | {f"{name}.max": repr(float(high)) for name, (_, high) in ends.items() if np.isfinite(high)}
 
 
-def _wanted(asked: Asked) -> Wanted:
+def _wanted(asked: Asked) -> SetQuery:
     lowest = {name[:-4]: float(value) for name, value in asked.items() if name.endswith(".min")}
     highest = {name[:-4]: float(value) for name, value in asked.items() if name.endswith(".max")}
     rest: dict[str, Any] = {name: asked[name] for name in ("serial", "batch") if name in asked}
-    return Wanted(lowest=lowest, highest=highest, current=True if "current" in asked else None, **rest)
+    return SetQuery(lowest=lowest, highest=highest, current=True if "current" in asked else None, **rest)
 
 
 @dataclass(frozen=True)
@@ -139,7 +139,7 @@ def _export(kind: str, context: Context) -> tuple[tuple[str, ...], bool]:
     """All sets as CSV, and the most memory that it takes."""
     before, began, found = process.resident(os.getpid()), time.process_time(), -1  # the first line has the titles
     process.reset(os.getpid())
-    for piece in export.csv_rows(context, Wanted()):
+    for piece in export.csv_rows(context, SetQuery()):
         found += piece.count("\n")
     grown = (process.peak(os.getpid()) - before) / 1e6
     busy = time.process_time() - began

@@ -13,8 +13,8 @@ from numpy.typing import NDArray
 from benchmarks.table import Table, seconds_of
 from ident.chain.conditions import conditions
 from ident.effects import EFFECTS
-from ident.figures.look import LOOKS, Look
 from ident.figures.render import Chart, Panel, render
+from ident.figures.theme import LOOKS, Look
 from ident.matrix import Actuator
 from ident.parallel import cores, each
 from ident.presets import preset

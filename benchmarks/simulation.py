@@ -10,7 +10,7 @@ from benchmarks.table import Table, seconds_of
 from ident.chain.conditions import conditions
 from ident.presets import PRESETS
 from ident.run import Run
-from ident.simulation.between import at_nodes
+from ident.simulation.intersample_command import at_nodes
 from ident.simulation.recursion import discretise, respond
 from tests.reference import qian_reference as reference
 

@@ -15,7 +15,7 @@ from __future__ import annotations
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
-from ident.words.shown import TABLES as _TABLES
+from ident.words.result_tables import TABLES as _TABLES
 
 if TYPE_CHECKING:
     from ident.checks.check import check

@@ -14,7 +14,7 @@ from ident.rig.limits import RigLimits
 from ident.rig.provenance import UNSTATED, Provenance
 from ident.rig.regulator import PositionControl
 from ident.run import Run
-from ident.words.shown import Listing, Shown
+from ident.words.result_tables import Listing, TabularResult
 
 
 @dataclass(frozen=True)
@@ -71,7 +71,7 @@ class StepOutcome:
 
 
 @dataclass(frozen=True, eq=False)
-class Matrix(Shown):
+class Matrix(TabularResult):
     """All runs of one actuator. `data_hash` is the SHA-256 of the description and every raw file, in order."""
 
     actuator: Actuator

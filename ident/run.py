@@ -15,8 +15,8 @@ from ident.rounding import ROUNDING
 from ident.slopes import slopes
 from ident.words.engineering import multiple
 from ident.words.number import plain
+from ident.words.result_tables import Listing, TabularResult
 from ident.words.run_name import run_name
-from ident.words.shown import Listing, Shown
 
 Samples = NDArray[np.float64]
 
@@ -73,7 +73,7 @@ class Specimen:
 
 
 @dataclass(frozen=True, eq=False)
-class Run(Shown):
+class Run(TabularResult):
     """One measured record in SI (or in the record's own units where the matrix says ``1``).
 
     `channels` maps a channel's name to its samples, all of one length; `sample_rate` is in Hz, or in 1/sample where

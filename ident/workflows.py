@@ -34,9 +34,9 @@ from ident.errors import TimeIsUp, Unusable
 from ident.fit.alternatives import CompletedFit, FitWithAlternatives
 from ident.fit.choices import Choices, settings_of
 from ident.fit.continued import ContinuedIdentification
-from ident.fit.given import Bounds, with_candidates_given
+from ident.fit.drive_regression import RegressedIdentification
 from ident.fit.identification import Identification, StepwiseFit, check_settings, completed
-from ident.fit.regressed import RegressedIdentification
+from ident.fit.parameter_bounds import Bounds, with_candidates_given
 from ident.fit.result import FitResult
 from ident.fit.settings import Settings
 from ident.hybrid.kalman_identification import KalmanIdentification

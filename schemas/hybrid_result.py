@@ -3,11 +3,11 @@
 from pydantic import BaseModel, Field
 
 from ident.hybrid.drawn_simulations import DrawnSimulations
-from ident.hybrid.followed import Followed
+from ident.hybrid.feedforward_tracking import FeedforwardTracking
 from ident.hybrid.interval import Interval
 from ident.hybrid.margins import Margins
 from ident.hybrid.shaking_table import Acceleration
-from ident.hybrid.target import Target
+from ident.hybrid.target_loop import Target
 from ident.stability.judgement import Judgement
 
 
@@ -171,7 +171,7 @@ class HybridView(HybridResultView):
     controller_id: str | None
     without: HybridResultView | None
     map: ShareMapView | None
-    feedforward: Followed | None = None
+    feedforward: FeedforwardTracking | None = None
     spread: DrawnSimulations | None = None
     figures: list[str]
 

@@ -59,7 +59,8 @@ def pytest_collection_finish(session: pytest.Session) -> None:
                 if hasattr(function, "py_func"):
                     shared(function)
     if session.config.getoption("--workers") > 1:
-        for name in ("ident.simulation.ready", "control"):  # what each worker would import in its tests, for a second
+        # What each worker would import in its tests, for a second.
+        for name in ("ident.simulation.numba_preload", "control"):
             importlib.import_module(name)
     if "hypothesis" in sys.modules and not asked_for_full(session.config):
         from hypothesis.internal.conjecture import providers
@@ -86,7 +87,7 @@ LONGEST = (
     "hybrid/test_what_if", "acceptance/test_fitness", "residuals/test_curves", "presets/test_two_masses",
     "fit/test_windows", "diagnosis/test_recommended", "fit/test_fifth_order", "design/test_proposal",
     "faults/test_kill", "bench/test_procedures", "test_site", "bench/test_continued", "words/test_message",
-    "diagnosis/test_free_shapes", "test_results", "diagnosis/test_time_budget", "hybrid/test_rig",
+    "diagnosis/test_free_shapes", "test_results", "diagnosis/test_time_budget", "hybrid/test_hybrid_simulation",
     "noise/test_noise", "test_docs", "test_alone",
 )  # fmt: skip
 """Files that take longest, the dearest first; those that wait for a browser or a process stand between others.

@@ -26,7 +26,7 @@ from typing import Any, ClassVar
 
 IMPORTED = ("app.cli.program", "app.main", "app.operation.migration", "ident.workflows", "uvicorn.protocols.http.auto",
             "uvicorn.loops.auto", "uvicorn.lifespan.on", "psycopg", "obstore", "dbos", "app.fits.work",
-            "app.diagnoses.work", "app.kinds", "ident.simulation.ready")  # fmt: skip
+            "app.diagnoses.work", "app.kinds", "ident.simulation.numba_preload")  # fmt: skip
 COMMAND = "from app.cli.program import main; main()"
 WAIT = 240.0  # s, for a machine that is busy with other things
 

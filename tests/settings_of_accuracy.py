@@ -8,7 +8,7 @@ from inspect import signature
 
 from ident.effects import EFFECTS
 from ident.fit.criteria import FIT_CRITERIA
-from ident.hybrid import draws, oil_column, robustness
+from ident.hybrid import oil_column, parameter_samples, robustness
 from tests import rounding
 from tests.acceptance import matrices, test_equations, test_fitness, test_identification, test_rounding
 from tests.effects import test_contract
@@ -178,7 +178,7 @@ def of_accuracy_elsewhere() -> Iterator[Tie]:
         "a fit of {} runs | {} | 100 stable and within {:g} dB and {:g}° to {:g} Hz",
         (
             Counter(trial.use for trial in qian_reference.trials())["fit"],
-            draws.DRAWS,
+            parameter_samples.DRAWS,
             *robustness.WITHIN,
             robustness.HIGHEST,
         ),

@@ -56,9 +56,9 @@ def by_text(call: ast.Call) -> str:
 @pytest.mark.parametrize(
     ("source", "module"),
     [
-        ('import_module("ident.readers.stated")', "ident.readers.stated"),
+        ('import_module("ident.readers.mat")', "ident.readers.mat"),
         ('importlib.import_module("ident.readers").read_matrix(path)', "ident.readers"),
-        ('getattr(import_module(name="ident.readers.stated"), "of_table")', "ident.readers.stated"),
+        ('getattr(import_module(name="ident.readers.mat"), "read_mat")', "ident.readers.mat"),
         ('import_module(f"ident.readers.{kind}")', "ident.readers"),
         ('import_module(f"ident.readers.read_{kind}")', "ident.readers"),
         ('__import__("ident.readers")', "ident.readers"),
@@ -354,7 +354,7 @@ def test_the_client_needs_httpx_and_pydantic_only():
 
 FRAME = {
     "app.access.roles",
-    "app.access.who",
+    "app.access.caller",
     "app.context",
     "app.errors",
     "app.form",

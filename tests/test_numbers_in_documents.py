@@ -13,7 +13,7 @@ from pathlib import Path
 
 import pytest
 
-from app.pages import next_view
+from app.pages import next_step_view
 from ident.bench import acceptance
 from ident.bench.criteria import BENCH_CRITERIA
 from ident.comparison import frequency_response, profile
@@ -25,21 +25,21 @@ from ident.fit.criteria import FIT_CRITERIA
 from ident.fit.search import Search
 from ident.hybrid import (
     compensation,
-    draws,
-    ground,
+    ground_motion,
+    hybrid_simulation,
+    innovation_test,
     inverse,
     kalman,
     loop_shaping,
     oil_column,
+    parameter_samples,
     peaks,
     prefilter,
     reduction,
-    rig,
     robustness,
     share_map,
     tracked_run,
     tracking,
-    verdict,
     what_if,
 )
 from ident.preprocessing import run_exclusion
@@ -139,7 +139,7 @@ def of_others() -> Iterator[Tie]:
     """What decides elsewhere."""
     yield "which-machine.md", "unless that is below {} % of it", (per_cent(CRITERIA.structure.unusual),)
     yield "which-machine.md", "which has no parts, is {} as probable", ({0.5: "half"}[CRITERIA.structure.no_parts],)
-    yield "lab.md", "within {} of it there is nothing left to find", (plain(next_view.NEAR),)
+    yield "lab.md", "within {} of it there is nothing left to find", (plain(next_step_view.NEAR),)
 
     P = "physics.md"
     yield (
@@ -211,8 +211,8 @@ def of_hybrid() -> Iterator[Tie]:
             plain(kalman.MOST_COLOUR),
         ),
     )
-    yield H, "where more than {} of the windows fail", (PARTS[verdict._FEW_WINDOWS],)
-    yield H, "where more than {} % of the samples were outliers", (per_cent(verdict._FEW_SAMPLES),)
+    yield H, "where more than {} of the windows fail", (PARTS[innovation_test._FEW_WINDOWS],)
+    yield H, "where more than {} % of the samples were outliers", (per_cent(innovation_test._FEW_SAMPLES),)
     yield H, "smoothed over {} s; until then", (plain(compensation.SMOOTHED_OVER),)
     yield H, "of width {}/ωn unless another is given", (plain(inverse.WIDTH),)
     yield H, "known ahead by {} widths", (word(inverse._REACH),)
@@ -227,10 +227,10 @@ def of_hybrid() -> Iterator[Tie]:
             plain(prefilter.PEAK),
         ),
     )
-    yield H, "{} actuators are drawn from the covariance of the fit", (draws.DRAWS,)
+    yield H, "{} actuators are drawn from the covariance of the fit", (parameter_samples.DRAWS,)
     yield H, "`within` ± {} dB and ± {}° to {} Hz", (*map(plain, robustness.WITHIN), plain(robustness.HIGHEST))
     yield H, "{shares} × {shares} of them", (share_map.SHARES,)
-    yield H, "({} times the largest displacement of the reference)", (plain(rig.RUNAWAY),)
+    yield H, "({} times the largest displacement of the reference)", (plain(hybrid_simulation.RUNAWAY),)
     yield H, "Kp runs from {} to {}.", tuple(map(plain, what_if.USUAL_GAINS))
     yield H, "there is no peak below {} Hz", (plain(what_if.HIGHEST),)
     yield H, "from which the curve falls by {} % on either side", (beyond(peaks.PROMINENCE),)
@@ -239,12 +239,12 @@ def of_hybrid() -> Iterator[Tie]:
         H,
         "`{{kind: blwn, band: {} Hz, amplitude: {} g, duration: 30 s, seed: {}}}` (the default)",
         (
-            plain(ground.Ground().band[1]),
-            plain(ground.Ground().amplitude / ground.GRAVITY),
-            ground.Ground().seed,
+            plain(ground_motion.GroundMotion().band[1]),
+            plain(ground_motion.GroundMotion().amplitude / ground_motion.GRAVITY),
+            ground_motion.GroundMotion().seed,
         ),
     )
-    yield H, "else g and {} s), a YAML file", (plain(ground.Ground().step),)
+    yield H, "else g and {} s), a YAML file", (plain(ground_motion.GroundMotion().step),)
 
 
 def of_figures() -> Iterator[Tie]:

@@ -21,17 +21,17 @@ from ident.diagnosis.result import Diagnosis
 from ident.hybrid.changed_machine import Change
 from ident.hybrid.controller import no_controller
 from ident.hybrid.controller_design import design_controller
-from ident.hybrid.coupled_rig import machines_of, simulate_coupled
+from ident.hybrid.coupled_simulation import machines_of, simulate_coupled
 from ident.hybrid.coupled_stability import delay_map
-from ident.hybrid.followed import Followed
-from ident.hybrid.rig import simulate_hybrid
+from ident.hybrid.feedforward_tracking import FeedforwardTracking
+from ident.hybrid.hybrid_simulation import simulate_hybrid
 from ident.hybrid.share_map import share_map
 from ident.hybrid.tracked_run import track
 from ident.hybrid.what_if import what_if
 from ident.matrix import Actuator
 from ident.residuals.survey import survey
 from ident.run import Specimen
-from ident.words.shown import MOST_ROWS, Listing, Shown, html, text
+from ident.words.result_tables import MOST_ROWS, Listing, TabularResult, html, text
 from tests.hybrid.cases import fitted, of_qian
 from tests.hybrid.coupled_cases import beam as several
 
@@ -42,7 +42,7 @@ STORED = Path(__file__).parent / "stored" / "diagnosis.json"
 
 
 @cache
-def results() -> dict[str, Shown]:
+def results() -> dict[str, TabularResult]:
     """One of each kind, by the name of its class."""
     matrix = ident.simulate(seconds=0.25, small=True)
     fit = ident.identify(matrix, fixed={"tau": "3.6 ms"}, seed=1, options={"population": 20, "generations": 4})
@@ -80,7 +80,7 @@ def results() -> dict[str, Shown]:
         (beam := simulate_coupled((machine, machine), several(0.25)[0], [no_controller(4096.0)] * 2)),
         delay_map(machines_of((machine, machine), beam.case), beam.case, [no_controller(4096.0)] * 2, (1, 2)),
         design_controller(machine, Specimen(8.75, 17.5e3), sample_rate=4096.0, gain=2.0, piston_area=497e-6, delay=1),
-        Followed(gain=20.0, limit=40.0, draws=0, feedback_rms=1e-3, both_rms=1e-4, drawn_feedback_rms=None,
+        FeedforwardTracking(gain=20.0, limit=40.0, draws=0, feedback_rms=1e-3, both_rms=1e-4, drawn_feedback_rms=None,
                  drawn_both_rms=None, drawn_ratio=None, t=curve, reference=curve, feedback=curve, both=curve,
                  low=curve, high=curve),
         PositionLoop("kononykhin", Regulator(100.0), 0.003, (AmplitudeMargin(0.05, 0.1, -5.0, False, text="at 5 %"),),
@@ -137,7 +137,7 @@ def test_a_long_table_shows_its_ends_and_counts_what_lies_between():
 
 
 def test_a_result_without_tables_is_refused_by_its_name():
-    class Bare(Shown):
+    class Bare(TabularResult):
         """Nothing is registered for it."""
 
     with pytest.raises(NotImplementedError, match="Bare"):

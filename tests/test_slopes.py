@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from ident.run import Run
-from ident.simulation.closed_way import covered, drift
 from ident.simulation.inputs import closed
+from ident.simulation.periodic_displacement import covered, drift
 from ident.slopes import bends, bends_of_way, curvatures, slopes
 
 AT = 7.4  # samples: where the motion begins to brake

@@ -14,7 +14,7 @@ from ident.errors import Unusable
 from ident.fit.choices import Choices
 from ident.fit.result import FitResult
 from ident.matrix import Matrix
-from ident.words.stated import Stated
+from ident.words.record_description import Stated
 from tests.conftest import ROOT
 
 FUNCTIONS = [name for name in ident.__all__ if inspect.isfunction(getattr(ident, name))]

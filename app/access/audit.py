@@ -8,7 +8,7 @@ from starlette.datastructures import Headers
 from starlette.requests import Request
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
-from app.access.noting import Change, changing
+from app.access.audited_changes import Change, changing
 from app.context import Context
 from app.errors import unavailable
 

@@ -9,9 +9,9 @@ from fastapi import APIRouter, Query, Response
 from fastapi.responses import JSONResponse
 
 from app.access import service
+from app.access.caller import Me, Role
 from app.access.roles import ADMIN, READERS, may
 from app.access.secret import Secret
-from app.access.who import Me, Role
 from app.context import Here
 from app.errors import COMMON
 from app.idempotency import Answer, Key, fingerprint, once

@@ -16,11 +16,11 @@ from starlette.responses import RedirectResponse, Response
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from app.access import sessions
+from app.access.caller import START, Caller
 from app.access.identity import Shown, identify, shown_by
 from app.access.rates import Rate
 from app.access.roles import unknown
-from app.access.tries import Tries, too_often
-from app.access.who import START, Who
+from app.access.token_attempts import TokenAttempts, too_often
 from app.context import Context
 from app.errors import Failure, refusal, unavailable
 
@@ -37,7 +37,7 @@ SignIn = Callable[[Request, Failure], Response]
 class Gate:
     """ASGI middleware: finds out who asks, and refuses whom it does not know, and who asks too often."""
 
-    def __init__(self, app: ASGIApp, context: Context, tries: Tries, sign_in: SignIn) -> None:
+    def __init__(self, app: ASGIApp, context: Context, tries: TokenAttempts, sign_in: SignIn) -> None:
         self.app, self.context, self.tries, self.sign_in = app, context, tries, sign_in
         self.uses = Rate(context.settings.rate, 10 * context.settings.rate)
 
@@ -80,7 +80,7 @@ class Gate:
         sessions.keep(answer, secret, scope["scheme"] == "https")
         return answer
 
-    async def _let_in(self, scope: Scope, shown: Shown | None) -> Who:
+    async def _let_in(self, scope: Scope, shown: Shown | None) -> Caller:
         """Who asks. Raises Failure 401, 429."""
         if shown is None:
             raise unknown()
@@ -117,7 +117,7 @@ class Gate:
             await _ended(scope, receive, send, begun)
 
     async def _watched(self, shown: Shown | None, answering: anyio.CancelScope) -> None:
-        who: Who | None = START
+        who: Caller | None = START
         while shown is not None and who is not None:
             await asyncio.sleep(LOOK)
             with suppress(OSError, OperationalError):  # of a database that does not answer nothing is known

@@ -13,8 +13,8 @@ from sqlalchemy.orm import Session
 from starlette.datastructures import Headers
 
 from app.access import repository
+from app.access.caller import START, Caller, Role
 from app.access.secret import Secret, same
-from app.access.who import START, Role, Who
 from app.context import Context
 from app.tables import SessionRow, TokenRow, before, now
 
@@ -51,7 +51,7 @@ def shown_by(headers: Headers) -> Shown | None:
     return Shown(cookies[COOKIE].value, cookie=True) if COOKIE in cookies else None
 
 
-def identify(context: Context, shown: Shown) -> Who | None:
+def identify(context: Context, shown: Shown) -> Caller | None:
     """Whose it is; None where it is nobody's, or is valid no more."""
     if not shown.cookie and same(shown.text, context.settings.token):
         return START
@@ -65,7 +65,7 @@ def identify(context: Context, shown: Shown) -> Who | None:
         return _bearer(context, row) if row is not None and secret.is_of(row.hash) else None
 
 
-def _of_cookie(context: Context, session: Session, secret: Secret) -> Who | None:
+def _of_cookie(context: Context, session: Session, secret: Secret) -> Caller | None:
     """A session of the start token is kept with that as key: another start, with another token, knows it no more."""
     row = repository.browser(session, secret.id)
     if row is None or row.expires_at < now():
@@ -79,13 +79,13 @@ def _of_cookie(context: Context, session: Session, secret: Secret) -> Who | None
     return replace(who, session=row.id, units=repository.display_units(session, who.token))
 
 
-def _bearer(context: Context, row: TokenRow | None) -> Who | None:
+def _bearer(context: Context, row: TokenRow | None) -> Caller | None:
     if row is None or row.revoked_at is not None or (row.expires_at is not None and row.expires_at < now()):
         return None
     if row.last_used_at is None or row.last_used_at < before(_SELDOM):
         with suppress(OperationalError), context.sessions.begin() as session:  # of a full disk one still reads
             repository.used(session, row.id)
-    return Who(row.name, Role(row.role), row.id)
+    return Caller(row.name, Role(row.role), row.id)
 
 
 def _prolong(context: Context, row: SessionRow) -> None:

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from sqlalchemy import delete, select, update
 from sqlalchemy.orm import Session
 
-from app.access.who import Who
+from app.access.caller import Caller
 from app.tables import AuditRow, DisplayUnitsRow, SessionRow, TokenRow, now
 
 
@@ -77,7 +77,7 @@ def choose_units(session: Session, account: str, units: Sequence[str]) -> None:
     session.merge(DisplayUnitsRow(account=account, units=list(units)))
 
 
-def note(session: Session, who: Who, action: str, on: str, request: str) -> None:
+def note(session: Session, who: Caller, action: str, on: str, request: str) -> None:
     """A line of the audit."""
     session.add(AuditRow(token=who.token, name=who.name, action=action, object=on[:400], request=request))
 

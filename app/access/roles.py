@@ -12,7 +12,7 @@ from typing import Any
 from fastapi import Depends
 from starlette.requests import HTTPConnection
 
-from app.access.who import Role, Who
+from app.access.caller import Caller, Role
 from app.errors import Failure
 
 
@@ -29,7 +29,7 @@ class May:
 
     async def __call__(self, connection: HTTPConnection) -> None:
         """Let the request pass. Raises Failure 401, 403."""
-        who: Who | None = getattr(connection.state, "who", None)
+        who: Caller | None = getattr(connection.state, "who", None)
         if self.free:
             return
         if who is None:

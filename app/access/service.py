@@ -5,13 +5,13 @@ from __future__ import annotations
 from sqlalchemy.orm import Session, sessionmaker
 
 from app.access import repository, sessions
+from app.access.audited_changes import about
+from app.access.caller import Caller, Role
 from app.access.duration import duration
 from app.access.identity import Shown
-from app.access.noting import about
 from app.access.secret import Secret
 from app.access.sessions import drop, end, keep
-from app.access.tries import Tries
-from app.access.who import Role, Who
+from app.access.token_attempts import TokenAttempts
 from app.context import Context
 from app.errors import Failure, missing
 from app.paging import cursor, keys_of
@@ -35,11 +35,11 @@ __all__ = [
 ]
 
 Records = sessionmaker[Session]
-COMMAND = Who("command line", Role.ADMIN, "command")
+COMMAND = Caller("command line", Role.ADMIN, "command")
 """Who has the data folder at hand and needs no token."""
 
 
-def new(records: Records, request: TokenRequest, secret: Secret, by: Who | None = None) -> NewToken:
+def new(records: Records, request: TokenRequest, secret: Secret, by: Caller | None = None) -> NewToken:
     """Make a token of this secret, of which a hash is kept; noted where it is `by` a command. Raises Unusable."""
     expires_at = None if request.expires is None else before(-duration(request.expires))
     about(f"tokens/{secret.id}")
@@ -65,7 +65,7 @@ def listed(records: Records, after: str | None, limit: int) -> TokenPage:
     return TokenPage(items=[view(row) for row in rows], next=following)
 
 
-def revoke(records: Records, token: str, by: Who | None = None) -> TokenView:
+def revoke(records: Records, token: str, by: Caller | None = None) -> TokenView:
     """Revoke a token, which its next request is refused by; noted where it is `by` a command. Raises Failure 404."""
     with records.begin() as session:
         if repository.token(session, token) is None:
@@ -96,18 +96,18 @@ def view(row: TokenRow) -> TokenView:
     )
 
 
-def sign_in(context: Context, tries: Tries, token: str, address: str) -> Secret:
+def sign_in(context: Context, tries: TokenAttempts, token: str, address: str) -> Secret:
     """Begin a session by a token; what its cookie is to hold. Raises Failure 401, 429."""
     return sessions.begin(context, tries.identify(context, Shown(token.strip()), address))
 
 
-def display_units(records: Records, who: Who) -> DisplayUnits:
+def display_units(records: Records, who: Caller) -> DisplayUnits:
     """The display units that an account has chosen."""
     with records() as session:
         return DisplayUnits(units=list(repository.display_units(session, who.token) or ()))
 
 
-def choose_units(records: Records, who: Who, request: DisplayUnits) -> DisplayUnits:
+def choose_units(records: Records, who: Caller, request: DisplayUnits) -> DisplayUnits:
     """Keep the display units of an account, each once. Raises Unusable."""
     with display.displaying(request.units):
         units = display.display_units()

@@ -5,15 +5,15 @@ from __future__ import annotations
 from starlette.responses import Response
 
 from app.access import repository
+from app.access.caller import START, Caller
 from app.access.identity import COOKIE, LASTS
 from app.access.secret import Secret
-from app.access.who import START, Who
 from app.context import Context
 from app.request_id import request_id
 from app.tables import before
 
 
-def begin(context: Context, who: Who) -> Secret:
+def begin(context: Context, who: Caller) -> Secret:
     """A new session of a token's bearer, with its line in the audit; what its cookie is to hold."""
     secret, start = Secret.draw(), who.token == START.token
     hashed = secret.hashed(context.settings.token if start else "")
@@ -23,7 +23,7 @@ def begin(context: Context, who: Who) -> Secret:
     return secret
 
 
-def end(context: Context, who: Who) -> None:
+def end(context: Context, who: Caller) -> None:
     """End the session that a request came with; none of a request that came with a token."""
     if who.session is None:
         return

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from fastapi import APIRouter
 
+from app.access.caller import Me
 from app.access.roles import LAB, READERS
-from app.access.who import Me
 from app.annotations import service
 from app.context import Here
 from app.errors import COMMON

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from fastapi import APIRouter, Response
 
+from app.access.caller import Me
 from app.access.roles import LAB
-from app.access.who import Me
 from app.approvals import service
 from app.context import Here
 from app.errors import COMMON

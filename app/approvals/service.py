@@ -9,7 +9,7 @@ from app.context import Context
 from app.errors import Failure
 from app.fits import service as fits
 from app.fits.objections import of_fit
-from app.limits.broken import tell_broken
+from app.limits.violations import tell_broken
 from app.webhooks.outbox import announce
 from schemas.fit import FitView
 from schemas.parameters import ApprovalView

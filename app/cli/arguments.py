@@ -108,8 +108,8 @@ def additions(files: Sequence[Path], terms: int | None = None) -> tuple[Named, D
 
 def _defined(file: Path, terms: int | None) -> tuple[Named, Diagnosis | None]:
     """What a file defines: one effect, or, a diagnosis, what that proposes; what is kept under a name."""
-    from app.cli.given import read_diagnosis
-    from app.cli.kept_here import find
+    from app.cli.input_files import read_diagnosis
+    from app.cli.local_effects import find
     from ident.custom.definition import definition_of, is_name
     from ident.diagnosis.named import Named, named, of_fit
 

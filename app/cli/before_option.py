@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from app.cli.arguments import number
-from app.cli.given import read_fit
+from app.cli.input_files import read_fit
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

@@ -13,7 +13,7 @@ from app.cli.rig_option import RigFile, on_rig
 from ident.words.number import count
 from ident.words.run_name import run_name, without_name
 from ident.words.severity import level, levels
-from ident.words.uses import data
+from ident.words.titles import data
 
 if TYPE_CHECKING:
     from ident.checks.finding import Finding

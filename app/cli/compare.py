@@ -8,7 +8,7 @@ from typing import Annotated
 import typer
 
 from app.cli.figure_files import draw_study, given_options, study_figures
-from app.cli.given import read_fit
+from app.cli.input_files import read_fit
 from app.cli.output import STANDARD_OUTPUT, check_target, write_json
 
 

@@ -10,7 +10,7 @@ import typer
 from app.cli.at_option import At, Over, Sets, moved_to
 from app.cli.before_option import CaseBefore, EarlierFit, EarlierGain, earlier_case
 from app.cli.figure_files import FORMATS, write_figure
-from app.cli.given import read_fit
+from app.cli.input_files import read_fit
 from app.cli.output import write_bytes, write_json
 from app.cli.rig_option import RigFile, rig_in
 from app.cli.spread_option import SpreadGiven, spread_in
@@ -18,7 +18,7 @@ from ident.errors import Unusable
 
 if TYPE_CHECKING:
     from ident.hybrid.controller_design import ControllerDesign
-    from ident.hybrid.target import Target
+    from ident.hybrid.target_loop import Target
 
 FILES = ("controller.json", "controller.mat", "controller.h", *(f"closed-loop.{kind}" for kind in FORMATS))
 
@@ -56,7 +56,7 @@ def control(
     from ident.hybrid.controller_design import design_controller, on_case
     from ident.hybrid.coupled_case import case_of_part
     from ident.hybrid.coupled_reading import read_system
-    from ident.hybrid.target import QIAN2014_TARGET
+    from ident.hybrid.target_loop import QIAN2014_TARGET
 
     moved, given = moved_to(read_fit(fit), at, over, sets), case_of_part(read_system(case), part)
     result = moved.fit
@@ -85,7 +85,7 @@ def control(
 
 
 def _target(path: Path) -> Target:
-    from ident.hybrid.target import read_target
+    from ident.hybrid.target_loop import read_target
 
     if not path.is_file():
         raise Unusable("no-such-file", "the file does not exist", str(path), "give its path")

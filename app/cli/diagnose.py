@@ -24,7 +24,7 @@ from app.cli.fit_options import (
     modelled,
     settings,
 )
-from app.cli.given import read_fit
+from app.cli.input_files import read_fit
 from app.cli.last_diagnosis import LAST, keep
 from app.cli.output import STANDARD_OUTPUT, check_target, write_json
 from app.cli.preprocessing_options import (
@@ -96,11 +96,11 @@ def diagnose(
     The search ranks effects by their held-out error, and adds them while the error falls.
     """
     from app.cli.arguments import definitions
-    from app.cli.kept_here import beside
+    from app.cli.local_effects import beside
     from ident.custom.definition import read_effect, together
     from ident.diagnosis.criteria import CRITERIA
     from ident.diagnosis.unfitted import unfitted
-    from ident.fit.given import with_candidates_given
+    from ident.fit.parameter_bounds import with_candidates_given
     from ident.fit.settings import Settings
     from ident.readers import read_matrix
     from ident.time_budget import TimeBudget

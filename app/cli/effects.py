@@ -14,7 +14,7 @@ from ident.errors import Unusable
 from ident.words.message import message
 
 if TYPE_CHECKING:
-    from app.own_effects.kept import Kept
+    from app.own_effects.own_effect import OwnEffect
 
 Where = Annotated[
     str, typer.Option("--server", metavar="URL", help="Use the own effects of this service instead of the local ones.")
@@ -58,8 +58,8 @@ def effects(
 
 def _here() -> dict[str, Any]:
     from app.catalogue.service import effects as catalogue
-    from app.cli.kept_here import every
-    from app.own_effects.kept import view
+    from app.cli.local_effects import every
+    from app.own_effects.own_effect import view
 
     own = [view(kept).model_dump(by_alias=True) for kept in every()]
     return {"own": own, "catalogue": [effect.model_dump() for effect in catalogue()]}
@@ -128,8 +128,8 @@ def keep(
     name, or the id of a diagnosis of the service.
     """
     if not server:
-        from app.cli.kept_here import folder
-        from app.cli.kept_here import keep as keep_here
+        from app.cli.local_effects import folder
+        from app.cli.local_effects import keep as keep_here
 
         kept = given(Path(source), name, proposal)
         new = keep_here(kept)
@@ -141,11 +141,11 @@ def keep(
     print(message("kept.saved_by" if new else "kept.already_by", name=stored["name"], where=server))
 
 
-def given(file: Path, name: str, proposal: int) -> Kept:
+def given(file: Path, name: str, proposal: int) -> OwnEffect:
     """The effect of a file, or the term of a diagnosis, under a name. Raises Unusable."""
     from app.cli.arguments import is_diagnosis
-    from app.cli.given import read_diagnosis
-    from app.own_effects.kept import meaning_of, proposed, suggested, written_down
+    from app.cli.input_files import read_diagnosis
+    from app.own_effects.own_effect import meaning_of, proposed, suggested, written_down
     from ident.custom.definition import definition_of
 
     if not is_diagnosis(file):
@@ -162,7 +162,7 @@ def given(file: Path, name: str, proposal: int) -> Kept:
 
 def body(source: str, name: str, proposal: int) -> dict[str, Any]:
     """What a service is asked to keep: a file's effect, one that is kept here, or a term of its own diagnosis."""
-    from app.cli.kept_here import look
+    from app.cli.local_effects import look
 
     kept = given(Path(source), name, proposal) if Path(source).exists() else look(source)
     if kept is not None:
@@ -187,7 +187,7 @@ def drop(
     if server:
         request(server, token, "DELETE", f"/own-effects/{segment(name)}")
     else:
-        from app.cli.kept_here import drop as drop_here
+        from app.cli.local_effects import drop as drop_here
 
         drop_here(name)
     print(f"{name} is deleted")

@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from app.cli.given import read_fit
+from app.cli.input_files import read_fit
 from app.cli.output import check_target, write_bytes
 from app.cli.whatif import OfSpecimen, specimen_of
 

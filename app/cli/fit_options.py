@@ -144,10 +144,10 @@ def settings(
 
     With `candidates` bounds and values may be of effects, too, that a diagnosis may add to the model.
     """
-    from app.cli.kept_here import defined_here
+    from app.cli.local_effects import defined_here
     from ident.custom.definition import preset_with
     from ident.diagnosis.named import with_named
-    from ident.fit.given import with_candidates
+    from ident.fit.parameter_bounds import with_candidates
     from ident.fit.settings import Settings
 
     own, found = additions(custom or [], terms)

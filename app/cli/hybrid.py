@@ -11,8 +11,8 @@ from app.cli.arguments import effect_values
 from app.cli.at_option import At, Over, Sets, moved_to
 from app.cli.before_option import Before, CaseBefore, EarlierFit, EarlierGain, earlier_case
 from app.cli.figure_files import write_figures
-from app.cli.given import read_fit
 from app.cli.hybrid_parts import PartsAsked, show_parts
+from app.cli.input_files import read_fit
 from app.cli.output import STANDARD_OUTPUT, check_target, write_bytes, write_json
 from app.cli.progress import shown
 from app.cli.rig_option import RigFile, rig_in
@@ -22,9 +22,9 @@ from app.cli.whatif import specimen_of
 if TYPE_CHECKING:
     from ident.hybrid.case import Case
     from ident.hybrid.drawn_simulations import DrawnSimulations
-    from ident.hybrid.draws import Spread
-    from ident.hybrid.followed import Followed
-    from ident.hybrid.rig import HybridResult
+    from ident.hybrid.feedforward_tracking import FeedforwardTracking
+    from ident.hybrid.hybrid_simulation import HybridResult
+    from ident.hybrid.parameter_samples import Spread
     from ident.hybrid.share_map import ShareMap
 
 
@@ -75,12 +75,12 @@ def hybrid(
     """
     from dataclasses import replace
 
-    from ident.hybrid.acting import FEEDFORWARD, controller_called
     from ident.hybrid.controller import name_of
+    from ident.hybrid.controller_lookup import FEEDFORWARD, controller_called
     from ident.hybrid.coupled_case import CoupledCase
     from ident.hybrid.coupled_reading import read_system
-    from ident.hybrid.followed import followed_in
-    from ident.hybrid.rig import simulate_hybrid
+    from ident.hybrid.feedforward_tracking import followed_in
+    from ident.hybrid.hybrid_simulation import simulate_hybrid
     from ident.hybrid.specimen_effects import wanted_in
 
     check_target(json)
@@ -123,7 +123,7 @@ def hybrid(
 def _tell(
     main: HybridResult,
     found: ShareMap | None,
-    worth: Followed | None,
+    worth: FeedforwardTracking | None,
     drawn: DrawnSimulations | None,
     json: Path | None,
 ) -> None:
@@ -139,7 +139,7 @@ def _tell(
 
 def _drawn(wide: Spread | None, acting: Any, *rest: Any) -> DrawnSimulations | None:
     """The same on machines drawn from a spread, where one is stated: of linear controllers."""
-    from ident.hybrid.acting import linear
+    from ident.hybrid.controller_lookup import linear
     from ident.hybrid.drawn_simulations import drawn_simulations
 
     if wide is None:
@@ -148,7 +148,9 @@ def _drawn(wide: Spread | None, acting: Any, *rest: Any) -> DrawnSimulations | N
     return drawn_simulations(fit, case, linear(acting, "spread"), effects, wide, report=report)
 
 
-def _draw(runs: dict[str, HybridResult], of: Case, found: ShareMap | None, worth: Followed | None, out: Path) -> None:
+def _draw(
+    runs: dict[str, HybridResult], of: Case, found: ShareMap | None, worth: FeedforwardTracking | None, out: Path
+) -> None:
     """The figures, and of a shaking table its command."""
     from ident.figures.subjects import Simulated
 
@@ -167,7 +169,7 @@ def write_command(found: HybridResult, out: Path) -> None:
 
 def _map(asked: bool, acting: Any, *rest: Any) -> ShareMap | None:
     """The map, where it is asked for: of linear controllers, which run side by side."""
-    from ident.hybrid.acting import linear
+    from ident.hybrid.controller_lookup import linear
     from ident.hybrid.share_map import share_map
 
     if not asked:

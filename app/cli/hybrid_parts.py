@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 from app.cli.at_option import moved_to
 from app.cli.before_option import Before, earlier_parts
 from app.cli.figure_files import write_figures
-from app.cli.given import read_fit
+from app.cli.input_files import read_fit
 from app.cli.output import STANDARD_OUTPUT, write_json
 from app.cli.progress import shown
 from app.cli.spread_option import spread_in
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from ident.fit.result import FitResult
     from ident.hybrid.controller import Controller
     from ident.hybrid.coupled_case import CoupledCase
-    from ident.hybrid.coupled_rig import CoupledResult
+    from ident.hybrid.coupled_simulation import CoupledResult
 
 
 @dataclass(frozen=True)
@@ -47,8 +47,8 @@ def show_parts(
     Parts name files in the `folder` of the case; others have the fit and the controller that are given.
     """
     from app.cli.tables import show
-    from ident.hybrid.acting import linear
-    from ident.hybrid.coupled_rig import simulate_compared
+    from ident.hybrid.controller_lookup import linear
+    from ident.hybrid.coupled_simulation import simulate_compared
     from ident.hybrid.drawn_simulations import drawn_coupled
 
     moved = [
@@ -90,7 +90,7 @@ def _controllers(
 
     A feedforward follows the reference of the case `of` that is simulated.
     """
-    from ident.hybrid.acting import FEEDFORWARD, NAMED, controller_called
+    from ident.hybrid.controller_lookup import FEEDFORWARD, NAMED, controller_called
     from ident.hybrid.substructure import reference
 
     names = [_inside(part.controller, folder, NAMED) or controller for part in of.parts]

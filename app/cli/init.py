@@ -24,7 +24,7 @@ from ident.words.severity import levels
 if TYPE_CHECKING:
     from ident.drafts.answers import Answer, Answers, FileAnswers
     from ident.drafts.draft import Draft, Missing
-    from ident.drafts.raw import RawFile
+    from ident.drafts.raw_file import RawFile
     from ident.drafts.text import Gathered
     from ident.readers.dialect import Dialect
 
@@ -108,8 +108,8 @@ def init(
     """
     from ident.drafts.answers import NONE, Answers
     from ident.drafts.draft import Draft
+    from ident.drafts.separate_tables import with_tables_apart
     from ident.drafts.signal_files import with_runs_joined
-    from ident.drafts.tables_apart import with_tables_apart
     from ident.drafts.text import gathered
 
     if out is not None:
@@ -228,7 +228,7 @@ def _made(draft: Draft, files: Gathered, out: Path) -> None:
 
 def _parts(content: bytes, name: str, files: list[Path], dialect: Dialect) -> tuple[RawFile, ...]:
     """The runs of a file. Raises Unusable; for one signal alone with the command that joins the files given."""
-    from ident.drafts.raw import read_parts
+    from ident.drafts.raw_file import read_parts
 
     try:
         return read_parts(content, name, stated=dialect)

@@ -19,8 +19,8 @@ def join(
 
     `servoident init` then describes the table.
     """
-    from ident.drafts.joined import joined
-    from ident.drafts.raw import read_whole
+    from ident.drafts.joined_files import joined
+    from ident.drafts.raw_file import read_whole
     from ident.readers.limits import LIMITS
     from ident.readers.source import read_regular
 

@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from app.cli.given import read_diagnosis
+from app.cli.input_files import read_diagnosis
 from app.cli.last_diagnosis import found_file
 from app.cli.output import STANDARD_OUTPUT, check_target, write_json
 from app.cli.rig_option import RigFile, on_rig

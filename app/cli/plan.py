@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from app.cli.given import read_fit
+from app.cli.input_files import read_fit
 from app.cli.output import STANDARD_OUTPUT, check_target, write_json
 from app.cli.progress import shown
 from app.cli.rig_option import RigFile, rig_in

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from app.cli.figure_files import write_figure
-from app.cli.given import read_fit
+from app.cli.input_files import read_fit
 from app.cli.output import STANDARD_OUTPUT, check_target, write_json
 
 if TYPE_CHECKING:

@@ -55,9 +55,8 @@ def query(
 
 def _tell_nearest(given: dict[str, str | None], ranges: list[str], server: str, token: str) -> None:
     """Say which known name is nearest to one that was asked for: of a model, of a parameter, of an actuator."""
-    from app.cli.nothing_found import tell_nearest
-    from ident.presets import PRESETS
-    from ident.presets.parameter_names import parameter_names
+    from app.cli.nearest_names import tell_nearest
+    from ident.presets import PRESETS, parameter_names
 
     def known(where: str) -> Iterable[str]:
         if where in ("serial", "batch"):

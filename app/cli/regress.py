@@ -10,7 +10,7 @@ from typing import Annotated, Any
 import typer
 
 from app.cli.data_options import Data, Database, settings
-from app.cli.nothing_found import tell_nearest
+from app.cli.nearest_names import tell_nearest
 from app.cli.output import check_target, write_bytes
 from app.cli.progress import shown
 from app.cli.remote import Token, request

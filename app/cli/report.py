@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from app.cli.given import read_diagnosis, read_fit
+from app.cli.input_files import read_diagnosis, read_fit
 from app.cli.last_diagnosis import found_file
 from app.cli.output import check_target, write_bytes
 from app.cli.report_options import Customer, Laboratory, Logo, OilTemperature, Operator, Order, TestDate

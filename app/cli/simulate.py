@@ -123,8 +123,8 @@ def _test_of(given: str, model: Preset, texts: list[str]) -> RigTest:
 
     from ident.matrix import Actuator
     from ident.presets.rig_test import TESTS, RigTest
-    from ident.readers.fields import Fields
     from ident.readers.loop_settings import loop_gain
+    from ident.readers.typed_fields import Fields
     from ident.synthesis.rig_matrix import with_stated
     from ident.units.quantity import quantity
     from ident.words.nearest import did_you_mean

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from app.cli.arguments import method_options
-from app.cli.given import read_result
+from app.cli.input_files import read_result
 from app.cli.last_diagnosis import found_file
 from ident.errors import Unusable
 

@@ -10,7 +10,7 @@ from rich.console import Console
 from rich.markup import escape
 from rich.table import Table
 
-from ident.words.shown import Listing
+from ident.words.result_tables import Listing
 
 if TYPE_CHECKING:
     from ident.fit.result import FitResult

@@ -13,7 +13,7 @@ from app.cli.arguments import in_si, number, split
 from app.cli.at_option import At, Over, Sets, moved_to
 from app.cli.before_option import EarlierFit, EarlierGain, gain_of
 from app.cli.figure_files import write_figures
-from app.cli.given import read_fit
+from app.cli.input_files import read_fit
 from app.cli.output import STANDARD_OUTPUT, check_target, write_json
 from app.cli.progress import shown
 from app.cli.regulator import Amplitudes, OfRegulator, show_margins

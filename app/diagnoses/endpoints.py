@@ -6,8 +6,8 @@ from typing import Annotated
 
 from fastapi import APIRouter, Query, Response
 
+from app.access.caller import Me
 from app.access.roles import LAB, READERS
-from app.access.who import Me
 from app.context import Here
 from app.diagnoses import proposal, service
 from app.errors import COMMON

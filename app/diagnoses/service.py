@@ -21,8 +21,8 @@ from ident.diagnosis.criteria import CRITERIA
 from ident.diagnosis.named import named
 from ident.diagnosis.result import Diagnosis, Verdict
 from ident.errors import Unusable
-from ident.fit.given import with_candidates_given
 from ident.fit.identification import check_settings
+from ident.fit.parameter_bounds import with_candidates_given
 from ident.fit.result import Estimate, FitResult
 from ident.plain import read, written
 from schemas.diagnosis import DiagnosisPage, DiagnosisRequest, DiagnosisView

@@ -12,7 +12,7 @@ from app.diagnoses import repository
 from app.fits import repository as fits
 from app.fits.history import put_apart
 from app.jobs.work import InOnePiece, Kind, MadeSoFar, State, Task
-from app.own_effects.kept import Kept, suited
+from app.own_effects.own_effect import OwnEffect, usable_on
 from app.tables import JobRow
 from ident.custom.definition import read_effect
 from ident.diagnosis.result import Diagnosis
@@ -91,7 +91,7 @@ def _beside_the_lab_s(fit: FitResult, kept: Sequence[Mapping[str, Any]]) -> FitR
     """The fit with the lab's own effects that its model can take beside its own, which come first."""
     known = tuple(fit.settings.get("custom", ()))
     names = {definition["name"] for definition in known}
-    entries = suited((read(Kept, entry) for entry in kept), fit.model)
+    entries = usable_on((read(OwnEffect, entry) for entry in kept), fit.model)
     more = [entry.definition for entry in entries if entry.name not in names]
     return fit.with_custom((*known, *more)) if more else fit
 

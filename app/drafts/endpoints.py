@@ -7,8 +7,8 @@ from typing import Any
 from fastapi import APIRouter, Request, Response
 from fastapi.concurrency import run_in_threadpool
 
+from app.access.caller import Role
 from app.access.roles import LAB, may
-from app.access.who import Role
 from app.context import Here
 from app.drafts import service
 from app.errors import COMMON

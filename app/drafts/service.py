@@ -19,9 +19,9 @@ from app.storage import Storage
 from ident.checks.check import check
 from ident.drafts.answers import Answer, Answers, FileAnswers
 from ident.drafts.draft import Draft
-from ident.drafts.raw import RawFile, read_or_shown
+from ident.drafts.raw_file import RawFile, read_or_shown
+from ident.drafts.separate_tables import may_hold_tables, with_tables_apart
 from ident.drafts.signal_files import named_runs, with_runs_joined
-from ident.drafts.tables_apart import may_hold_tables, with_tables_apart
 from ident.drafts.text import as_yaml, run_files
 from ident.errors import Unusable
 from ident.readers import read_source

@@ -8,7 +8,7 @@ from typing import Any
 from app.context import Context
 from app.diagnoses import service as diagnoses
 from app.errors import Failure
-from app.figures.drawn import drawn as drawn_of
+from app.figures.figure_cache import drawn as drawn_of
 from app.fits import service
 from app.fits.studied import study
 from app.profiles import service as profiles

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from app.context import Context
-from app.figures.drawn import drawn as drawn_of
+from app.figures.figure_cache import drawn as drawn_of
 from app.matrices import service
 from ident.figures.subjects import Recorded
 from ident.matrix import Actuator

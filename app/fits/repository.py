@@ -14,7 +14,7 @@ from app.fits.history import read, taken_apart
 from app.storage import Storage
 from app.tables import DiagnosisRow, EvolutionRow, FitRow, JobRow, MatrixRow, SetRow, ValueRow
 from ident.fit.result import FitResult
-from ident.fit.sheet import PREFIX
+from ident.fit.sheet_quantity import PREFIX
 from ident.rig.conditions import CONDITIONS
 from ident.rig.conditions import PREFIX as CONDITION
 from ident.run import USES

@@ -15,9 +15,7 @@ from ident.words.error import ErrorOf
 from ident.words.number import trimmed
 from ident.words.percent import percent_in_print
 from ident.words.plus_minus import determined, in_cells
-from ident.words.symbols import symbol
-from ident.words.titles import of_parameter
-from ident.words.uses import DATA
+from ident.words.titles import DATA, of_parameter, symbol
 
 
 @dataclass(frozen=True)

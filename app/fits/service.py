@@ -25,7 +25,7 @@ from ident.fit.result import FitResult
 from ident.fit.settings import GENERAL, Settings
 from ident.plain import written
 from ident.preprocessing import off_steps, screen
-from ident.presets.suited import in_question, is_assumed_loop
+from ident.presets.suitable_models import in_question, is_assumed_loop
 from ident.residuals.budget import Budget, budget
 from ident.residuals.survey import survey
 from ident.words.error import ErrorOf

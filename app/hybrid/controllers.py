@@ -8,14 +8,14 @@ from typing import Any
 
 from sqlalchemy.exc import IntegrityError
 
-from app.access.noting import about
+from app.access.audited_changes import about
 from app.context import Context
 from app.errors import Failure, missing
 from app.fits import service as fits
 from app.hybrid import repository
-from app.hybrid.asked import AskedCase, asked_case
 from app.hybrid.at_condition import moved_to
-from app.hybrid.before import earlier_case, stated
+from app.hybrid.earlier_loop import earlier_case, stated
+from app.hybrid.request_parsing import AskedCase, asked_case
 from app.hybrid.spread import spread_of
 from app.lru import LRU
 from app.paging import cursor, keys_of
@@ -24,7 +24,7 @@ from ident.fit.result import FitResult
 from ident.hybrid.controller import SampledController
 from ident.hybrid.controller_design import ControllerDesign, design_controller, on_case
 from ident.hybrid.export import as_header, as_mat
-from ident.hybrid.target import QIAN2014_TARGET, target_of
+from ident.hybrid.target_loop import QIAN2014_TARGET, target_of
 from schemas.hybrid import AtRequest, ControllerRequest, SpreadRequest
 from schemas.hybrid_result import ControllerPage, ControllerView, DesignView
 

@@ -19,7 +19,7 @@ from ident.figures.delay_map import DELAY_MAP
 from ident.figures.subjects import Coupled, Designed, Simulated, Tracked
 from ident.hybrid.coupled_case import CoupledCase, case_of_part
 from ident.hybrid.coupled_stability import DelayMap
-from ident.hybrid.followed import Followed
+from ident.hybrid.feedforward_tracking import FeedforwardTracking
 from ident.hybrid.shaking_table import command_text
 from ident.hybrid.share_map import ShareMap
 from schemas.hybrid import PositionLoopRequest, WhatIfRequest
@@ -54,7 +54,7 @@ def of_simulation(
             unpacked(row.records, case, results),
             case,
             _map(held["map"]) if held["map"] else None,
-            Followed.from_json(worth) if worth else None,
+            FeedforwardTracking.from_json(worth) if worth else None,
         )
 
     return _drawn(context, ("hybrid", simulation, part or ""), subject, name, kind, style)

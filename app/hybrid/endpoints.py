@@ -10,7 +10,7 @@ from app.access.roles import LAB, READERS
 from app.context import Here
 from app.errors import COMMON
 from app.hybrid import controllers, drawing, position_loop, service, tracking, what_if
-from app.hybrid.asked import request_in
+from app.hybrid.request_parsing import request_in
 from app.idempotency import Answer, Key, fingerprint, once
 from app.jobs.queueing import queued_once
 from ident.bench.position_loop import PositionLoop

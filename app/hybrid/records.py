@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from ident.hybrid.case import Case
-from ident.hybrid.rig import HybridResult
+from ident.hybrid.hybrid_simulation import HybridResult
 from ident.hybrid.scores import Scores
 from ident.hybrid.shaking_table import Acceleration
 from ident.plain import read

@@ -9,22 +9,22 @@ from typing import Any
 from app.context import Context
 from app.errors import missing
 from app.fits import service as fits
-from app.hybrid import parts, repository
-from app.hybrid.acting import acting
-from app.hybrid.asked import AskedCase, asked_case, effects_of, specimen_of
+from app.hybrid import coupled_simulation, repository
 from app.hybrid.at_condition import moved_to
-from app.hybrid.before import earlier_case, stated
-from app.hybrid.keeping import kept_controller, kept_text
+from app.hybrid.controller_lookup import controller_of
+from app.hybrid.earlier_loop import earlier_case, stated
+from app.hybrid.request_parsing import AskedCase, asked_case, effects_of, specimen_of
 from app.hybrid.spread import spread_of
+from app.hybrid.stored_inputs import kept_controller, kept_text
 from app.jobs import service as jobs
 from app.paging import cursor, keys_of
 from app.tables import HybridRow
 from ident.design.at_condition import Moved
 from ident.errors import Unusable
 from ident.fit.result import FitResult
-from ident.hybrid.acting import FEEDFORWARD, linear
 from ident.hybrid.case import Case
 from ident.hybrid.controller import Controller, SampledController, name_of
+from ident.hybrid.controller_lookup import FEEDFORWARD, linear
 from ident.hybrid.coupled_case import CoupledCase, System, case_of_part
 from ident.hybrid.machine import machine
 from ident.plain import written
@@ -44,13 +44,13 @@ def submit(context: Context, request: HybridRequest, job: str) -> JobView:
     own, asked = FitResult.from_json(row.result), asked_case(request.case, request.ground)
     system, effects = asked.system(), effects_of(request, own.model)
     if isinstance(system, CoupledCase):
-        settings = parts.settings(context, request, own, system, asked, effects)
+        settings = coupled_simulation.settings(context, request, own, system, asked, effects)
         return jobs.record(context, job, row.matrix, settings, request.fit, KIND)
     moved = moved_to(context, own, request.at)
     fit, case = moved.fit, case_of_part(system, request.isolator_part)
     isolator = None if request.isolator is None else specimen_of(request.isolator, "isolator")
     given, stored = kept_controller(context, request.controller)
-    chosen = acting(given, fit, case)
+    chosen = controller_of(given, fit, case)
     _check(fit, case if isolator is None else case.with_isolator(isolator), effects, chosen, request.map)
     spread = spread_of(context, request.spread, fit.model)
     if spread is not None and given == FEEDFORWARD:

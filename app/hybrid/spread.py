@@ -6,7 +6,7 @@ from typing import Any
 
 from app.context import Context
 from app.parameters import service as parameters
-from app.parameters.wanted import Wanted
+from app.parameters.set_query import SetQuery
 from ident.design.scatter import Scatter
 from ident.design.spread import USUAL, Spread
 from ident.errors import Unusable
@@ -28,10 +28,10 @@ def spread_of(context: Context, asked: SpreadRequest | None, model: str) -> AnyS
             "bad-request", "a spread is stated in several ways", "spread", "give shares, a serial or a batch"
         )
     if asked.serial is not None:
-        wanted = Wanted(serial=asked.serial, model=model, approved=True)
+        wanted = SetQuery(serial=asked.serial, model=model, approved=True)
         return _scatter(context, wanted, f"serial number {asked.serial}")
     if asked.batch is not None:
-        return _scatter(context, Wanted(batch=asked.batch, model=model, current=True), f"batch {asked.batch}")
+        return _scatter(context, SetQuery(batch=asked.batch, model=model, current=True), f"batch {asked.batch}")
     usual = USUAL if asked.share is None else parameter_value(asked.share, "1", "spread share")
     return Spread(usual, {name: parameter_value(one, "1", f"spread {name}") for name, one in asked.shares.items()})
 
@@ -43,11 +43,11 @@ def kept(data: dict[str, Any] | None) -> AnySpread | None:
     return read(Scatter, data) if "deviations" in data else read(Spread, data)
 
 
-def _scatter(context: Context, wanted: Wanted, of: str) -> Scatter:
+def _scatter(context: Context, wanted: SetQuery, of: str) -> Scatter:
     return Scatter.of_sets(sets_of(context, wanted), of)
 
 
-def sets_of(context: Context, wanted: Wanted) -> list[dict[str, float]]:
+def sets_of(context: Context, wanted: SetQuery) -> list[dict[str, float]]:
     """The values of the newest of these sets by name, SI."""
     sets = parameters.page(context, wanted, None, _MOST).items
     return [{name: entry.value for name, entry in one.parameters.items()} for one in sets]

@@ -6,8 +6,8 @@ from dataclasses import replace
 
 from app.context import Context
 from app.fits import service as fits
-from app.hybrid.asked import change_of, gains_of, peak_of
 from app.hybrid.at_condition import moved_to
+from app.hybrid.request_parsing import change_of, gains_of, peak_of
 from app.hybrid.spread import spread_of
 from app.lru import LRU
 from ident.fit.result import FitResult

@@ -11,22 +11,22 @@ from typing import Any
 from sqlalchemy.orm import Session
 
 from app.hybrid import repository
-from app.hybrid.acting import acting
-from app.hybrid.asked import AskedCase
-from app.hybrid.before import earlier_case
-from app.hybrid.parts import simulated
+from app.hybrid.controller_lookup import controller_of
+from app.hybrid.coupled_simulation import simulated
+from app.hybrid.earlier_loop import earlier_case
 from app.hybrid.records import packed, packed_parts
+from app.hybrid.request_parsing import AskedCase
 from app.hybrid.service import KIND
 from app.hybrid.spread import kept
 from app.jobs.work import InOnePiece, Kind, State, Task
 from app.tables import JobRow
 from ident.fit.result import FitResult
-from ident.hybrid.acting import FEEDFORWARD
 from ident.hybrid.controller import SampledController
+from ident.hybrid.controller_lookup import FEEDFORWARD
 from ident.hybrid.coupled_case import CoupledCase
 from ident.hybrid.drawn_simulations import drawn_simulations
-from ident.hybrid.followed import followed_in
-from ident.hybrid.rig import simulate_hybrid
+from ident.hybrid.feedforward_tracking import followed_in
+from ident.hybrid.hybrid_simulation import simulate_hybrid
 from ident.hybrid.share_map import share_map
 from ident.hybrid.specimen_effects import wanted_in
 from ident.plain import read
@@ -53,7 +53,7 @@ class HybridWork(InOnePiece):
         given: Any = json.loads(self._blob(asked["controller"])) if asked["inline"] else asked["controller"]
         effects, isolator = asked["effects"], read(Specimen, asked["isolator"]) if asked.get("isolator") else None
         known, case = case, case if isolator is None else case.with_isolator(isolator)
-        chosen = acting(given, fit, known, wanted_in(fit, case, effects) if given == FEEDFORWARD else None)
+        chosen = controller_of(given, fit, known, wanted_in(fit, case, effects) if given == FEEDFORWARD else None)
         before = earlier_case(asked.get("before"), fit, case, self._fit)
         main = simulate_hybrid(fit, case, chosen, effects, report, before)
         main = replace(main, notes=(*moved["notes"], *main.notes)) if moved else main

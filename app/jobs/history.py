@@ -9,7 +9,7 @@ from datetime import datetime
 from sqlalchemy.orm import Session
 
 from app.jobs import repository
-from app.jobs.course import Course, read
+from app.jobs.stage_times import Course, read
 from app.jobs.time_left import MOST, TimeLeft, time_left
 from app.tables import JobRow, now
 

@@ -10,7 +10,7 @@ from typing import Any
 from sqlalchemy.exc import IntegrityError
 from sqlalchemy.orm import Session
 
-from app.access.noting import about
+from app.access.audited_changes import about
 from app.context import Context
 from app.errors import Failure, missing
 from app.jobs import repository

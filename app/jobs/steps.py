@@ -13,10 +13,10 @@ from typing import Any
 from sqlalchemy.orm import Session, sessionmaker
 
 from app.errors import is_full
-from app.jobs import at_work, repository
-from app.jobs.course import Course
+from app.jobs import repository, worker_side
 from app.jobs.lease import AWAY, Lease, Superseded, patiently
 from app.jobs.service import end
+from app.jobs.stage_times import Course
 from app.jobs.work import Kind, MadeSoFar, State, Task, Work
 from app.processes import Here, Place, Stopped
 from app.storage import Storage, Unreachable
@@ -87,7 +87,7 @@ class Run(Work):
     def store(self, last: State) -> None:
         """Record the result, or how the job ended; in one transaction, once."""
         with suppress(Stopped, MemoryError):
-            self.runs.place.call(at_work.leave, self._turn)
+            self.runs.place.call(worker_side.leave, self._turn)
         try:
             patiently(lambda: self._store(last), self.runs.stopping)
         except Exception:
@@ -96,7 +96,7 @@ class Run(Work):
             failed = _failed("not-stored", what, self.kind.name, "see the service's log")
             patiently(lambda: self._store(failed), self.runs.stopping)
 
-    def _step(self, name: at_work.Step, *given: State) -> State:
+    def _step(self, name: worker_side.Step, *given: State) -> State:
         """What a step of the job's work returns, or how the job ended in it."""
         try:
             return patiently(lambda: self._acted(name, *given), self.runs.stopping, _PATIENCE)
@@ -119,14 +119,14 @@ class Run(Work):
             what = f"the {self.kind.name} failed by a defect of the program"
             return _failed("defect", what, self.kind.name, "see the service's log")
 
-    def _acted(self, name: at_work.Step, *given: State) -> State:
+    def _acted(self, name: worker_side.Step, *given: State) -> State:
         self._note({})
         task = self._task = self._task or self._asked()
         before = self._turn, self.kind.work, task, name
         try:
-            return self.runs.place.call(at_work.step, *before, *map(at_work.short, given), report=self._report)
-        except at_work.Unheld:  # this turn began elsewhere, or what it began in has ended
-            return self.runs.place.call(at_work.step, *before, *given, report=self._report)
+            return self.runs.place.call(worker_side.step, *before, *map(worker_side.short, given), report=self._report)
+        except worker_side.Unheld:  # this turn began elsewhere, or what it began in has ended
+            return self.runs.place.call(worker_side.step, *before, *given, report=self._report)
 
     def _store(self, last: State) -> None:
         job = self.lease.job

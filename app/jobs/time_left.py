@@ -13,7 +13,7 @@ import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
-from app.jobs.course import Course
+from app.jobs.stage_times import Course
 
 MOST = 100  # ended jobs that are looked at, the newest
 _INSTANT = 0.2  # s: what is shorter is the machine's, not the work's

@@ -60,7 +60,7 @@ class Work(Protocol):
     """A job in steps: begin, advance until the state says that it is `done`, finish. What is raised is how it ends.
 
     A state is plain JSON data, kept after every step: the job goes on there after a kill. The work of a kind is cut so,
-    its turn in the process where it is done (app/jobs/at_work.py), and the turn that the queue calls
+    its turn in the process where it is done (app/jobs/worker_side.py), and the turn that the queue calls
     (app/jobs/steps.py).
     """
 

@@ -7,13 +7,13 @@ from itertools import groupby
 
 from app.context import Context
 from app.limits import repository
-from app.limits.broken import telling_broken
+from app.limits.violations import telling_broken
 from app.parameters.error import NAMES
 from app.tables import LimitRow
 from ident.bench.acceptance import QUANTITIES
 from ident.custom.definition import preset_with
 from ident.errors import Unusable
-from ident.fit.sheet import PREFIX
+from ident.fit.sheet_quantity import PREFIX
 from ident.presets import preset
 from ident.units.quantity import quantity, unit_scale
 from ident.words.nearest import did_you_mean

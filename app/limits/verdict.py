@@ -11,7 +11,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Literal
 
-from app.limits.holding import Bound
+from app.limits.bounds_in_force import Bound
 from app.parameters.error import USES, error_of
 from app.tables import SetRow
 from ident.words.engineering import quantity

@@ -10,7 +10,7 @@ from typing import Any, BinaryIO, TypeVar
 import yaml
 from sqlalchemy.exc import IntegrityError
 
-from app.access.noting import about
+from app.access.audited_changes import about
 from app.context import Context
 from app.errors import missing
 from app.matrices import levels, repository

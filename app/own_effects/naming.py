@@ -7,7 +7,7 @@ from typing import Any, TypeVar
 
 from app.context import Context
 from app.own_effects import repository
-from app.own_effects.kept import Kept
+from app.own_effects.own_effect import OwnEffect
 from ident.custom.definition import definition_of, is_name
 from ident.effects import CATALOGUE, unknown
 from ident.errors import Unusable
@@ -19,7 +19,7 @@ Asked = TypeVar("Asked", FitRequest, DiagnosisRequest)
 _CATALOGUE = frozenset(effect.name for effect in CATALOGUE)
 
 
-def every(context: Context) -> tuple[Kept, ...]:
+def every(context: Context) -> tuple[OwnEffect, ...]:
     """All own effects of the lab, by name."""
     with context.sessions() as session:
         return tuple(map(repository.kept, repository.every(session)))
@@ -59,7 +59,7 @@ def defined(context: Context, custom: Iterable[dict[str, Any] | str]) -> Iterabl
         yield dict(found[0].definition)
 
 
-def _named(context: Context, names: Collection[str]) -> list[Kept]:
+def _named(context: Context, names: Collection[str]) -> list[OwnEffect]:
     if not names:
         return []
     with context.sessions() as session:

@@ -8,11 +8,11 @@ from dataclasses import asdict, fields
 from sqlalchemy import select
 from sqlalchemy.orm import Session
 
-from app.own_effects.kept import Kept
+from app.own_effects.own_effect import OwnEffect
 from app.tables import DiagnosisRow, OwnEffectRow
 from ident.diagnosis.result import Diagnosis
 
-_FIELDS = tuple(field.name for field in fields(Kept))
+_FIELDS = tuple(field.name for field in fields(OwnEffect))
 
 
 def find(session: Session, name: str) -> OwnEffectRow | None:
@@ -47,7 +47,7 @@ def diagnosis(session: Session, diagnosis_id: str) -> Diagnosis | None:
     return None if row is None else Diagnosis.from_json(row.result)
 
 
-def add(session: Session, effect_id: str, kept: Kept) -> OwnEffectRow:
+def add(session: Session, effect_id: str, kept: OwnEffect) -> OwnEffectRow:
     """A new row; the commit raises IntegrityError where the name, or the id, is there already."""
     data = asdict(kept) | {"alike": list(kept.alike)}
     row = OwnEffectRow(id=effect_id, **{name: value for name, value in data.items() if value != ""})
@@ -60,7 +60,7 @@ def drop(session: Session, row: OwnEffectRow) -> None:
     session.delete(row)
 
 
-def kept(row: OwnEffectRow) -> Kept:
+def kept(row: OwnEffectRow) -> OwnEffect:
     """What a row holds."""
     data = {name: getattr(row, name) for name in _FIELDS}
-    return Kept(**data | {"alike": tuple(row.alike)})
+    return OwnEffect(**data | {"alike": tuple(row.alike)})

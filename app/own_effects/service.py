@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from sqlalchemy.exc import IntegrityError
 
-from app.access.noting import about
+from app.access.audited_changes import about
 from app.context import Context
 from app.errors import Failure, missing
 from app.own_effects import repository
-from app.own_effects.kept import Kept, proposed, view, written_down
 from app.own_effects.naming import every
+from app.own_effects.own_effect import OwnEffect, proposed, view, written_down
 from app.paging import cursor, keys_of
 from ident.presets import preset
 from schemas.catalogue import OwnEffectPage, OwnEffectRequest, OwnEffectView
@@ -65,7 +65,7 @@ def keep(context: Context, request: OwnEffectRequest, effect_id: str) -> tuple[O
         return view(there), repository.known(session, effect_id) is not None
 
 
-def _wanted(context: Context, request: OwnEffectRequest) -> Kept:
+def _wanted(context: Context, request: OwnEffectRequest) -> OwnEffect:
     """What is to be kept: a definition, or a term of a diagnosis."""
     if (request.definition is None) == (request.diagnosis is None):
         raise Failure(
@@ -94,7 +94,7 @@ def drop(context: Context, name: str) -> None:
         repository.drop(session, row)
 
 
-def _find(context: Context, name: str) -> Kept:
+def _find(context: Context, name: str) -> OwnEffect:
     with context.sessions() as session:
         row = repository.find(session, name)
     if row is None:

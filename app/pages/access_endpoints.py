@@ -8,8 +8,8 @@ from fastapi import APIRouter, Form, Request
 from fastapi.responses import RedirectResponse, Response
 
 from app.access import service
+from app.access.caller import Me
 from app.access.roles import ADMIN, ANYONE, READERS
-from app.access.who import Me
 from app.context import Here
 from app.errors import Failure
 from app.pages.problems import PageRoute

@@ -12,8 +12,7 @@ from ident.presets import preset
 from ident.rig.conditions import CONDITIONS, PREFIX
 from ident.words.engineering import quantity
 from ident.words.error import ErrorOf
-from ident.words.symbols import symbol
-from ident.words.titles import title
+from ident.words.titles import symbol, title
 from schemas.annotation import AnnotationView
 from schemas.fit import JobView
 from schemas.parameters import ActuatorView, ParameterSetView

@@ -16,9 +16,7 @@ from ident.words.error_change import error_change
 from ident.words.number import plain
 from ident.words.percent import change, percent_in_print
 from ident.words.plus_minus import plus_minus
-from ident.words.symbols import symbol
-from ident.words.titles import of_parameter, with_effects
-from ident.words.uses import data
+from ident.words.titles import data, of_parameter, symbol, with_effects
 from schemas.matrix import MatrixView
 
 _TIMES = 2.0  # from here on a number is so many times what it was, not some hundred per cent more

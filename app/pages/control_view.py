@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from ident.hybrid.interval import Interval
-from ident.hybrid.target import QIAN2014_TARGET
+from ident.hybrid.target_loop import QIAN2014_TARGET
 from ident.stability.judgement import UNSTABLE, Judgement
 from ident.words.number import plain, trimmed
 from schemas.hybrid_result import ControllerView

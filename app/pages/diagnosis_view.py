@@ -17,8 +17,7 @@ from ident.diagnosis.result import Diagnosis, Ranked, Suspect
 from ident.words.engineering import quantity
 from ident.words.error import ErrorOf
 from ident.words.number import plain
-from ident.words.percent import percent_in_print
-from ident.words.probability import probability_said
+from ident.words.percent import percent_in_print, probability_said
 from ident.words.titles import title
 from schemas.fit import JobView
 from schemas.matrix import RunView

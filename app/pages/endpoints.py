@@ -12,12 +12,12 @@ from app.context import Here
 from app.pages import (
     access_endpoints,
     admin_endpoints,
+    applications_endpoints,
     assets,
-    line_endpoints,
     live_endpoints,
     plan_endpoints,
+    production_endpoints,
     service,
-    use_endpoints,
 )
 from app.pages.draft_view import column_picture, draft_page
 from app.pages.job_view import JobPageView
@@ -153,10 +153,10 @@ def unknown() -> None:
 
 router.include_router(assets.router)
 router.include_router(access_endpoints.pages)
-router.include_router(line_endpoints.pages)
+router.include_router(production_endpoints.pages)
 router.include_router(live_endpoints.pages)
 router.include_router(admin_endpoints.pages)
 router.include_router(plan_endpoints.pages)
-router.include_router(use_endpoints.pages)
-router.include_router(use_endpoints.parts)
+router.include_router(applications_endpoints.pages)
+router.include_router(applications_endpoints.parts)
 router.add_api_route("/{path:path}", unknown, route_class_override=Unknown, dependencies=[READERS])

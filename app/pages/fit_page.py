@@ -12,29 +12,28 @@ from markupsafe import Markup
 from app.fits.objections import FAR
 from app.fits.rows import Determined, ErrorRow, ParameterRow, combination_rows, error_rows, parameter_rows
 from app.fits.service import Stored
-from app.own_effects.kept import Kept, suited
+from app.own_effects.own_effect import OwnEffect, usable_on
 from app.pages.chain_view import Drawing, drawing
 from app.pages.diagnosis_view import MissingView
 from app.pages.figure_forms import MAP, FigureForm, forms, profile_form
 from app.pages.job_view import settings_facts
-from app.pages.kept_view import Keeping, KeptRow, keeping, kept_rows
 from app.pages.ladder_view import Step, steps
 from app.pages.matrix_view import counted
-from app.pages.next_view import Next
+from app.pages.next_step_view import Next
+from app.pages.own_effects_view import Keeping, KeptRow, keeping, kept_rows
 from app.pages.run_view import Conditions, conditions
 from app.parameters.error import error_of
 from ident.custom.definition import HANDED_ON, preset_with
 from ident.equations.equation import Equation
 from ident.equations.mathml import mathml
 from ident.fit.result import FitResult, Undetermined
-from ident.preprocessing.told import told
+from ident.preprocessing.pipeline import outcome_sentences
 from ident.presets import Preset, preset
 from ident.run import USES
 from ident.words.engineering import quantity
 from ident.words.error import ErrorOf, error_in_print, errors_line
 from ident.words.percent import percent_in_print
-from ident.words.titles import with_effects
-from ident.words.uses import data
+from ident.words.titles import data, with_effects
 from schemas.annotation import AnnotationView
 from schemas.deletion import DeletionView
 from schemas.fit import LadderView
@@ -114,7 +113,7 @@ def fit_page(
     objections: tuple[str, ...],
     others: Iterable[ParameterSetView] = (),
     newer: str | None = None,
-    kept: Sequence[Kept] = (),
+    kept: Sequence[OwnEffect] = (),
     written: AnnotationView | None = None,
     deletion: DeletionView | None = None,
 ) -> FitPageView:
@@ -144,7 +143,7 @@ def fit_page(
         errors=error_rows(fit),
         combinations=combination_rows(fit),
         undetermined=fit.undetermined,
-        notes=(*fit.notes, *told(fit.preprocessing, fit.notes)),
+        notes=(*fit.notes, *outcome_sentences(fit.preprocessing, fit.notes)),
         runs=tuple(
             FittedRun(conditions(known[run.id]), run.error, run.offset, run.words)
             for run in fit.runs
@@ -172,7 +171,7 @@ def fit_page(
         on_bench=preset(fit.model).kind == "bench",
         free_run=_free_run(fit),
         aic="" if fit.aic is None else f"{fit.aic:.6g}".replace("-", "\u2212"),
-        kept=tuple(kept_rows(suited(kept, fit.model), fit.effects)),
+        kept=tuple(kept_rows(usable_on(kept, fit.model), fit.effects)),
         keeping=tuple(keeping(lacks, kept)),
         written=written or AnnotationView(),
         deletion=deletion or DeletionView(fit=stored.id, serial=stored.serial),

@@ -15,8 +15,8 @@ from ident.effects.effect import Effect
 from ident.figures import DRAWINGS, subjects
 from ident.figures.delay_map import DELAY_MAP
 from ident.fit.result import FitResult
-from ident.hybrid.acting import NAMED
-from ident.hybrid.followed import Followed
+from ident.hybrid.controller_lookup import NAMED
+from ident.hybrid.feedforward_tracking import FeedforwardTracking
 from ident.presets import preset
 from ident.presets.strano import STRANO
 from ident.stages import PLACES
@@ -264,5 +264,5 @@ def _facts(found: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
     if found["effects"]:
         yield "Effects switched on", ", ".join(title(name.partition(".")[0]) for name in found["effects"])
     if one := found.get("feedforward"):
-        yield "Feedforward", "; ".join(Followed.from_json(one).said)
+        yield "Feedforward", "; ".join(FeedforwardTracking.from_json(one).said)
     yield "Computing time", quantity(found["seconds"], "s")

@@ -7,9 +7,9 @@ from collections.abc import Iterable, Mapping
 from app.context import Context
 from app.diagnoses import service as diagnoses
 from app.fits import service as fits
-from app.pages.next_view import Next, fit_step, next_step
+from app.pages.next_step_view import Next, fit_step, next_step
 from app.parameters import service as parameters
-from app.parameters.wanted import Wanted
+from app.parameters.set_query import SetQuery
 from schemas.fit import JobView
 from schemas.parameters import ActuatorView, ParameterSetView
 
@@ -33,6 +33,6 @@ def next_steps(
 
 def of_fit(context: Context, fit: str) -> Next:
     """What to do next with a fit, in the words of the first page."""
-    (stored,) = parameters.page(context, Wanted(ids=[fit]), None, 1).items
+    (stored,) = parameters.page(context, SetQuery(ids=[fit]), None, 1).items
     yardsticks, searches = fits.yardsticks(context, [fit]), diagnoses.searches(context, [fit])
     return fit_step(stored, yardsticks.get(fit), searches.get(fit))

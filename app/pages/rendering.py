@@ -10,15 +10,14 @@ from fastapi import Request
 from fastapi.responses import HTMLResponse
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
 
-from app.pages.condition_view import conditions
 from app.pages.manual import is_there
+from ident.rig.conditions import CONDITIONS
 from ident.words.engineering import printed_unit
 from ident.words.error import ErrorOf
 from ident.words.percent import percent_in_print
 from ident.words.sentence import sentence
 from ident.words.severity import level
-from ident.words.titles import title
-from ident.words.uses import DATA
+from ident.words.titles import DATA, title
 
 HERE = Path(__file__).parent
 STATIC = HERE / "static"
@@ -38,6 +37,11 @@ EDITION = _edition()
 def static(name: str) -> str:
     """The address of a static file."""
     return f"/static/{EDITION}/{name}"
+
+
+def conditions() -> tuple[tuple[str, str], ...]:
+    """The conditions that a form offers: name and title of each."""
+    return tuple((name, one.title) for name, one in CONDITIONS.items())
 
 
 def _environment() -> Environment:

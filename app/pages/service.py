@@ -23,16 +23,16 @@ from app.pages.diagnosis_view import missing
 from app.pages.evidence_view import telling_run
 from app.pages.fit_page import FitPageView, fit_page
 from app.pages.job_view import JobPageView, job_page
-from app.pages.kept_view import kept_rows
 from app.pages.matrix_view import counted, matrix_view
 from app.pages.next_steps import next_steps, of_fit
-from app.pages.side_view import further, side_view
+from app.pages.own_effects_view import kept_rows
+from app.pages.side_by_side_view import further, side_view
 from app.pages.signals_view import SignalsView, signals_view
 from app.pages.start_view import start_view
 from app.pages.thumbnails import thumbnail
 from app.parameters import service as parameters
 from app.parameters.error import USES, error_of
-from app.parameters.wanted import Wanted
+from app.parameters.set_query import SetQuery
 from app.refits import lineage
 from app.verdicts.service import judge
 from app.workers import service as workers
@@ -107,7 +107,7 @@ def _verdict(context: Context, serial: str, over: str, at: str) -> Shown:
 def _fits(context: Context, cursor: str | None, serial: str | None = None, matrix: str | None = None) -> Shown:
     """Fits and the jobs that are to make them, newest first, with the number of the next page."""
     made_by = jobs.listed(context, cursor, _ROWS, serial=serial, matrix=matrix, of_fits=True)
-    made = parameters.page(context, Wanted(ids=[job.id for job in made_by.items]), None, _ROWS).items
+    made = parameters.page(context, SetQuery(ids=[job.id for job in made_by.items]), None, _ROWS).items
     written = annotated.of(context, [entry.id for entry in made])
     return {"fits": fit_rows(made_by.items, made, written), "more": made_by.next}
 
@@ -175,7 +175,7 @@ def compared(context: Context, wanted: Sequence[str]) -> tuple[str, Shown]:
         raise Failure(422, "bad-request", what, "fits", remedy)
     stored = in_order([fits.stored(context, name) for name in names])
     names = [one.id for one in stored]
-    known = parameters.page(context, Wanted(serial=stored[0].serial), None, _ROWS).items if len(names) < MOST else []
+    known = parameters.page(context, SetQuery(serial=stored[0].serial), None, _ROWS).items if len(names) < MOST else []
     others = further(known, names)
     if len(names) > 2:
         found = fits.beside(context, names[0], names[1:])
@@ -202,7 +202,7 @@ def fit(context: Context, fit_id: str) -> FitPageView | JobPageView:
     run = telling_run(matrix.runs, {run.id: run.error for run in stored.found.runs})
     lacks = missing(*diagnoses.of_fit(context, fit_id), run)
     way = lineage.ladder(context, fit_id)
-    others = parameters.page(context, Wanted(serial=stored.serial), None, _ROWS).items
+    others = parameters.page(context, SetQuery(serial=stored.serial), None, _ROWS).items
     newer = matrices.newer(context, stored.matrix)
     step = of_fit(context, fit_id)
     against = fits.against(context, fit_id)

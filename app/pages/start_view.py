@@ -6,7 +6,7 @@ from collections import Counter
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
-from app.own_effects.kept import Kept
+from app.own_effects.own_effect import OwnEffect
 from ident.effects import CATALOGUE
 from ident.effects.effect import Effect
 from ident.errors import Unusable
@@ -14,11 +14,11 @@ from ident.fit.settings import METHODS
 from ident.preprocessing import STEPS
 from ident.preprocessing.step import Step
 from ident.presets import PRESETS, Preset
-from ident.presets.suited import in_question
+from ident.presets.suitable_models import in_question
 from ident.stages import PLACES
 from ident.words.engineering import power_of, with_unit
 from ident.words.number import trimmed
-from ident.words.symbols import symbol
+from ident.words.titles import symbol
 from schemas.matrix import MatrixView
 
 
@@ -46,7 +46,7 @@ class StartView:
     runs: tuple[tuple[str, str], ...]
 
 
-def start_view(matrix: MatrixView, kept: Sequence[Kept] = ()) -> StartView:
+def start_view(matrix: MatrixView, kept: Sequence[OwnEffect] = ()) -> StartView:
     """The form for this matrix; `kept` are the lab's own effects."""
     uses = Counter(run.use for run in matrix.runs)
     models = _in_question(matrix)

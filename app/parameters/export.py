@@ -9,7 +9,7 @@ from typing import Any
 
 from app.context import Context
 from app.parameters import repository
-from app.parameters.wanted import Wanted
+from app.parameters.set_query import SetQuery
 
 _FORMULA = ("=", "+", "-", "@", "\t", "\r")  # a spreadsheet would run a text cell that begins so
 _BLOCK = 2000  # sets in memory
@@ -22,7 +22,7 @@ _KINDS = {
 """The columns before those of the parameters, and what they hold; names are written one after the other."""
 
 
-def csv_rows(context: Context, wanted: Wanted) -> Iterator[str]:
+def csv_rows(context: Context, wanted: SetQuery) -> Iterator[str]:
     """A parameter a column with its unit in the header; text cells never begin a formula."""
     names, blocks = _table(context, wanted)
     yield _lines([[_cell(name) for name in names]])
@@ -30,7 +30,7 @@ def csv_rows(context: Context, wanted: Wanted) -> Iterator[str]:
         yield _lines([[_cell(value) for value in row] for row in rows])
 
 
-def parquet_blocks(context: Context, wanted: Wanted) -> Iterator[bytes]:
+def parquet_blocks(context: Context, wanted: SetQuery) -> Iterator[bytes]:
     """The same table as Parquet, a block a row group."""
     import pyarrow as pa  # noqa: PLC0415  slow to import, and seldom wanted
     import pyarrow.parquet as pq  # noqa: PLC0415
@@ -49,7 +49,7 @@ def parquet_blocks(context: Context, wanted: Wanted) -> Iterator[bytes]:
     yield sink.getvalue()
 
 
-def _table(context: Context, wanted: Wanted) -> tuple[list[str], Iterator[list[list[Any]]]]:
+def _table(context: Context, wanted: SetQuery) -> tuple[list[str], Iterator[list[list[Any]]]]:
     """The names of the columns, and the rows in blocks."""
     with context.sessions() as session:
         parameters = repository.titles(session, wanted)
@@ -57,7 +57,7 @@ def _table(context: Context, wanted: Wanted) -> tuple[list[str], Iterator[list[l
     return [*_KINDS, *columns], _blocks(context, wanted, parameters)
 
 
-def _blocks(context: Context, wanted: Wanted, parameters: Sequence[tuple[str, str]]) -> Iterator[list[list[Any]]]:
+def _blocks(context: Context, wanted: SetQuery, parameters: Sequence[tuple[str, str]]) -> Iterator[list[list[Any]]]:
     """Rows, newest first; each block is read by itself, so that the reader's pace holds no transaction open."""
     before: int | None = None
     while True:

@@ -11,24 +11,24 @@ from app.context import Context
 from app.errors import Failure
 from app.paging import cursor, keys_of
 from app.parameters import export, repository
-from app.parameters.wanted import Wanted, wanted
+from app.parameters.set_query import SetQuery, wanted
 from app.tables import SetRow
 from schemas.parameters import ParameterSetPage, ParameterSetView
 
-__all__ = ["Wanted", "export", "page", "page_as_json", "wanted"]
+__all__ = ["SetQuery", "export", "page", "page_as_json", "wanted"]
 
 
-def page(context: Context, wanted: Wanted, after: str | None, limit: int) -> ParameterSetPage:
+def page(context: Context, wanted: SetQuery, after: str | None, limit: int) -> ParameterSetPage:
     """A page of parameter sets."""
     return ParameterSetPage(**_page(context, wanted, after, limit))
 
 
-def page_as_json(context: Context, wanted: Wanted, after: str | None, limit: int) -> bytes:
+def page_as_json(context: Context, wanted: SetQuery, after: str | None, limit: int) -> bytes:
     """The same as it is sent: a line asks all day, and to check each value of what is stored takes half the time."""
     return to_json(_page(context, wanted, after, limit), inf_nan_mode="null")
 
 
-def _page(context: Context, wanted: Wanted, after: str | None, limit: int) -> dict[str, Any]:
+def _page(context: Context, wanted: SetQuery, after: str | None, limit: int) -> dict[str, Any]:
     before = _number(after)
     with context.sessions() as session:
         rows = repository.sets(session, wanted, before, limit)

@@ -13,7 +13,7 @@ from app.fits import service as fits
 from app.jobs import service as jobs
 from app.paging import cursor, keys_of
 from app.plans import repository
-from app.plans.asked import asked_plan
+from app.plans.request_parsing import asked_plan
 from app.tables import PlanRow
 from ident.fit.result import FitResult
 from ident.planning.files import WRITERS

@@ -6,7 +6,7 @@ from sqlalchemy.orm import Session
 
 from app.jobs.work import InOnePiece, Kind, State, Task
 from app.plans import repository
-from app.plans.asked import asked_plan
+from app.plans.request_parsing import asked_plan
 from app.plans.service import KIND
 from app.tables import JobRow
 from schemas.plan import PlanRequest

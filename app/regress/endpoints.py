@@ -6,8 +6,8 @@ from typing import Literal
 
 from fastapi import APIRouter, Response
 
+from app.access.caller import Me, Role
 from app.access.roles import READERS, may
-from app.access.who import Me, Role
 from app.context import Here
 from app.errors import COMMON
 from app.idempotency import Answer, Key, fingerprint, once

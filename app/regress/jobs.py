@@ -9,7 +9,7 @@ from uuid import uuid4
 from sqlalchemy.exc import IntegrityError
 from sqlalchemy.orm import Session
 
-from app.access.noting import about
+from app.access.audited_changes import about
 from app.context import Context
 from app.errors import missing
 from app.jobs.repository import ENDED

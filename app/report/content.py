@@ -25,8 +25,7 @@ from ident.words.error import error_in_print, errors_line
 from ident.words.percent import percent_in_print
 from ident.words.run_name import run_name
 from ident.words.severity import level
-from ident.words.titles import with_effects
-from ident.words.uses import data
+from ident.words.titles import data, with_effects
 from ident.workflows import compare, study
 
 WRITTEN = "……………"

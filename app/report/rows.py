@@ -12,8 +12,7 @@ from ident.residuals.curves import Curve
 from ident.residuals.trends import Trend
 from ident.words.engineering import quantity
 from ident.words.error import error_in_print
-from ident.words.percent import percent_in_print
-from ident.words.probability import probability_said
+from ident.words.percent import percent_in_print, probability_said
 from ident.words.titles import title
 
 Row = tuple[str, ...]

@@ -9,7 +9,7 @@ from app.statistics.dependence import over_condition
 from ident.figures import MEDIA, figure, render
 from ident.figures.subjects import Charted, OverCondition
 from ident.statistics import control_chart as chart_of
-from ident.words.symbols import symbol
+from ident.words.titles import symbol
 
 Style = tuple[str, float]
 

@@ -12,8 +12,7 @@ from app.errors import Failure
 from app.limits.repository import EVERY, in_batch
 from app.statistics import repository
 from app.statistics.repository import ERRORS, Chosen, Point
-from ident.presets import PRESETS
-from ident.presets.parameter_names import parameter_names
+from ident.presets import PRESETS, parameter_names
 from ident.statistics import (
     Capability,
     ControlChart,

@@ -85,7 +85,7 @@ class AnnotationRow(Base):
 
 
 class OwnEffectRow(Base):
-    """An effect of the lab's own that is kept under a name: see `app/own_effects/kept.py`."""
+    """An effect of the lab's own that is kept under a name: see `app/own_effects/own_effect.py`."""
 
     __tablename__ = "own_effects"
     id: Mapped[str] = mapped_column(String(64), primary_key=True)

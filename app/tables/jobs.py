@@ -16,7 +16,7 @@ class JobRow(Base):
     `who` asked for it. It is to stop where it is told to `cancel`, and keeps what it found where it is told to
     `conclude`. `worker` has it under way, by the turn `fence`: see `app/jobs/lease.py`.
     `sequence` counts the changes of its state, for readers of its events. The work of its last turn began at
-    `began_at` and took the `course` of app/jobs/course.py.
+    `began_at` and took the `course` of app/jobs/stage_times.py.
     """
 
     __tablename__ = "jobs"

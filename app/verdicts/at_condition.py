@@ -7,7 +7,7 @@ from collections.abc import Mapping
 
 from sqlalchemy.orm import Session
 
-from app.limits.holding import Bound
+from app.limits.bounds_in_force import Bound
 from app.limits.verdict import Judged
 from app.parameters.error import NAMES
 from app.statistics.dependence import judged_at, known

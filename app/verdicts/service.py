@@ -8,13 +8,13 @@ from app.context import Context
 from app.errors import Failure, missing
 from app.fits.service import recorded
 from app.limits import repository
-from app.limits.holding import bounds_of
+from app.limits.bounds_in_force import bounds_of
 from app.limits.verdict import Judged, judged_by, verdict
 from app.tables import SetRow, ValueRow
 from app.verdicts.at_condition import at_condition
 from ident.bench.acceptance import QUANTITIES
 from ident.design.at_condition import condition_value
-from ident.fit.sheet import PREFIX
+from ident.fit.sheet_quantity import PREFIX
 from ident.rig.conditions import TEMPERATURE
 from schemas.limits import JudgedView, LineVerdictView, SheetLine, SheetView
 

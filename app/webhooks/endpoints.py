@@ -8,8 +8,8 @@ from typing import Annotated
 from fastapi import APIRouter, Query, Response
 from fastapi.responses import JSONResponse
 
+from app.access.caller import Me
 from app.access.roles import ADMIN
-from app.access.who import Me
 from app.context import Here
 from app.errors import COMMON
 from app.idempotency import Answer, Key, fingerprint, once

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from app.access.noting import about
+from app.access.audited_changes import about
 from app.context import Context
 from app.errors import missing
 from app.paging import cursor, keys_of

@@ -10,13 +10,13 @@ from typing import Any
 import numpy as np
 
 from ident.bench.analysis import Analysis
+from ident.bench.estimate import BenchEstimate
 from ident.bench.least_margins import least_margins
 from ident.bench.model import dead_space
 from ident.bench.position_error import position_error
-from ident.bench.quantity import Found
-from ident.bench.straightness import of_table
+from ident.bench.speed_linearity import of_table
 from ident.errors import Unusable
-from ident.fit.sheet import SheetQuantity
+from ident.fit.sheet_quantity import SheetQuantity
 from ident.readers.strict_yaml import read_yaml
 from ident.units.quantity import quantity
 from ident.words.nearest import did_you_mean
@@ -98,9 +98,9 @@ class Line:
         return above and (self.upper is None or self.value <= self.upper)
 
 
-def found_quantities(analysis: Analysis) -> dict[str, Found]:
+def found_quantities(analysis: Analysis) -> dict[str, BenchEstimate]:
     """The quantities of the sheet by name: of the procedures, T, I0 and B of the model on all records where it is."""
-    out: dict[str, Found] = {}
+    out: dict[str, BenchEstimate] = {}
     if analysis.static is not None:
         s = analysis.static
         out |= {
@@ -123,7 +123,7 @@ def found_quantities(analysis: Analysis) -> dict[str, Found]:
     return out
 
 
-def _of_whole(analysis: Analysis) -> dict[str, Found]:
+def _of_whole(analysis: Analysis) -> dict[str, BenchEstimate]:
     assert analysis.whole is not None
     v, solution = analysis.whole.values, analysis.whole
     named = (
@@ -133,18 +133,18 @@ def _of_whole(analysis: Analysis) -> dict[str, Found]:
         ("friction", "dPfr", "Pa"),
         ("T", "T", "s"),
     )
-    out = {name: Found(v[own], solution.deviations[own], unit) for name, own, unit in named}
-    return out | {"dead_space": Found(solution.model.dead_space, solution.deviation(dead_space), "1")}
+    out = {name: BenchEstimate(v[own], solution.deviations[own], unit) for name, own, unit in named}
+    return out | {"dead_space": BenchEstimate(solution.model.dead_space, solution.deviation(dead_space), "1")}
 
 
-def _of_characteristic(analysis: Analysis) -> dict[str, Found]:
+def _of_characteristic(analysis: Analysis) -> dict[str, BenchEstimate]:
     """Gains, nonlinearity, asymmetry of the model's characteristic, or where there is no model of the procedure's."""
     solution, model = analysis.whole, analysis.model
     if solution is None or model is None:
         if analysis.speed is None:
             return {}
         s = analysis.speed.straightness
-        return {name: Found(getattr(s, own), 0.0, QUANTITIES[name][0]) for name, own in _CHARACTERISTIC.items()}
+        return {name: BenchEstimate(getattr(s, own), 0.0, QUANTITIES[name][0]) for name, own in _CHARACTERISTIC.items()}
     table = model.table
 
     def of(own: str) -> Callable[[Mapping[str, Any]], Any]:
@@ -156,7 +156,7 @@ def _of_characteristic(analysis: Analysis) -> dict[str, Found]:
         return value
 
     return {
-        name: Found(float(of(own)(model.table.values())[0]), solution.deviation(of(own)), QUANTITIES[name][0])
+        name: BenchEstimate(float(of(own)(model.table.values())[0]), solution.deviation(of(own)), QUANTITIES[name][0])
         for name, own in _CHARACTERISTIC.items()
     }
 

@@ -19,8 +19,8 @@ from ident.bench.frequency import Response, frequency_response
 from ident.bench.least_squares import Solution, solve
 from ident.bench.model import CONSTANTS, Model
 from ident.bench.motion import groups
-from ident.bench.observed import Observed, errors, observe
 from ident.bench.records import BenchSet, Record, step_of
+from ident.bench.reduced_record import Observed, errors, observe
 from ident.bench.residual import Residual
 from ident.bench.scatter import scatter
 from ident.bench.speed import Speed, speed
@@ -31,7 +31,7 @@ from ident.errors import Unusable
 from ident.fit.levenberg_marquardt import Way
 from ident.parallel import each
 from ident.rig.regulator import PositionControl
-from ident.words.shown import Shown
+from ident.words.result_tables import TabularResult
 
 FIRST_T = BENCH_CRITERIA.time_constants.first
 """s, where the search for T begins."""
@@ -53,7 +53,7 @@ class Missing:
 
 
 @dataclass(frozen=True)
-class Analysis(Shown):
+class Analysis(TabularResult):
     """What the records say. `steps` is the model put together step by step, `model` the one moved on all records.
 
     A procedure whose records are missing is None, and so are the models then; `missing` says why.

@@ -26,7 +26,7 @@ from ident.diagnosis.unfitted import unranked
 from ident.diagnosis.verdict import Findings, Residual, conclude
 from ident.effects.effect import Effect
 from ident.errors import TimeIsUp, Unusable
-from ident.fit.given import of_model
+from ident.fit.parameter_bounds import of_model
 from ident.fit.result import FitResult
 from ident.fit.settings import Settings
 from ident.matrix import Matrix

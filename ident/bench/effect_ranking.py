@@ -17,8 +17,8 @@ from ident.bench.criteria import BENCH_CRITERIA
 from ident.bench.least_squares import Solution, solve
 from ident.bench.model import CONSTANTS, FAST, Model, beyond_fast
 from ident.bench.natural_sizes import ends_of_the_way, natural_sizes
-from ident.bench.observed import Observed, observe
 from ident.bench.records import Record
+from ident.bench.reduced_record import Observed, observe
 from ident.bench.residual import Residual
 from ident.cached import cached_property
 from ident.diagnosis.criteria import CRITERIA

@@ -19,24 +19,24 @@ from ident.bench.criteria import BENCH_CRITERIA
 from ident.bench.effect_ranking import centred, finely, with_effect
 from ident.bench.least_squares import Solution, solve
 from ident.bench.model import CONSTANTS, Model, Models
-from ident.bench.observed import Observed, observe
 from ident.bench.outputs import errors_of, model_of, noise_floor
 from ident.bench.polish import polished, weak
 from ident.bench.records import Record, bench_set
+from ident.bench.reduced_record import Observed, observe
 from ident.bench.residual import Residual
 from ident.bench.speed_table import MONOTONE
 from ident.custom.definition import preset_with
 from ident.effects.effect import off_values
-from ident.fit.ends import distinct
 from ident.fit.far_bounds import far_from
-from ident.fit.given import of_model
+from ident.fit.local_optima import distinct
+from ident.fit.parameter_bounds import of_model
 from ident.fit.result import Estimate, FitResult, RunError, Undetermined
 from ident.fit.run_errors import rmse_of
+from ident.fit.run_sizes import run_sizes
 from ident.fit.search import Search, State, evolution, options_of
 from ident.fit.settings import Settings
 from ident.fit.space import Axis, Space
 from ident.fit.summary import HARDLY
-from ident.fit.typical import typical
 from ident.matrix import Matrix
 from ident.parallel import each
 from ident.parameter import Parameter, Starts
@@ -96,7 +96,7 @@ class BenchIdentification:
         """What the ranges of effects are measured by; the current is the command of a bench."""
         runs = [run.driven_by("current") for run in self.matrix.of_use("fit") if run.kind in BENCH]
         fastest = max((record.frequency or 0.0 for record in self.bench.records), default=0.0)
-        return typical(self.matrix, runs, 2.0 * np.pi * fastest)
+        return run_sizes(self.matrix, runs, 2.0 * np.pi * fastest)
 
     @property
     def generations(self) -> int:

@@ -9,17 +9,17 @@ from functools import cache
 import numpy as np
 from numpy.typing import NDArray
 
+from ident.bench.estimate import BenchEstimate
 from ident.bench.least_squares import Solution
 from ident.bench.model import DELAY, Model
 from ident.bench.position_loop import AmplitudeMargin, margins, usual_amplitudes
-from ident.bench.quantity import Found
 from ident.bench.time_constant import DelayCheck
 from ident.rig.regulator import PositionControl
 
 Array = NDArray[np.float64]
 
 
-def least_margins(solution: Solution, loop: PositionControl, delay: DelayCheck | None) -> dict[str, Found]:
+def least_margins(solution: Solution, loop: PositionControl, delay: DelayCheck | None) -> dict[str, BenchEstimate]:
     """`gain_margin` (dB) and `phase_margin` (rad) over the amplitudes, each with its standard deviation.
 
     A delay that the records ask for is in the loop, with the T and B of the fit with a delay. A margin that no gain
@@ -54,7 +54,7 @@ def least_margins(solution: Solution, loop: PositionControl, delay: DelayCheck |
         if known is not None:
             later = _number(_least(with_values(solution.values, late + known.delay.deviation), name))
             deviation = math.hypot(deviation, later - value)
-        found[name] = Found(value, deviation, unit)
+        found[name] = BenchEstimate(value, deviation, unit)
     return found
 
 

@@ -14,10 +14,10 @@ import numpy as np
 from ident.bench.criteria import BENCH_CRITERIA
 from ident.bench.least_squares import Solution, solve
 from ident.bench.model import Model
-from ident.bench.observed import Observed
+from ident.bench.reduced_record import Observed
 from ident.bench.residual import Residual
 from ident.fit.criteria import FIT_CRITERIA
-from ident.fit.ends import End, parted
+from ident.fit.local_optima import LocalOptimum, disagreements
 
 _OF = BENCH_CRITERIA.fits
 _ASTRAY = "No member of the search leads as near to the records as the procedures: the fit starts from their values."
@@ -33,7 +33,7 @@ def polished(
     best = next(solution for solution in found if solution.cost <= (1 + _OF.folds) * least)
     others = [_end(solution) for solution in found if solution.cost > (1 + _OF.folds) * least]
     sure = {name: best.deviations[name] for name in names if name not in weak(best)}
-    told = list(parted([_end(best), *others], sure, {name: name for name in sure}))
+    told = list(disagreements([_end(best), *others], sure, {name: name for name in sure}))
     astray = (
         own is not None and min(_end(solution).error for solution in found[1:]) > _OF.farther * _end(found[0]).error
     )
@@ -50,5 +50,5 @@ def weak(solution: Solution) -> list[str]:
     ]
 
 
-def _end(solution: Solution) -> End:
-    return End(float(np.sqrt(solution.cost)), solution.values, solution.point)
+def _end(solution: Solution) -> LocalOptimum:
+    return LocalOptimum(float(np.sqrt(solution.cost)), solution.values, solution.point)

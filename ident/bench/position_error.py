@@ -7,9 +7,9 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from ident.bench.estimate import BenchEstimate
 from ident.bench.least_squares import Solution
-from ident.bench.observed import Observed
-from ident.bench.quantity import Found
+from ident.bench.reduced_record import Observed
 from ident.bench.scatter import PLACES
 from ident.noise.effective_sample_size import independent_samples
 from ident.rounding import TINY
@@ -17,11 +17,11 @@ from ident.rounding import TINY
 Array = NDArray[np.float64]
 
 
-def position_error(solution: Solution, sines: Sequence[str]) -> Found:
+def position_error(solution: Solution, sines: Sequence[str]) -> BenchEstimate:
     """The mean of the errors of these records, sample by sample, with its standard deviation."""
     of = {observed.record.id: observed for observed in solution.residual.observed}
     found = np.array([_of(solution, of[name]) for name in sines])
-    return Found(float(np.mean(found[:, 0])), float(np.linalg.norm(found[:, 1])) / len(sines), "1")
+    return BenchEstimate(float(np.mean(found[:, 0])), float(np.linalg.norm(found[:, 1])) / len(sines), "1")
 
 
 def _of(solution: Solution, observed: Observed) -> tuple[float, float]:

@@ -34,7 +34,7 @@ from ident.rig.regulator import Regulator
 from ident.words.engineering import quantity
 from ident.words.message import Message, message
 from ident.words.percent import PER_CENT
-from ident.words.shown import Listing, Shown
+from ident.words.result_tables import Listing, TabularResult
 
 Array = NDArray[np.float64]
 _OF = BENCH_CRITERIA.position_loop
@@ -76,7 +76,7 @@ class AmplitudeMargin:
 
 
 @dataclass(frozen=True)
-class PositionLoop(Shown):
+class PositionLoop(TabularResult):
     """A position loop around the actuator of a fit: its regulator, the dead space, and the margins at each amplitude.
 
     `gain_margin` (dB) and `phase_margin` (degrees) are the smallest, None where there are none; `state` is "unstable"

@@ -11,7 +11,7 @@ from ident.bench.criteria import BENCH_CRITERIA
 from ident.bench.exact_response import CONSTANTS as EXACT
 from ident.bench.model import CONSTANTS, DELAY, FAST, Model, Models
 from ident.bench.natural_sizes import natural_sizes
-from ident.bench.observed import Observed
+from ident.bench.reduced_record import Observed
 from ident.bench.response import products
 from ident.bench.speed_table import SpeedTable
 from ident.cached import cached_property

@@ -15,8 +15,8 @@ from numpy.typing import NDArray
 
 from ident.bench.criteria import BENCH_CRITERIA
 from ident.bench.least_squares import Solution
-from ident.bench.observed import Observed
 from ident.bench.readings import fastest, in_steps
+from ident.bench.reduced_record import Observed
 from ident.bench.residual import BLOCKS, Residual
 from ident.parallel import each
 from ident.simulation.jit import jit

@@ -17,12 +17,12 @@ from numpy.typing import NDArray
 from ident.bench.criteria import BENCH_CRITERIA
 from ident.bench.least_squares import Solution, solve
 from ident.bench.model import Model
-from ident.bench.observed import Observed
 from ident.bench.records import Record
+from ident.bench.reduced_record import Observed
 from ident.bench.residual import Residual
 from ident.bench.smoothing import METHODS, bezier, differentiated, fir, iir, on_bezier
+from ident.bench.speed_linearity import Straightness, of_table
 from ident.bench.speed_table import SpeedTable
-from ident.bench.straightness import Straightness, of_table
 from ident.errors import Unusable
 from ident.rounding import ROUNDING, TINY
 from ident.words.nearest import did_you_mean

@@ -15,12 +15,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ident.bench.criteria import BENCH_CRITERIA
+from ident.bench.estimate import BenchEstimate
 from ident.bench.least_squares import Solution, solve
 from ident.bench.model import Model, dead_space
 from ident.bench.motion import groups, onsets
-from ident.bench.observed import Observed, observe
-from ident.bench.quantity import Found
 from ident.bench.records import Record
+from ident.bench.reduced_record import Observed, observe
 from ident.bench.residual import Residual
 from ident.bench.scatter import scatter
 from ident.bench.speed_table import SpeedTable
@@ -36,11 +36,11 @@ _OF = BENCH_CRITERIA.static
 class Static:
     """What a static record, or several, say. Currents in rated currents, pressures in Pa; half-widths."""
 
-    zero_shift: Found
-    dead_space: Found
-    slope: Found
-    friction: Found
-    hysteresis: Found
+    zero_shift: BenchEstimate
+    dead_space: BenchEstimate
+    slope: BenchEstimate
+    friction: BenchEstimate
+    hysteresis: BenchEstimate
     position_range: tuple[float, float] | None
     records: tuple[str, ...]
     model: Model
@@ -86,11 +86,11 @@ def _result(records: Sequence[Record], solution: Solution) -> Static:
     deviations = solution.deviations
     bounds = {record.position_range for record in records}
     return Static(
-        Found(v["I0"], deviations["I0"], "1"),
-        Found(model.dead_space, solution.deviation(dead_space), "1"),
-        Found(v["kp"], deviations["kp"], "Pa"),
-        Found(v["dPfr"], deviations["dPfr"], "Pa"),
-        Found(v["B"], deviations["B"], "1"),
+        BenchEstimate(v["I0"], deviations["I0"], "1"),
+        BenchEstimate(model.dead_space, solution.deviation(dead_space), "1"),
+        BenchEstimate(v["kp"], deviations["kp"], "Pa"),
+        BenchEstimate(v["dPfr"], deviations["dPfr"], "Pa"),
+        BenchEstimate(v["B"], deviations["B"], "1"),
         bounds.pop() if len(bounds) == 1 else None,
         tuple(record.id for record in records),
         model,

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator
 
 from ident.bench.acceptance import Line, sheet
 from ident.bench.analysis import Analysis
-from ident.words.shown import Listing, listings
+from ident.words.result_tables import Listing, listings
 
 
 @listings.register

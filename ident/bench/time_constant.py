@@ -14,10 +14,10 @@ import scipy  # optimize, which takes a third of a second to load, is loaded whe
 from numpy.typing import NDArray
 
 from ident.bench.criteria import BENCH_CRITERIA
+from ident.bench.estimate import BenchEstimate
 from ident.bench.least_squares import Solution, solve
 from ident.bench.model import Model
-from ident.bench.observed import Observed
-from ident.bench.quantity import Found
+from ident.bench.reduced_record import Observed
 from ident.bench.residual import Residual
 from ident.bench.scatter import scatter
 from ident.effects.command_delay import COMMAND_DELAY
@@ -39,7 +39,7 @@ class Dynamics:
     is not in its deviation, which is four to six times too small. The T of the fit of all records has an honest one.
     """
 
-    T: Found
+    T: BenchEstimate
     gradient_T: float
     error: float
     gradient_error: float
@@ -54,7 +54,7 @@ class DelayCheck:
     says in words that a delay is there, or is "".
     """
 
-    delay: Found
+    delay: BenchEstimate
     T: float
     B: float
     correlation: dict[str, dict[str, float]]
@@ -120,7 +120,7 @@ def dynamics(model: Model, observed: Sequence[Observed]) -> Dynamics:
     T = by_library(target, model.T)
     gradient_T, gradient_error, steps = gradient_descent(target, model.T)
     alone = solve(Residual(replace(model, T=T), tuple(observed), ("T",)), steps=0)
-    return Dynamics(Found(T, alone.deviations["T"], "s"), gradient_T, target.error(T), gradient_error, steps)
+    return Dynamics(BenchEstimate(T, alone.deviations["T"], "s"), gradient_T, target.error(T), gradient_error, steps)
 
 
 def delay_check(whole: Solution, drifting: Sequence[Observed]) -> tuple[Array, DelayCheck]:
@@ -144,7 +144,7 @@ def delay_check(whole: Solution, drifting: Sequence[Observed]) -> tuple[Array, D
             observed = tuple(one.reweighed(model) for one in observed)
     around = scatter(both)
     both = replace(both, scatter=around)
-    delay = Found(both.values[_DELAY], both.deviations[_DELAY], "s")
+    delay = BenchEstimate(both.values[_DELAY], both.deviations[_DELAY], "s")
     called = {"T": "T", "B": "B", _DELAY: "delay"}
     correlation = {
         called[a]: {called[b]: value for b, value in row.items() if b in called}

@@ -26,7 +26,7 @@ from ident.chain.channels import BESIDE_MEAN, read_whole
 from ident.chain.conditions import conditions, zeros
 from ident.chain.dry_friction import dry_friction
 from ident.chain.linearity import LINEAR, OTHER, ZERO, degree
-from ident.chain.refusals import of_other_unit, of_state, unfit
+from ident.chain.refused_effects import of_other_unit, of_state, unfit
 from ident.effects.effect import Effect
 from ident.equations.equation import Equation
 from ident.equations.grammar import ARITHMETIC, TIME

@@ -7,8 +7,8 @@ from dataclasses import asdict, dataclass, field
 from typing import Any, Literal
 
 from ident.words.message import Message, message
+from ident.words.result_tables import Listing, TabularResult
 from ident.words.severity import level
-from ident.words.shown import Listing, Shown
 
 Severity = Literal["note", "doubt", "fault"]
 
@@ -35,7 +35,7 @@ class Finding:
         return cls(run, severity, code, str(message), message.key, message.record()["values"])
 
 
-class Findings(tuple[Finding, ...], Shown):
+class Findings(tuple[Finding, ...], TabularResult):
     """All that a check says, faults first."""
 
     def listings(self) -> Iterable[Listing | str]:

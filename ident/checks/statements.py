@@ -8,7 +8,7 @@ from ident.checks.finding import Finding
 from ident.errors import Unusable
 from ident.matrix import Matrix
 from ident.presets import Preset
-from ident.presets.suited import in_question, moved_by_command
+from ident.presets.suitable_models import in_question, moved_by_command
 from ident.run import BENCH
 from ident.words.message import Message, message
 

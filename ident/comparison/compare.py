@@ -32,7 +32,7 @@ from ident.unstable import UNSTABLE, bounded
 from ident.words.engineering import quantity
 from ident.words.error import ErrorOf, first_line
 from ident.words.percent import percent
-from ident.words.shown import Listing, Shown
+from ident.words.result_tables import Listing, TabularResult
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
@@ -43,7 +43,7 @@ _NUMBERS = ("RMSE", "with the mean", "NRMSE fit", "eq. (17)", "offset", "MAE")
 
 
 @dataclass(frozen=True)
-class RunComparison(Shown):
+class RunComparison(TabularResult):
     """One run: eq. (17), the offset, the model's output and the frequency responses.
 
     `modelled` (n,) is in the run's own unit, beside ``run.measured``, with the offset `of_transducer`; `linear` is None
@@ -168,7 +168,7 @@ class RunComparison(Shown):
 
 
 @dataclass(frozen=True)
-class Comparison(Shown):
+class Comparison(TabularResult):
     """All runs of a matrix against one fit."""
 
     matrix: Matrix

@@ -34,7 +34,7 @@ from ident.words.engineering import multiple, quantity
 from ident.words.error import error_said
 from ident.words.nearest import did_you_mean
 from ident.words.number import plain
-from ident.words.shown import Listing, Shown
+from ident.words.result_tables import Listing, TabularResult
 
 Array = NDArray[np.float64]
 BOUND = 3.841458820694124  # of chi squared with one degree of freedom: 95 % lie below
@@ -44,7 +44,7 @@ _FAR, _HALVINGS = 16.0, 30  # times its bound that D may have at the last value
 
 
 @dataclass(frozen=True)
-class Profile(Shown):
+class Profile(TabularResult):
     """Of one parameter, SI: values (k,), the least error (eq. 17) and D at each, and the ends of the 95 % interval.
 
     An end is None where D stays below its bound up to the last value: the data do not limit it there.

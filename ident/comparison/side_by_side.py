@@ -16,8 +16,8 @@ from ident.words.error import ErrorOf
 from ident.words.error_change import error_change
 from ident.words.number import count
 from ident.words.plus_minus import plus_minus
-from ident.words.shown import Listing, Shown
-from ident.words.uses import DATA
+from ident.words.result_tables import Listing, TabularResult
+from ident.words.titles import DATA
 
 MOST = 8
 
@@ -73,7 +73,7 @@ class Change:
 
 
 @dataclass(frozen=True)
-class SideBySide(Shown):
+class SideBySide(TabularResult):
     """The fits in the order in which they were given; `uses` has the use of each run that one of them has."""
 
     columns: tuple[Column, ...]

@@ -16,7 +16,7 @@ from ident.custom.parameters import parameter_of, symbol_of
 from ident.equations.grammar import TABLES
 from ident.errors import Unusable
 from ident.parameter import Parameter
-from ident.readers.fields import Fields
+from ident.readers.typed_fields import Fields
 from ident.units.quantity import si_scale, split
 
 MOST = 12

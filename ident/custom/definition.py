@@ -34,8 +34,8 @@ from ident.equations.grammar import parsed, refused
 from ident.errors import Unusable
 from ident.parameter import Starts
 from ident.presets import PRESETS, Preset, preset
-from ident.readers.fields import Fields
 from ident.readers.strict_yaml import read_yaml
+from ident.readers.typed_fields import Fields
 from ident.stages import PLACES
 from ident.units.quantity import shown
 

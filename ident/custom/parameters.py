@@ -9,7 +9,7 @@ from typing import Any
 
 from ident.errors import Unusable
 from ident.parameter import Parameter, Starts
-from ident.readers.fields import Fields
+from ident.readers.typed_fields import Fields
 from ident.units.quantity import quantity, shown, si_scale, split
 
 _KEYS = ("name", "symbol", "unit", "lower", "upper", "value", "meaning", "start")

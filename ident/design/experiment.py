@@ -15,13 +15,13 @@ from ident.design.excitation import KINDS, PERIODIC, excitation
 from ident.run import Specimen
 from ident.words.conditions import amplitude
 from ident.words.percent import percent
-from ident.words.shown import Listing, Shown
+from ident.words.result_tables import Listing, TabularResult
 
 Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, kw_only=True)
-class Experiment(Shown):
+class Experiment(TabularResult):
     """One run. `amplitude` is the command's RMS in m, `frequency` that of a sine or saw-tooth, else the upper edge.
 
     `separation` are the standard deviations of the noise by which the rivals are expected to differ after

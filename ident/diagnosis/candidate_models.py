@@ -23,9 +23,9 @@ from ident.effects.effect import Effect, off_values
 from ident.effects.ringing import resonance
 from ident.errors import Unusable
 from ident.fit.criteria import FIT_CRITERIA
-from ident.fit.given import of_model
 from ident.fit.known_zeros import with_known_zeros
 from ident.fit.levenberg_marquardt import Way
+from ident.fit.parameter_bounds import of_model
 from ident.fit.recent_moments import RecentMoments
 from ident.fit.reduction import excited_band
 from ident.fit.settings import Settings

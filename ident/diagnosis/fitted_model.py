@@ -21,10 +21,10 @@ from ident.diagnosis.evidence.model_error import predicted_share
 from ident.diagnosis.parameter_estimate import ParameterEstimate
 from ident.fit.fitness import Local
 from ident.fit.levenberg_marquardt import Way
+from ident.fit.low_frequency_delay import slow_lag
 from ident.fit.normal_matrices import NormalMatrices
 from ident.fit.result import Combination, TransducerOffset
 from ident.fit.simulated_fitness import SimulatedFitness
-from ident.fit.slow_answer import slow_lag
 from ident.fit.space import Space
 from ident.fit.summary import told_offsets
 from ident.fit.transducer import Offset, offset_at, offsets_that_count

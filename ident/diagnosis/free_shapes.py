@@ -23,7 +23,7 @@ from ident.diagnosis.screening import Prediction, predict
 from ident.diagnosis.tie_breaking import stable_minimum
 from ident.effects import CATALOGUE
 from ident.effects.effect import Effect
-from ident.fit.given import effect_of
+from ident.fit.parameter_bounds import effect_of
 from ident.fit.uncertainty import DETERMINED
 from ident.parallel import each
 from ident.parameter import Parameter, Starts

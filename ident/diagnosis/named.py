@@ -9,7 +9,7 @@ from ident.custom.definition import Definition
 from ident.diagnosis.parameter_estimate import ParameterEstimate
 from ident.diagnosis.result import Diagnosis
 from ident.effects import CATALOGUE, unknown
-from ident.fit.extended import extended
+from ident.fit.added_effects import with_added_effects
 from ident.fit.settings import Settings
 
 Kept = Callable[[], Mapping[str, Definition]]
@@ -65,7 +65,7 @@ def with_named(
     """The settings of a fit with effects by name, and with all effects that `custom` defines.
 
     A name is first sought in the catalogue and the definitions, then in the `diagnosis`, then among the effects
-    that are `kept`, which are read only then. Raises Unusable as :func:`ident.fit.extended.extended`.
+    that are `kept`, which are read only then. Raises Unusable as :func:`ident.fit.added_effects.with_added_effects`.
     """
     known = {effect.name for effect in CATALOGUE} | {str(one["name"]) for one in (*settings.custom, *custom)}
     effects: list[str] = []
@@ -74,7 +74,7 @@ def with_named(
         one = Named((name,)) if name in known else _looked_up(name, known, diagnosis, kept)
         effects += one.effects
         definitions += [definition for definition in one.custom if definition not in definitions]
-    return extended(settings, effects, definitions)
+    return with_added_effects(settings, effects, definitions)
 
 
 def _looked_up(name: str, known: set[str], diagnosis: Diagnosis | None, kept: Kept) -> Named:

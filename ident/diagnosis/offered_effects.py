@@ -9,7 +9,7 @@ from ident.effects.effect import Effect
 from ident.effects.needs import electric, turns_round
 from ident.matrix import Matrix
 from ident.presets import Preset
-from ident.presets.middle import about
+from ident.presets.stroke_centre import about_stroke_centre
 from ident.run import MOTIONS
 from ident.words.titles import title
 
@@ -24,7 +24,7 @@ def offered_effects(
     yields, has_places = _has_specimen(preset, matrix), not turns_round(matrix)
     listed = (*(e for e in catalogue if (yields or not e.of_specimen) and (has_places or not e.of_place)), *custom)
     return {
-        effect.name: about(effect, preset.middle)
+        effect.name: about_stroke_centre(effect, preset.middle)
         for effect in listed
         if preset.takes(effect)
         and not unmeasured(preset.with_effects((effect,)).chain.symbols, matrix.runs)

@@ -18,7 +18,7 @@ from ident.residuals.budget import Budget
 from ident.run import USES, Specimen
 from ident.words.engineering import quantity
 from ident.words.error import ErrorOf, first_line
-from ident.words.shown import Shown, in_brief
+from ident.words.result_tables import TabularResult, in_brief
 
 Errors = Mapping[str, float | None]
 """Eq. (17) averaged over the runs of a kind: fit, held_out, verify; None where there are none."""
@@ -255,7 +255,7 @@ class NextRun:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Diagnosis(Shown):
+class Diagnosis(TabularResult):
     """The whole diagnosis of one fit of one matrix; `effects` are the effects that the fit had.
 
     `budget` is None where the model is unstable at every run, `next_experiment` where no run can be proposed. With a

@@ -38,7 +38,7 @@ from ident.matrix import Matrix
 from ident.preprocessing import off_steps, screen
 from ident.preprocessing.pipeline import ALL_ON
 from ident.presets import Preset, preset
-from ident.presets.suited import (
+from ident.presets.suitable_models import (
     has_no_parts,
     in_question,
     is_assumed_loop,

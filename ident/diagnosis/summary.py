@@ -10,8 +10,8 @@ from ident.diagnosis.result import Diagnosis, Suspect
 from ident.diagnosis.sentences import has_two
 from ident.diagnosis.verification import noise_on_validation_data
 from ident.words.message import Message, message
+from ident.words.result_tables import in_brief
 from ident.words.run_name import run_name
-from ident.words.shown import in_brief
 from ident.words.titles import title
 
 _USES = ("verify", "held_out", "fit")

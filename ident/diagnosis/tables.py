@@ -7,14 +7,13 @@ from collections.abc import Iterator
 from ident.diagnosis.discovery.term_count_curve import term_count_curve
 from ident.diagnosis.result import Diagnosis, Ranked
 from ident.diagnosis.summary import summary
-from ident.preprocessing.told import told
+from ident.preprocessing.pipeline import outcome_sentences
 from ident.words.error import error_said
 from ident.words.message import message
-from ident.words.percent import percent
+from ident.words.percent import percent, probability_said
 from ident.words.plus_minus import UNDETERMINED, plus_minus
-from ident.words.probability import probability_said
-from ident.words.shown import Listing, listings
-from ident.words.uses import DATA
+from ident.words.result_tables import Listing, listings
+from ident.words.titles import DATA
 
 Row = tuple[str, ...]
 
@@ -44,7 +43,7 @@ def diagnosis_listings(diagnosis: Diagnosis) -> Iterator[Listing | str]:
         yield "each on top of those before"
     for note in diagnosis.notes:
         yield f"note: {note}"
-    for said in told(diagnosis.preprocessing, diagnosis.notes):
+    for said in outcome_sentences(diagnosis.preprocessing, diagnosis.notes):
         yield f"preprocessing: {said}"
     yield diagnosis.verdict.text
     yield "\n".join(summary(diagnosis))

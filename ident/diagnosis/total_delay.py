@@ -2,8 +2,8 @@
 
 A model has its lag at one place. Where a delay, or a lag at another place, explains the data as well, the time constant
 is no property of that stage: the data determine only the delay T of the response to a slow command, see
-:mod:`ident.fit.slow_answer`. Each of two lags may fix the other, where two other lags do as well: these are compared as
-pairs.
+:mod:`ident.fit.low_frequency_delay`. Each of two lags may fix the other, where two other lags do as well: these are
+compared as pairs.
 """
 
 from __future__ import annotations
@@ -20,8 +20,8 @@ from ident.diagnosis.evidence.comparison import compare
 from ident.diagnosis.fitted_model import FittedModel
 from ident.diagnosis.ladder import without_effect
 from ident.diagnosis.model_comparison import indistinguishable
+from ident.fit.low_frequency_delay import is_late
 from ident.fit.result import Combination
-from ident.fit.slow_answer import is_late
 from ident.parallel import each
 from ident.parameter import Parameter, Starts
 

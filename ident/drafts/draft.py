@@ -12,7 +12,7 @@ import numpy as np
 
 from ident.drafts.answers import NONE, Answer, Answers, FileAnswers
 from ident.drafts.names import suggested, unit_of, unnamed_clock
-from ident.drafts.raw import Column, RawFile
+from ident.drafts.raw_file import Column, RawFile
 from ident.drafts.steps import moves_in_steps
 from ident.errors import Unusable
 from ident.readers import PACKED
@@ -22,8 +22,8 @@ from ident.readers.run_description import LESS
 from ident.readers.table import MINUS, some_of
 from ident.run import BENCH, CHANNELS, MOTIONS
 from ident.units.quantity import shown
-from ident.words.listed import first_of
 from ident.words.message import message
+from ident.words.sentence import first_of
 
 OUTPUTS = ("displacement", "velocity", "acceleration", "force", "load_pressure", "temperature", "current")
 """Channels that a model may have to reproduce; the first that there is, unless one is named. A temperature or

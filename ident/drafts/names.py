@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from ident.drafts.raw import Column, RawFile
+from ident.drafts.raw_file import Column, RawFile
 from ident.readers.column_names import (
     LESS_USUAL_COMMANDS,
     PAIRS,

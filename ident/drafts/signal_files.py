@@ -7,8 +7,8 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import PurePosixPath
 
-from ident.drafts.joined import holds_one_signal, joined
-from ident.drafts.raw import RawFile, read_whole
+from ident.drafts.joined_files import holds_one_signal, joined
+from ident.drafts.raw_file import RawFile, read_whole
 from ident.errors import Unusable
 from ident.readers import ENDINGS, ending_of
 from ident.readers.column_names import PAIRS, channel_of, is_time, said
@@ -42,7 +42,7 @@ def with_runs_joined(files: Sequence[tuple[str, bytes]], limits: Limits = LIMITS
     A run is the files of one folder whose names differ by the part that says the signal: pos1_A.txt, vel1_A.txt and
     tau1_A.txt are run 1_A. Its text says what it was joined from. Files of several signals stay as they are.
 
-    Raises Unusable as :func:`ident.drafts.joined.joined` does, and as reading a file of such a name does.
+    Raises Unusable as :func:`ident.drafts.joined_files.joined` does, and as reading a file of such a name does.
     """
     contents = dict(files)
     if len(contents) < len(files):

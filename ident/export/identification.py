@@ -14,7 +14,7 @@ import numpy as np
 
 from ident.bench.analysis import Analysis
 from ident.bench.model import Model
-from ident.bench.observed import Observed
+from ident.bench.reduced_record import Observed
 from ident.bench.speed_table import SPLINE, SpeedTable
 from ident.errors import Unusable
 from ident.export.bench_code import SIMULATION

@@ -12,12 +12,12 @@ from typing import Any
 from ident.custom.definition import preset_with
 from ident.diagnosis.result import Diagnosis
 from ident.errors import Unusable
+from ident.figures.chart_template import unchecked
 from ident.figures.drawing import Drawing
-from ident.figures.frame import unchecked
-from ident.figures.look import look
 from ident.figures.render import MEDIA, AltairChart, Chart, render, renders, shown
 from ident.figures.study import Study
 from ident.figures.subjects import Ladder, Recorded
+from ident.figures.theme import look
 from ident.fit.result import FitResult
 from ident.matrix import Actuator
 from ident.presets import Preset

@@ -6,13 +6,13 @@ from collections.abc import Mapping
 
 import altair as alt
 
+from ident.figures.chart_template import unchecked
 from ident.figures.drawing import Drawing, Options
-from ident.figures.frame import unchecked
 from ident.figures.hybrid_time import legend_of
-from ident.figures.look import Look
 from ident.figures.render import Chart, Row, datasets
 from ident.figures.subjects import Simulated
-from ident.hybrid.rig import HybridResult
+from ident.figures.theme import Look
+from ident.hybrid.hybrid_simulation import HybridResult
 
 WITHIN = 1.0
 """dB: between these lines the spectrum of a table counts as that of its record."""

@@ -13,11 +13,11 @@ from ident.bench.analysis import Analysis
 from ident.bench.records import BenchSet
 from ident.figures.drawing import Drawing, Options
 from ident.figures.frequency_characteristics import frequency_panels
-from ident.figures.look import Look, look
 from ident.figures.pressure_loop import pressure_panel
 from ident.figures.render import Chart, Panel
 from ident.figures.speed_characteristic import speed_panel
 from ident.figures.study import Study
+from ident.figures.theme import Look, look
 from ident.matrix import Matrix
 from ident.words.titles import title
 

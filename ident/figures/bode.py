@@ -15,17 +15,17 @@ from ident.comparison.response_error import response_error
 from ident.errors import Unusable
 from ident.figures import words
 from ident.figures.candidate import called, candidate_of
-from ident.figures.choose import asked, by_gain, chosen, one, representative, typical
+from ident.figures.chart_template import Filled, Frame, blank, frame
 from ident.figures.drawing import Drawing, Options
-from ident.figures.frame import Filled, Frame, blank, frame
-from ident.figures.look import Look
 from ident.figures.options import AXIS, BAND, CANDIDATE, CONDITIONS, OTHER, RUN, USE
-from ident.figures.others import others_of, titles_of
+from ident.figures.other_fits import others_of, titles_of
 from ident.figures.render import Panel
 from ident.figures.responses import Responses
+from ident.figures.run_selection import by_gain, chosen, filter_in, representative, selected_run, typical_run
 from ident.figures.selection import HIGH, LOW, OPEN, Band, band_of, band_values, brush, zoomed
 from ident.figures.study import Study
-from ident.figures.thin import decade_ticks, fine_ticks
+from ident.figures.theme import Look
+from ident.figures.thinning import decade_ticks, fine_ticks
 from ident.fit.result import FitResult
 from ident.hybrid.readouts import Readouts, in_words, readouts
 from ident.matrix import Actuator
@@ -324,7 +324,7 @@ def _drawn(study: Study, look: Look, options: Options) -> Filled:
     logarithmic, band = _axis(options) == "log", band_of(options)
     if several := others_of(options):
         return _several(study, several, look, options)
-    candidates = chosen(study.matrix, asked(options))
+    candidates = chosen(study.matrix, filter_in(options))
     runs, other = readable(candidates), candidate_of(options)
     compared = study.compared(runs).runs
     responses = Responses(
@@ -343,7 +343,7 @@ def _drawn(study: Study, look: Look, options: Options) -> Filled:
 
 def _several(study: Study, several: Sequence[FitResult], look: Look, options: Options) -> Filled:
     """One run, each model in a colour of its own."""
-    run = one(study.matrix, options) or typical(study.matrix, study.fit)
+    run = selected_run(study.matrix, options) or typical_run(study.matrix, study.fit)
     studies = (study, *map(study.beside, several))
     compared = [each.compared((run,)).runs[0] for each in studies]
     fits = [each.fit for each in studies]

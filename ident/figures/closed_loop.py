@@ -9,12 +9,12 @@ import altair as alt
 import numpy as np
 from numpy.typing import NDArray
 
+from ident.figures.chart_template import unchecked
 from ident.figures.drawing import Drawing, Options
-from ident.figures.frame import unchecked
-from ident.figures.look import Look
 from ident.figures.render import Chart, Panel, Row, datasets
 from ident.figures.subjects import Designed
-from ident.figures.thin import significant
+from ident.figures.theme import Look
+from ident.figures.thinning import significant
 from ident.hybrid.controller_design import ControllerDesign
 from ident.hybrid.robustness import SHOWN, frequencies
 

@@ -9,9 +9,9 @@ import altair as alt
 
 from ident.figures import words
 from ident.figures.drawing import Drawing, Options
-from ident.figures.look import Look
 from ident.figures.render import Chart, Panel, datasets
 from ident.figures.subjects import Charted
+from ident.figures.theme import Look
 from ident.statistics import ControlChart
 from ident.words.message import message
 

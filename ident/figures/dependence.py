@@ -10,9 +10,9 @@ import numpy as np
 
 from ident.figures import words
 from ident.figures.drawing import Drawing, Options
-from ident.figures.look import Look
 from ident.figures.render import Chart
 from ident.figures.subjects import OverCondition
+from ident.figures.theme import Look
 
 _DRAWN = 81  # conditions of the line
 _LETTERS = 88  # of a line of the caption

@@ -6,8 +6,8 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Generic, TypeVar
 
-from ident.figures.look import Look
 from ident.figures.render import Chart
+from ident.figures.theme import Look
 from ident.fit.result import FitResult
 from ident.presets.model import Kind
 from ident.run import Specimen

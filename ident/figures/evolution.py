@@ -13,10 +13,10 @@ from ident.custom.definition import preset_with
 from ident.errors import Unusable
 from ident.figures import words
 from ident.figures.drawing import Choices, Drawing, Offer, Option, Options, Several
-from ident.figures.look import Look
 from ident.figures.render import Chart, Panel, datasets
 from ident.figures.study import Study
-from ident.figures.thin import significant
+from ident.figures.theme import Look
+from ident.figures.thinning import significant
 from ident.fit.result import FitResult, Generation
 from ident.matrix import Actuator
 

@@ -8,16 +8,16 @@ from typing import Any
 import altair as alt
 
 from ident.figures.drawing import Drawing, Options
-from ident.figures.look import Look
 from ident.figures.render import Chart, Panel
 from ident.figures.subjects import Simulated
-from ident.hybrid.followed import Followed, rounded
+from ident.figures.theme import Look
+from ident.hybrid.feedforward_tracking import FeedforwardTracking, rounded
 from ident.words.message import message
 
 REFERENCE, ALONE, BOTH, BAND = "reference", "feedback alone", "with feedforward", "band of 90 % of the draws"
 
 
-def feedforward_figure(followed: Followed, look: Look, title: str = "") -> Chart:
+def feedforward_figure(followed: FeedforwardTracking, look: Look, title: str = "") -> Chart:
     """Positions (mm) above, errors (mm) with feedforward and their band below, against time (s)."""
     facts = [followed.gain_said]
     if followed.drawn_ratio is not None:
@@ -28,13 +28,13 @@ def feedforward_figure(followed: Followed, look: Look, title: str = "") -> Chart
     return chart
 
 
-def _positions(followed: Followed, look: Look) -> Panel:
+def _positions(followed: FeedforwardTracking, look: Look) -> Panel:
     r = followed.reference
     alone, both = ([x - e for x, e in zip(r, error, strict=True)] for error in (followed.feedback, followed.both))
     return _lines(followed, {REFERENCE: r, ALONE: alone, BOTH: both}, look, "Position (mm)")
 
 
-def _errors(followed: Followed, look: Look) -> Panel:
+def _errors(followed: FeedforwardTracking, look: Look) -> Panel:
     edges = zip(followed.t, followed.low, followed.high, strict=True)
     rows = [_rounded({"t": t, "low": 1e3 * low, "high": 1e3 * high}, BAND) for t, low, high in edges]
     x, y = alt.X("t:Q", title="Time (s)"), alt.Y("low:Q", title="Error (mm)")
@@ -44,7 +44,7 @@ def _errors(followed: Followed, look: Look) -> Panel:
     return panel
 
 
-def _lines(followed: Followed, shown: Mapping[str, Sequence[float]], look: Look, unit: str) -> Panel:
+def _lines(followed: FeedforwardTracking, shown: Mapping[str, Sequence[float]], look: Look, unit: str) -> Panel:
     rows = [
         _rounded({"t": t, "y": 1e3 * y}, name)
         for name, signal in shown.items()

@@ -9,14 +9,14 @@ import altair as alt
 import numpy as np
 import scipy  # signal, which takes most of a second to load, is loaded where it is first used
 
+from ident.figures.chart_template import unchecked
 from ident.figures.drawing import Drawing, Options
-from ident.figures.frame import unchecked
 from ident.figures.hybrid_time import legend_of, told
-from ident.figures.look import Look
 from ident.figures.render import Chart, Panel, Row, datasets
 from ident.figures.subjects import Simulated
-from ident.figures.thin import significant
-from ident.hybrid.rig import HybridResult
+from ident.figures.theme import Look
+from ident.figures.thinning import significant
+from ident.hybrid.hybrid_simulation import HybridResult
 
 HIGHEST = 30.0
 """Hz: the range of the paper's figure."""

@@ -10,13 +10,13 @@ import numpy as np
 
 from ident.decimation.envelope import envelope
 from ident.figures import words
+from ident.figures.chart_template import unchecked
 from ident.figures.drawing import Drawing, Options
-from ident.figures.frame import unchecked
-from ident.figures.look import Look
 from ident.figures.render import Chart, Panel, Row, datasets
 from ident.figures.subjects import Simulated
-from ident.figures.thin import Real, significant
-from ident.hybrid.rig import HybridResult
+from ident.figures.theme import Look
+from ident.figures.thinning import Real, significant
+from ident.hybrid.hybrid_simulation import HybridResult
 from ident.words.percent import percent_in_print
 
 REFERENCE = "reference: the whole structure"

@@ -10,9 +10,9 @@ import altair as alt
 from ident.errors import Unusable
 from ident.figures import words
 from ident.figures.drawing import Drawing, Options
-from ident.figures.look import Look
 from ident.figures.render import Chart, datasets
 from ident.figures.subjects import Ladder, Step
+from ident.figures.theme import Look
 from ident.matrix import Actuator
 
 

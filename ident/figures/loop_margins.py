@@ -8,8 +8,8 @@ import altair as alt
 
 from ident.bench.position_loop import AmplitudeMargin, PositionLoop
 from ident.figures.drawing import Drawing, Options
-from ident.figures.look import Look
 from ident.figures.render import Chart
+from ident.figures.theme import Look
 from ident.words.percent import percent
 
 _LOWEST = -360.0

@@ -11,7 +11,7 @@ from ident.figures import words
 from ident.figures.drawing import Choices, Offer, OfferedRun, Option
 from ident.presets import preset
 from ident.residuals.views import views
-from ident.words.uses import runs as data_runs
+from ident.words.titles import runs as data_runs
 
 ANY = ("", "any")
 

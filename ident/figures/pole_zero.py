@@ -9,12 +9,12 @@ import altair as alt
 import numpy as np
 
 from ident.figures import words
-from ident.figures.choose import one, typical
 from ident.figures.drawing import Drawing, Options
-from ident.figures.look import Look
 from ident.figures.options import RUN
 from ident.figures.render import Chart, datasets
+from ident.figures.run_selection import selected_run, typical_run
 from ident.figures.study import Study
+from ident.figures.theme import Look
 from ident.hybrid.poles_and_zeros import Root, poles_and_zeros
 from ident.words.message import message
 from ident.words.number import plain
@@ -81,7 +81,7 @@ def _rays(reach: float, look: Look) -> list[Any]:
 
 
 def _drawn(study: Study, look: Look, options: Options) -> Chart:
-    run = one(study.matrix, options) or typical(study.matrix, study.fit)
+    run = selected_run(study.matrix, options) or typical_run(study.matrix, study.fit)
     found = poles_and_zeros(study.fit, run, study.matrix.actuator)
     told = [words.verdict(study.fit), f"linearised under the conditions of {words.describe(run)}"]
     if found.left_out:

@@ -14,9 +14,9 @@ from ident.bench.records import Record
 from ident.figures import words
 from ident.figures.bench import model_and_records
 from ident.figures.drawing import Drawing, Options
-from ident.figures.look import Look
 from ident.figures.render import Chart, Panel
 from ident.figures.study import Study
+from ident.figures.theme import Look
 
 NAMES = {0: "static", 1: "moving +", -1: "moving −"}
 _POINTS = 900  # of each record

@@ -7,9 +7,9 @@ import altair as alt
 from ident.comparison.profile import BOUND, Profile
 from ident.figures import words
 from ident.figures.drawing import Drawing, Options
-from ident.figures.look import Look
 from ident.figures.render import Chart, Panel, datasets
 from ident.figures.subjects import Profiled
+from ident.figures.theme import Look
 from ident.fit.result import FitResult
 from ident.matrix import Actuator
 

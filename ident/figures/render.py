@@ -10,7 +10,7 @@ import altair as alt
 import vl_convert
 
 from ident.errors import Unusable
-from ident.figures.frame import Filled, unchecked
+from ident.figures.chart_template import Filled, unchecked
 from ident.words.nearest import did_you_mean
 
 Panel = alt.Chart | alt.LayerChart | alt.FacetChart

@@ -8,12 +8,12 @@ import altair as alt
 
 from ident.comparison.compare import RunComparison
 from ident.figures import words
-from ident.figures.choose import one, typical, unstable_on
 from ident.figures.drawing import Drawing, Option, Options
-from ident.figures.look import Look
 from ident.figures.options import RUN, whole_number
 from ident.figures.render import Chart, Panel, datasets
+from ident.figures.run_selection import selected_run, typical_run, unstable_on
 from ident.figures.study import Study
+from ident.figures.theme import Look
 from ident.fit.result import FitResult
 from ident.matrix import Actuator
 from ident.residuals.correlation import SURE, Correlation, correlation
@@ -77,7 +77,7 @@ def _panel(name: str, title: str, band: float, run: Run, look: Look) -> Panel:
 
 
 def _draw(study: Study, look: Look, options: Options) -> Chart:
-    run = one(study.matrix, options) or typical(study.matrix, study.fit)
+    run = selected_run(study.matrix, options) or typical_run(study.matrix, study.fit)
     (compared,) = study.compared((run,)).runs
     if compared.unstable:
         raise unstable_on(run)

@@ -12,15 +12,15 @@ import altair as alt
 from ident.errors import Unusable
 from ident.figures import words
 from ident.figures.candidate import called, candidate_of
-from ident.figures.choose import RUNS, asked, chosen
+from ident.figures.chart_template import Filled, Frame, blank, frame
 from ident.figures.drawing import Drawing, Options
-from ident.figures.frame import Filled, Frame, blank, frame
-from ident.figures.look import Look
 from ident.figures.options import BAND, CANDIDATE, MANY, VIEW
 from ident.figures.render import Panel
+from ident.figures.run_selection import RUNS, chosen, filter_in
 from ident.figures.selection import band_of
 from ident.figures.study import Study
-from ident.figures.thin import significant
+from ident.figures.theme import Look
+from ident.figures.thinning import significant
 from ident.fit.result import FitResult
 from ident.matrix import Actuator
 from ident.residuals.curves import Curve
@@ -189,7 +189,7 @@ def _axis(title: Any, ticks: int) -> alt.Axis:
 def _drawn(study: Study, look: Look, options: Options) -> Filled:
     matrix, view, band, other = study.matrix, options.get("view") or None, band_of(options), candidate_of(options)
     some = any(map(options.get, RUNS))
-    shown = chosen(matrix, asked(options)) if some else matrix.of_use("fit") or matrix.runs
+    shown = chosen(matrix, filter_in(options)) if some else matrix.of_use("fit") or matrix.runs
     runs = words.describe(shown[0]) if len(shown) == 1 else f"{len(shown)} runs"
     return residual_curve(
         study.curves(shown, view, band),

@@ -11,19 +11,19 @@ import altair as alt
 from ident.comparison.compare import Comparison
 from ident.errors import Unusable
 from ident.figures import words
-from ident.figures.choose import CONDITIONS, asked, chosen
 from ident.figures.drawing import Drawing, Options
-from ident.figures.look import Look
 from ident.figures.options import BAND, MANY
 from ident.figures.render import Chart, Panel, datasets
+from ident.figures.run_selection import CONDITIONS, chosen, filter_in
 from ident.figures.selection import HIGH, LOW, OPEN, RUN, Band, band_of, band_params, brush
 from ident.figures.study import Study
-from ident.figures.thin import decade_ticks
+from ident.figures.theme import Look
+from ident.figures.thinning import decade_ticks
 from ident.fit.result import FitResult
 from ident.matrix import Actuator
 from ident.residuals.breakdown import Breakdown, breakdown, noise_in_bands, stated_amplitude
 from ident.run import Run
-from ident.words.uses import DATA
+from ident.words.titles import DATA
 
 MOST = 100  # rows
 _ROWS = ((30, 15, 11), (60, 12, 10), (MOST, 10, 9))  # up to so many rows: pixels a row, and the size of its label
@@ -212,7 +212,9 @@ def _totals(order: Sequence[str], look: Look, height: int, size: int) -> Panel:
 
 def _drawn(study: Study, look: Look, options: Options) -> Chart:
     """Of every run where none is asked for; the one in `run` is marked."""
-    shown = chosen(study.matrix, asked(options, CONDITIONS)) if any(map(options.get, CONDITIONS)) else study.matrix.runs
+    shown = (
+        chosen(study.matrix, filter_in(options, CONDITIONS)) if any(map(options.get, CONDITIONS)) else study.matrix.runs
+    )
     run = str(options.get("run") or "")
     return residual_map(
         study.compared(shown),

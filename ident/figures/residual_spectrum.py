@@ -9,14 +9,14 @@ import altair as alt
 
 from ident.comparison.compare import RunComparison
 from ident.figures import words
-from ident.figures.choose import one, typical, unstable_on
 from ident.figures.drawing import Drawing, Options
-from ident.figures.look import Look
 from ident.figures.options import OTHER, RUN
-from ident.figures.others import others_of, titles_of
+from ident.figures.other_fits import others_of, titles_of
 from ident.figures.render import Chart, datasets
+from ident.figures.run_selection import selected_run, typical_run, unstable_on
 from ident.figures.study import Study
-from ident.figures.thin import decade_ticks
+from ident.figures.theme import Look
+from ident.figures.thinning import decade_ticks
 from ident.residuals.breakdown import band_edges, in_bands, noise_in_bands
 
 _NOISE = "noise, spread evenly over frequency"
@@ -73,7 +73,7 @@ def _rows(name: str, edges: Sequence[float], errors: Sequence[float | None]) -> 
 
 
 def _drawn(study: Study, look: Look, options: Options) -> Chart:
-    run, others = one(study.matrix, options) or typical(study.matrix, study.fit), others_of(options)
+    run, others = selected_run(study.matrix, options) or typical_run(study.matrix, study.fit), others_of(options)
     compared = [each.compared((run,)).runs[0] for each in (study, *map(study.beside, others))]
     if all(each.unstable for each in compared):
         raise unstable_on(run)

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from ident.cached import cached_property
 from ident.comparison.compare import RunComparison
 from ident.figures import words
-from ident.figures.thin import Real, excited_band, significant, spread
+from ident.figures.thinning import Real, evenly_spaced, excited_band, significant
 from ident.hybrid.readouts import Readouts
 from ident.run import Run
 
@@ -92,7 +92,7 @@ class Responses:
         count = _within(MOST_POINTS // len(entries), _POINTS)
         rows: dict[float | None, list[Row]] = {}
         for entry, own in zip(entries, self._own, strict=False):
-            places = spread(entry.frequency, *self.band, count, self.logarithmic)
+            places = evenly_spaced(entry.frequency, *self.band, count, self.logarithmic)
             label = MEASURED if self.models else self.labels[entry.run.id]
             frequency, measured = entry.frequency[places], entry.measured[places]
             near = np.interp(frequency, self.frequency, np.unwrap(np.angle(own)))

@@ -8,8 +8,8 @@ import altair as alt
 
 from ident.errors import Unusable
 from ident.figures.drawing import Drawing, Options
-from ident.figures.look import Look
 from ident.figures.render import Chart
+from ident.figures.theme import Look
 from ident.hybrid.root_locus import Mark
 from ident.hybrid.what_if import WhatIf
 from ident.words.number import trimmed

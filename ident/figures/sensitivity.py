@@ -15,14 +15,14 @@ from ident.chain.chain import settles
 from ident.comparison.compare import fitted, response
 from ident.errors import Unusable
 from ident.figures import words
-from ident.figures.choose import one
+from ident.figures.chart_template import Filled, Frame, blank, frame
 from ident.figures.drawing import Drawing, Options
-from ident.figures.frame import Filled, Frame, blank, frame
-from ident.figures.look import Look
 from ident.figures.options import RUN
 from ident.figures.render import Panel
+from ident.figures.run_selection import selected_run
 from ident.figures.study import Study
-from ident.figures.thin import decade_ticks, excited_band, significant
+from ident.figures.theme import Look
+from ident.figures.thinning import decade_ticks, excited_band, significant
 from ident.fit.result import FitResult
 from ident.matrix import Actuator, Matrix
 from ident.run import Run, Specimen
@@ -195,7 +195,7 @@ def _panel(data: alt.NamedData, x: alt.X, y: alt.Y, look: Look, width: int, **he
 
 
 def _drawn(study: Study, look: Look, options: Options) -> Filled:
-    run = one(study.matrix, options) or loaded(study.matrix.of_use("verify") or study.matrix.runs)
+    run = selected_run(study.matrix, options) or loaded(study.matrix.of_use("verify") or study.matrix.runs)
     return sensitivity(run, study.matrix.actuator, study.fit, look)
 
 

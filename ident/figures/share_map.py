@@ -5,11 +5,11 @@ from __future__ import annotations
 import altair as alt
 import numpy as np
 
+from ident.figures.chart_template import unchecked
 from ident.figures.drawing import Drawing, Options
-from ident.figures.frame import unchecked
-from ident.figures.look import Look
 from ident.figures.render import Chart, Row, datasets
 from ident.figures.subjects import Simulated
+from ident.figures.theme import Look
 from ident.hybrid.case import Case
 from ident.hybrid.share_map import ShareMap
 

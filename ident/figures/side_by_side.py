@@ -9,11 +9,11 @@ import altair as alt
 from ident.comparison.side_by_side import SideBySide
 from ident.figures import words
 from ident.figures.drawing import Drawing, Options
-from ident.figures.look import Look
 from ident.figures.render import Chart, datasets
 from ident.figures.subjects import Compared
+from ident.figures.theme import Look
 from ident.matrix import Actuator
-from ident.words.uses import DATA
+from ident.words.titles import DATA
 
 _STEP = 15  # pixels a run
 

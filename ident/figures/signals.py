@@ -11,13 +11,13 @@ import numpy as np
 
 from ident.errors import Unusable
 from ident.figures import words
+from ident.figures.chart_template import Filled, Frame, blank, frame
 from ident.figures.drawing import Drawing, Option, Options
-from ident.figures.frame import Filled, Frame, blank, frame
-from ident.figures.look import Look
 from ident.figures.options import RUN, number
 from ident.figures.render import Panel
 from ident.figures.subjects import Recorded
-from ident.figures.thin import Real, significant
+from ident.figures.theme import Look
+from ident.figures.thinning import Real, significant
 from ident.figures.traces import Trace
 from ident.matrix import Actuator
 from ident.words.run_name import run_name

@@ -12,12 +12,12 @@ from ident.checks.response import Response, response
 from ident.errors import Unusable
 from ident.figures import words
 from ident.figures.drawing import Drawing, Options
-from ident.figures.look import Look
 from ident.figures.options import RUN
 from ident.figures.render import Chart, Panel, datasets
 from ident.figures.signals import MOST
 from ident.figures.subjects import Recorded
-from ident.figures.thin import Places, decade_ticks, significant
+from ident.figures.theme import Look
+from ident.figures.thinning import Places, decade_ticks, significant
 from ident.matrix import Actuator
 from ident.run import MOTIONS, Run
 

@@ -15,9 +15,9 @@ from ident.bench.speed import Level, curve, levels
 from ident.figures import words
 from ident.figures.bench import model_and_records
 from ident.figures.drawing import Choices, Drawing, Offer, Option, Options
-from ident.figures.look import Look
 from ident.figures.render import Chart, Panel
 from ident.figures.study import Study
+from ident.figures.theme import Look
 
 _POINTS = 700
 NAMES = ("measured, against the current given", "measured, current corrected", "fixed levels", "f without friction")

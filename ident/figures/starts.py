@@ -9,9 +9,9 @@ import altair as alt
 from ident.errors import Unusable
 from ident.figures import words
 from ident.figures.drawing import Drawing, Options
-from ident.figures.look import Look
 from ident.figures.render import Chart, datasets
 from ident.figures.study import Study
+from ident.figures.theme import Look
 from ident.fit.result import FitResult, Starts
 from ident.matrix import Actuator
 

@@ -12,14 +12,14 @@ from ident.comparison.side_by_side import titles
 from ident.comparison.step_response import StepResponse, duration, step_response
 from ident.decimation.envelope import envelope
 from ident.figures import words
-from ident.figures.choose import one, typical
 from ident.figures.drawing import Drawing, Option, Options
-from ident.figures.look import Look
 from ident.figures.options import OTHER, RUN, number
-from ident.figures.others import others_of
+from ident.figures.other_fits import others_of
 from ident.figures.render import Chart, datasets
+from ident.figures.run_selection import selected_run, typical_run
 from ident.figures.study import Study
-from ident.figures.thin import significant
+from ident.figures.theme import Look
+from ident.figures.thinning import significant
 from ident.run import Run
 from ident.words.engineering import quantity
 from ident.words.number import plain
@@ -91,7 +91,7 @@ def _rows(name: str, of: StepResponse, factor: float, points: int) -> list[dict[
 
 
 def _drawn(study: Study, look: Look, options: Options) -> Chart:
-    run, others = one(study.matrix, options) or typical(study.matrix, study.fit), others_of(options)
+    run, others = selected_run(study.matrix, options) or typical_run(study.matrix, study.fit), others_of(options)
     actuator = study.matrix.actuator
     studies = (study, *map(study.beside, others))
     seconds = number(options, "seconds") or max(duration(each.fit, run, actuator) for each in studies)

@@ -14,8 +14,8 @@ from ident.fit.result import FitResult
 from ident.hybrid.case import Case
 from ident.hybrid.controller_design import ControllerDesign
 from ident.hybrid.coupled_stability import DelayMap
-from ident.hybrid.followed import Followed
-from ident.hybrid.rig import HybridResult
+from ident.hybrid.feedforward_tracking import FeedforwardTracking
+from ident.hybrid.hybrid_simulation import HybridResult
 from ident.hybrid.share_map import ShareMap
 from ident.hybrid.tracked_run import Track
 from ident.matrix import Actuator
@@ -99,7 +99,7 @@ class Simulated:
     runs: Mapping[str, HybridResult]
     case: Case
     share_map: ShareMap | None = None
-    feedforward: Followed | None = None
+    feedforward: FeedforwardTracking | None = None
 
     @property
     def controller(self) -> str:

@@ -13,16 +13,16 @@ from ident.comparison.compare import RunComparison
 from ident.decimation.envelope import envelope
 from ident.errors import Unusable
 from ident.figures import words
-from ident.figures.choose import one, typical
+from ident.figures.chart_template import Filled, Frame, blank, frame
 from ident.figures.drawing import Drawing, Option, Options
-from ident.figures.frame import Filled, Frame, blank, frame
-from ident.figures.look import Look
 from ident.figures.options import BAND, OTHER, RUN, number
-from ident.figures.others import others_of, titles_of
+from ident.figures.other_fits import others_of, titles_of
 from ident.figures.render import Panel
+from ident.figures.run_selection import selected_run, typical_run
 from ident.figures.selection import OPEN, Band, band_of
 from ident.figures.study import Study
-from ident.figures.thin import Real, significant
+from ident.figures.theme import Look
+from ident.figures.thinning import Real, significant
 from ident.fit.reduction import within
 from ident.matrix import Actuator
 from ident.run import Run
@@ -185,7 +185,7 @@ def _residual(models: Sequence[str], clock: str, look: Look) -> Panel:
 
 
 def _drawn(study: Study, look: Look, options: Options) -> Filled:
-    run = one(study.matrix, options) or typical(study.matrix, study.fit)
+    run = selected_run(study.matrix, options) or typical_run(study.matrix, study.fit)
     others = others_of(options)
     compared = [each.compared((run,)).runs[0] for each in (study, *map(study.beside, others))]
     if others:

@@ -9,10 +9,10 @@ import numpy as np
 
 from ident.figures import words
 from ident.figures.drawing import Drawing, Options
-from ident.figures.look import Look
 from ident.figures.render import Chart, Panel, datasets
 from ident.figures.subjects import Tracked
-from ident.figures.thin import Real, significant
+from ident.figures.theme import Look
+from ident.figures.thinning import Real, significant
 from ident.hybrid.tracked_run import Track
 from ident.matrix import Actuator
 from ident.words.number import trimmed

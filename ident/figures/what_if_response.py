@@ -7,8 +7,8 @@ from typing import Any
 import altair as alt
 
 from ident.figures.drawing import Drawing, Options
-from ident.figures.look import Look
 from ident.figures.render import Chart, Panel
+from ident.figures.theme import Look
 from ident.hybrid.what_if import HIGHEST, Response, WhatIf
 from ident.words.number import plain, trimmed
 

@@ -6,7 +6,7 @@ import textwrap
 from collections.abc import Iterable, Sequence
 
 from ident.comparison.compare import RunComparison
-from ident.figures.look import Look
+from ident.figures.theme import Look
 from ident.fit.result import FitResult
 from ident.matrix import Actuator
 from ident.run import USES, Run, Specimen
@@ -16,7 +16,7 @@ from ident.words.engineering import power_of, printed_unit, scaled_unit
 from ident.words.error import ErrorOf
 from ident.words.percent import percent as in_percent
 from ident.words.run_name import run_name
-from ident.words.uses import DATA
+from ident.words.titles import DATA
 
 _ACROSS = 105
 """[letters] Of a caption that a figure of the usual width has room for. Test: tests/browser/test_pages.py."""

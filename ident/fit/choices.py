@@ -7,8 +7,8 @@ from typing import Any, TypedDict, cast
 
 from ident.custom.definition import definition_of, preset_with
 from ident.errors import Unusable
-from ident.fit.extended import extended
-from ident.fit.given import Value, bounds_in_si, values_in_si, with_candidates
+from ident.fit.added_effects import with_added_effects
+from ident.fit.parameter_bounds import Value, bounds_in_si, values_in_si, with_candidates
 from ident.fit.settings import Settings
 from ident.preprocessing import off_steps
 from ident.words.nearest import did_you_mean
@@ -49,7 +49,7 @@ def settings_of(choices: Choices, usual: Settings | None = None, candidates: boo
         )
     chosen = {**vars(usual or Settings()), **given}
     custom = tuple(definition_of(one) for one in chosen["custom"])
-    named = extended(Settings(model=chosen["model"]), chosen["effects"], custom)
+    named = with_added_effects(Settings(model=chosen["model"]), chosen["effects"], custom)
     model = preset_with(named.model or Settings().model, named.effects, named.custom)
     if candidates:
         model = with_candidates(model, (*chosen["bounds"], *chosen["fixed"]), named.custom)

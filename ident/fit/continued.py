@@ -15,13 +15,13 @@ from numpy.typing import NDArray
 from ident.errors import Unusable
 from ident.fit import genetic
 from ident.fit.criteria import FIT_CRITERIA
-from ident.fit.ends import End, distinct
 from ident.fit.fitness import Fitness, Local
-from ident.fit.given import of_model
 from ident.fit.identification import CANDIDATES, Identification
 from ident.fit.levenberg_marquardt import STEPS
 from ident.fit.linear_fitness import LinearFitness
+from ident.fit.local_optima import LocalOptimum, distinct
 from ident.fit.multistart import Optimum
+from ident.fit.parameter_bounds import of_model
 from ident.fit.reduction import Basis, excited_band
 from ident.fit.result import FitResult
 from ident.fit.search import State
@@ -145,7 +145,7 @@ class ContinuedIdentification(Identification):
             tried += [self._tried(point) for point in (begun, *distinct(members, CANDIDATES))]
         best = min((one for one in tried if one.error <= tried[0].error), key=lambda one: (one.error, one.here.error))
         values = {name: float(value[0]) for name, value in objective.space.values(best.point[None]).items()}
-        ends = (End(best.here.error, values, best.point),)
+        ends = (LocalOptimum(best.here.error, values, best.point),)
         best.fitness.evaluations = objective.evaluations
         as_good = best.point[None] if len(begun) else np.empty((0, 0))
         return Optimum(best.fitness, best.point, best.here, as_good, ends, None, self._left_out)

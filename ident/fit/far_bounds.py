@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from ident.fit.criteria import FIT_CRITERIA
-from ident.fit.given import of_model
+from ident.fit.parameter_bounds import of_model
 from ident.fit.settings import Settings
 from ident.fit.space import search_space
 from ident.matrix import Matrix

@@ -18,12 +18,12 @@ from ident.errors import Unusable
 from ident.fit import genetic
 from ident.fit.bulk_modulus import with_bulk_modulus
 from ident.fit.criteria import FIT_CRITERIA
-from ident.fit.ends import distinct
 from ident.fit.fitness import Fitness
-from ident.fit.given import of_model, with_candidates
 from ident.fit.known_zeros import contradicted_zeros, with_known_zeros
 from ident.fit.linear_fitness import LinearFitness
+from ident.fit.local_optima import distinct
 from ident.fit.multistart import Optimum, multistart
+from ident.fit.parameter_bounds import of_model, with_candidates
 from ident.fit.reduction import Basis, excited_band
 from ident.fit.result import FitResult
 from ident.fit.search import Search, State, options_of

@@ -9,9 +9,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ident.fit.criteria import FIT_CRITERIA
-from ident.fit.ends import End, agreeing, at_bound, rivals, valley
 from ident.fit.fitness import Fitness, Local
 from ident.fit.levenberg_marquardt import STEPS
+from ident.fit.local_optima import LocalOptimum, agreeing, at_bound, competing_optima, equivalent_points
 from ident.fit.result import Starts
 from ident.fit.simulated_fitness import SimulatedFitness
 from ident.fit.space import Space
@@ -45,7 +45,7 @@ class Optimum:
     point: Array
     here: Local
     as_good: Array
-    ends: tuple[End, ...] = ()
+    ends: tuple[LocalOptimum, ...] = ()
     starts: Starts | None = None
     left_out: tuple[str, ...] = ()
     beyond: tuple[Beyond, ...] = ()
@@ -68,7 +68,7 @@ def multistart(
     """
     ends = sorted(_all_ends(searched, starts, further, report, count), key=_error)
     first, here = _end(objective, ends[0].point, report)
-    others = [_elsewhere(objective, end, report) for end in rivals(ends)[: _OF.competing]]
+    others = [_elsewhere(objective, end, report) for end in competing_optima(ends)[: _OF.competing]]
     least = min([first, *others], key=_error)
     if least is not first:
         others = [first, *(end for end in others if end is not least)]
@@ -81,19 +81,19 @@ def multistart(
     somewhere = [end for end in ends if np.isfinite(end.error)]
     values = {name: tuple(end.values[name] for end in somewhere) for name in objective.space.names}
     starts_of = Starts(len(ends), agreeing(ends, ends[0]), tuple(end.error for end in somewhere), values)
-    return Optimum(objective, point, here, np.array(valley(ends)), (first, *others), starts_of, left_out)
+    return Optimum(objective, point, here, np.array(equivalent_points(ends)), (first, *others), starts_of, left_out)
 
 
 def _all_ends(
     searched: Fitness, starts: Sequence[Array], further: Iterable[Array], report: Report, count: int
-) -> Iterator[End]:
+) -> Iterator[LocalOptimum]:
     """Where every start ends that is worth a try, or so many, where a count is asked for."""
     ends = [_end(searched, start, report, roughly=True)[0] for start in starts]
     yield from ends
     best = min(ends, key=_error)
     if not count and agreeing(ends, best) == len(ends) and not at_bound(best):
         return
-    later: list[End] = []
+    later: list[LocalOptimum] = []
     for start in further:
         later.append(_end(searched, start, report, roughly=True)[0])
         yield later[-1]
@@ -102,7 +102,7 @@ def _all_ends(
             return
 
 
-def _end(of: Fitness, start: Array, report: Report, roughly: bool = False) -> tuple[End, Local]:
+def _end(of: Fitness, start: Array, report: Report, roughly: bool = False) -> tuple[LocalOptimum, Local]:
     """Where the polish of a start ends, and the objective there."""
 
     def progress(count: int, error: float) -> None:
@@ -110,10 +110,10 @@ def _end(of: Fitness, start: Array, report: Report, roughly: bool = False) -> tu
 
     point, here = of.optimum(start, report=progress, roughly=roughly)
     values = {name: float(value[0]) for name, value in of.space.values(point[None]).items()}
-    return End(here.error, values, point), here
+    return LocalOptimum(here.error, values, point), here
 
 
-def _elsewhere(objective: Fitness, rival: End, report: Report) -> End:
+def _elsewhere(objective: Fitness, rival: LocalOptimum, report: Report) -> LocalOptimum:
     """Where a rival ends on every sample, with first states of its own."""
     fresh = objective.fresh(objective.runs)
     end, _ = _end(fresh, rival.point, report)
@@ -121,7 +121,7 @@ def _elsewhere(objective: Fitness, rival: End, report: Report) -> End:
     return end
 
 
-def _error(end: End) -> float:
+def _error(end: LocalOptimum) -> float:
     return end.error
 
 

@@ -19,7 +19,7 @@ from ident.fit.products import add_products, completed, removal, shares_of, with
 from ident.linear import LinearModel
 from ident.rounding import TINY
 from ident.run import Run
-from ident.simulation.between import at_nodes
+from ident.simulation.intersample_command import at_nodes
 from ident.simulation.recursion import Recursion, discretise, respond, responses
 
 Array = NDArray[np.float64]

@@ -27,7 +27,7 @@ from ident.noise.power_density import power_density
 from ident.parallel import each
 from ident.rounding import EPSILON, TINY
 from ident.run import Run
-from ident.simulation.between import at_nodes
+from ident.simulation.intersample_command import at_nodes
 from ident.simulation.jit import jit
 from ident.simulation.recursion import Recursion, discretise, responses
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field, replace
 from typing import Any
 
 from ident.errors import Unusable
-from ident.fit.sheet import SheetQuantity
+from ident.fit.sheet_quantity import SheetQuantity
 from ident.matrix import Actuator, Matrix, StepOutcome
 from ident.plain import UNWRITTEN, WHERE_KNOWN, Misfit, read, written
 from ident.presets.description import description
@@ -17,7 +17,7 @@ from ident.run import USES
 from ident.unstable import UNSTABLE
 from ident.words.engineering import quantity
 from ident.words.error import ErrorOf, first_line
-from ident.words.shown import Shown
+from ident.words.result_tables import TabularResult
 
 
 @dataclass(frozen=True)
@@ -168,7 +168,7 @@ class Starts:
 
 
 @dataclass(frozen=True)
-class FitResult(Shown):
+class FitResult(TabularResult):
     """A finished fit. Errors are eq. (17) averaged over the runs of a use, from the time domain; fractions, not %.
 
     `transducer_offset` has, by the channel, what its transducer reads above the model, where the runs say that its mean

@@ -12,8 +12,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ident.fit.criteria import FIT_CRITERIA
+from ident.fit.initial_state_estimation import InitialStateEstimation
 from ident.fit.normal_matrices import NormalMatrices
-from ident.fit.settling import Settling
 from ident.fit.simulated_runs import SimulatedRuns
 from ident.parallel import each
 from ident.run import Run
@@ -48,7 +48,7 @@ class _Model:
     point: Mapping[str, float]
     values: Mapping[str, Array]
     steps: int
-    settling: Settling = field(default_factory=Settling)
+    settling: InitialStateEstimation = field(default_factory=InitialStateEstimation)
     pending: tuple[Run, ...] = ()
 
     @classmethod

@@ -19,16 +19,16 @@ from ident.cached import cached_property
 from ident.chain.chain import Chain, integrates, linear_model
 from ident.chain.conditions import conditions
 from ident.effects.effect import Effect
-from ident.fit.anchoring import Anchoring
 from ident.fit.criteria import FIT_CRITERIA
 from ident.fit.first_guesses import first_position, in_order, order_stays, with_followers
+from ident.fit.initial_state_estimation import BestInitialState, InitialStateEstimation, better
 from ident.fit.modes import extreme, fastest, motion
+from ident.fit.multiple_shooting import ShootingWindows
 from ident.fit.normal_matrices import NormalMatrices, at_point, block_length, first_state, normal_matrices_of
 from ident.fit.products import add_block_products, add_products, completed
 from ident.fit.reduction import excited_band
 from ident.fit.reversals import Reversals
-from ident.fit.settling import Least, Settling, better
-from ident.fit.standing import Held, standing
+from ident.fit.steady_states import Held, steady_states
 from ident.matrix import Matrix
 from ident.parallel import LEAST_SHARED, cores, each
 from ident.presets import Preset
@@ -103,13 +103,13 @@ class SimulatedRuns:
         steps = int(self.steps(vector).max())
         moving = tuple(run for run in self.runs if run.begins == "moving")
         begun = [[self.start(run)] if run.id in self.starts else self._guesses(run, values) for run in moving]
-        ends: dict[str, list[Least]] = {run.id: [] for run in moving}
+        ends: dict[str, list[BestInitialState]] = {run.id: [] for run in moving}
         with np.errstate(over="ignore", invalid="ignore"):
             for starts in zip_longest(*begun):
                 here = [(run, start) for run, start in zip(moving, starts, strict=True) if start is not None]
                 self.starts |= {run.id: start for run, start in here}
                 for run, found in self.settled(vector, np.empty(0), steps, tuple(run for run, _ in here)).items():
-                    ends[run].append(Least(self.starts[run], found))
+                    ends[run].append(BestInitialState(self.starts[run], found))
         self.starts |= {run: better(led).start for run, led in ends.items()}
         return vector, steps
 
@@ -127,7 +127,7 @@ class SimulatedRuns:
         first states as they are, where these were simulated before.
         """
         found = {r.id: self._as_seen((r,), [at_point(r, known[r.id])])[0] for r in self.runs} if known else {}
-        settling, pending = Settling(), self.runs if runs is None else runs
+        settling, pending = InitialStateEstimation(), self.runs if runs is None else runs
         for number in range(1 if len(strides) else _OF.rounds):
             if number or known is None:
                 todo = list(self.together(len(strides) + 1 + len(self.chain.begun), steps, of=pending))
@@ -205,12 +205,12 @@ class SimulatedRuns:
         sums[:, -2, :] = sums[:, :, -2] = 0.0
         return sums * (_OF.bound * runs[0].length)
 
-    def anchoring(self, run: Run, count: int = 1) -> Anchoring:
+    def anchoring(self, run: Run, count: int = 1) -> ShootingWindows:
         """How the windows of a run begin, of its samples or of means of `count` of them."""
         if self.horizon is None:
-            return Anchoring(0)
+            return ShootingWindows(0)
         window = max(2, round(self.horizon * run.sample_rate))
-        return Anchoring(window // count, (self.memory or 0.0) * run.sample_rate / count)
+        return ShootingWindows(window // count, (self.memory or 0.0) * run.sample_rate / count)
 
     def outputs_of(self, simulation: Simulation) -> Iterator[tuple[Array, int, int]]:
         """The outputs of a simulation in blocks, as its windows show them: see :meth:`Simulation.outputs`."""
@@ -278,7 +278,7 @@ class SimulatedRuns:
 
     def _standing(self, runs: tuple[Run, ...], values: Mapping[str, Array], held: Sequence[Held] = ()) -> Array:
         """The states in which runs of one kind stand, (runs, v, n): at what is `held`, or as they do at first."""
-        found = standing(self.preset, runs, values, held or [(run.command[0], run.measured[0]) for run in runs])
+        found = steady_states(self.preset, runs, values, held or [(run.command[0], run.measured[0]) for run in runs])
         for i, run in enumerate(runs):
             for state, value in self._recorded(run).items():
                 found[i, :, state] = value
@@ -376,7 +376,7 @@ class SimulatedRuns:
                 found[i] = max(float(np.abs(rows).max()) for rows, _, _ in simulation.outputs())
         return np.where(np.isfinite(found), found, 0.0)
 
-    def goes_on(self, run: Run, settling: Settling, found: NormalMatrices) -> bool:
+    def goes_on(self, run: Run, settling: InitialStateEstimation, found: NormalMatrices) -> bool:
         """Whether a run goes on to better first states, which it then begins in."""
         if not len(self._free(run)):
             return False

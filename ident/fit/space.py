@@ -14,10 +14,10 @@ from ident.effects.needs import shows_oil
 from ident.equations.equation import Equation
 from ident.errors import Unusable
 from ident.fit.criteria import FIT_CRITERIA
-from ident.fit.given import of_model
+from ident.fit.parameter_bounds import of_model
+from ident.fit.run_sizes import measured_by
+from ident.fit.run_sizes import run_sizes as sizes_of
 from ident.fit.settings import Settings
-from ident.fit.typical import measured_by
-from ident.fit.typical import typical as sizes_of
 from ident.matrix import Matrix
 from ident.presets import Preset
 from ident.presets.convention import Convention, of_runs

@@ -15,10 +15,11 @@ from ident.checks.missing_input import missing_inputs
 from ident.checks.unit_factor import unit_causes
 from ident.fit.contradicted import contradicting
 from ident.fit.criteria import FIT_CRITERIA
-from ident.fit.ends import parted
 from ident.fit.far_bounds import far_bounds
 from ident.fit.fitness import Fitness
 from ident.fit.information import aic
+from ident.fit.local_optima import disagreements
+from ident.fit.low_frequency_delay import slow_lag
 from ident.fit.multistart import Optimum
 from ident.fit.normal_matrices import NormalMatrices
 from ident.fit.reduction import excited_band
@@ -27,7 +28,6 @@ from ident.fit.run_errors import fit_percent, rmse_of, run_error
 from ident.fit.search import evolution
 from ident.fit.settings import Settings
 from ident.fit.simulated_fitness import SimulatedFitness
-from ident.fit.slow_answer import slow_lag
 from ident.fit.space import Space
 from ident.fit.transducer import Offset, offset_at, offsets_that_count, rest_of
 from ident.fit.uncertainty import Covariance, covariance
@@ -35,7 +35,7 @@ from ident.matrix import Matrix
 from ident.noise.floor import Floors
 from ident.presets.preset import Combined
 from ident.presets.record_units import SAMPLE
-from ident.presets.suited import is_assumed_loop
+from ident.presets.suitable_models import is_assumed_loop
 from ident.run import Run, over_runs
 from ident.simulation.steps import FASTEST, MOST
 from ident.unstable import UNSTABLE
@@ -109,7 +109,7 @@ def summarise(
     label = _labels(objective)
     known = {name: error for name, error in deviation.items() if name not in weak}
     against = () if window else tuple(contradicting(verify_runs, verify_errors))
-    told = parted(optimum.ends, known, {name: label[name][0] for name in known})
+    told = disagreements(optimum.ends, known, {name: label[name][0] for name in known})
     return FitResult(
         model=preset.name,
         effects=settings.effects,

@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 
 from ident.fit.result import Estimate, FitResult
-from ident.preprocessing.told import told
+from ident.preprocessing.pipeline import outcome_sentences
 from ident.words.error import error_said
 from ident.words.percent import percent
 from ident.words.plus_minus import in_cells, plus_minus
-from ident.words.shown import Listing, listings
-from ident.words.uses import DATA
+from ident.words.result_tables import Listing, listings
+from ident.words.titles import DATA
 
 USES = tuple(DATA.values())
 
@@ -37,7 +37,7 @@ def remarks(result: FitResult) -> Iterator[str]:
         yield f"not identifiable: {entry.name}: {entry.reason}"
     for note in result.notes:
         yield f"note: {note}"
-    for said in told(result.preprocessing, result.notes):
+    for said in outcome_sentences(result.preprocessing, result.notes):
         yield f"preprocessing: {said}"
 
 

@@ -4,7 +4,7 @@ An integrator sums up every disturbance: after minutes the record is where the d
 judged by them. Over a window of h only those count that came since its beginning (multiple shooting; Bock 1983). The
 position at the beginning is the measured one; the other states, which do not hang on it, are those of the free run. Of
 a machine that integrates twice, or whose speed lasts longer than any window, the speed at the beginning is begun anew,
-too, as it was found before: see :mod:`ident.fit.anchoring`.
+too, as it was found before: see :mod:`ident.fit.multiple_shooting`.
 """
 
 from __future__ import annotations
@@ -18,10 +18,10 @@ from numpy.typing import NDArray
 from ident.chain.chain import linear_model
 from ident.chain.conditions import zeros
 from ident.effects.effect import off_values
-from ident.fit.anchoring import innovations
 from ident.fit.criteria import FIT_CRITERIA
-from ident.fit.ends import End
 from ident.fit.levenberg_marquardt import STEPS
+from ident.fit.local_optima import LocalOptimum
+from ident.fit.multiple_shooting import innovations
 from ident.fit.multistart import Optimum
 from ident.fit.simulated_fitness import SimulatedFitness
 from ident.linear_filter import linear_filter
@@ -84,7 +84,7 @@ def _best(
         left = _left(trial, point, memory)
         if left < least:
             values = {name: float(value[0]) for name, value in trial.space.values(point[None]).items()}
-            ends = (End(here.error, values, point),)
+            ends = (LocalOptimum(here.error, values, point),)
             best, least = replace(optimum, fitness=trial, point=point, here=here, as_good=point[None], ends=ends), left
     return best
 

@@ -28,11 +28,11 @@ import scipy.linalg
 from numpy.typing import NDArray
 
 from ident.errors import Unusable
-from ident.hybrid.ground import Ground, ground_of
-from ident.readers.fields import Fields
+from ident.hybrid.ground_motion import GroundMotion, ground_of
 from ident.readers.loop_settings import loop_gain, sample_rate
 from ident.readers.rig import rig_of
 from ident.readers.strict_yaml import read_yaml
+from ident.readers.typed_fields import Fields
 from ident.rig.limits import RigLimits
 from ident.run import Specimen
 from ident.units.quantity import quantity, shown, split
@@ -87,7 +87,7 @@ class Case:
     gain: float = 1.0
     piston_area: float | None = None
     supply_pressure: float | None = None
-    ground: Ground = field(default_factory=Ground)
+    ground: GroundMotion = field(default_factory=GroundMotion)
     sample_rate: float = 4096.0
     delay: int = 1
     noise: Noise = field(default_factory=Noise)
@@ -246,7 +246,7 @@ def benchmark2020(number: int = 1) -> Case:
         stiffness=stiffness,
         damping=modal_damping(mass, stiffness, ratio),
         physical=Specimen(frame, spring, 2 * 0.0097 * float(np.sqrt(spring * frame))),
-        ground=Ground(scale=0.4),
+        ground=GroundMotion(scale=0.4),
         noise=Noise(displacement=1e-6),
     )
 
@@ -338,11 +338,11 @@ def _case_of(data: Any, base: Path | None, name: str) -> Case:
         physical=physical,
         place=place,
         direction=_direction(structure, len(mass)),
-        **_loop(top, base, name, Ground()),
+        **_loop(top, base, name, GroundMotion()),
     )
 
 
-def _loop(top: Fields, base: Path | None, name: str, motion: Ground) -> dict[str, Any]:
+def _loop(top: Fields, base: Path | None, name: str, motion: GroundMotion) -> dict[str, Any]:
     """What a case states of its loop, whatever is moved."""
     rate, gain = sample_rate(top), loop_gain(top)
     return {
@@ -367,7 +367,7 @@ def _table_of(top: Fields, base: Path | None, name: str) -> Case:
     ends = top.pair("band") or ("0.25 Hz", "30 Hz")
     both = Fields({"from": ends[0], "to": ends[1]}, "band", ("from", "to"))
     lowest, highest = both.positive("from", "frequency") or 0.0, both.positive("to", "frequency") or 0.0
-    found = _loop(top, base, name, Ground(rest=_RESTS / lowest))
+    found = _loop(top, base, name, GroundMotion(rest=_RESTS / lowest))
     if not 4 * lowest <= highest <= found["sample_rate"] / 5:
         raise Unusable(
             "bad-case",

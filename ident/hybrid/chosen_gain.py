@@ -13,9 +13,9 @@ from ident.errors import Unusable
 from ident.fit.result import FitResult
 from ident.hybrid.changed_machine import ChangedMachine
 from ident.hybrid.drawn_loops import drawn_loops
-from ident.hybrid.draws import Spread
 from ident.hybrid.interval import Interval
 from ident.hybrid.loop_figures import QUANTITIES, loop_figure
+from ident.hybrid.parameter_samples import Spread
 from ident.words.nearest import did_you_mean
 from ident.words.number import plain, trimmed
 

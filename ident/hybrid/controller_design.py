@@ -12,13 +12,13 @@ import numpy as np
 from ident.errors import Unusable
 from ident.fit.result import FitResult
 from ident.hybrid.case import Case
-from ident.hybrid.draws import DRAWS, Covariance, Spread, drawn_parameters
 from ident.hybrid.hybrid_loop import EarlierCase, judge_hybrid
+from ident.hybrid.hybrid_simulation import simulate_hybrid
 from ident.hybrid.linear_plant import LinearPlant, linear_plant
 from ident.hybrid.loop_shaping import Design, design
 from ident.hybrid.machine import machine
 from ident.hybrid.margins import Margins, margins
-from ident.hybrid.rig import simulate_hybrid
+from ident.hybrid.parameter_samples import DRAWS, Covariance, Spread, drawn_parameters
 from ident.hybrid.rig_limits import limits_of
 from ident.hybrid.robustness import (
     Robustness,
@@ -27,13 +27,13 @@ from ident.hybrid.robustness import (
     robustness,
 )
 from ident.hybrid.servo_loop import plant_loop, values_before
-from ident.hybrid.target import QIAN2014_TARGET, Target
+from ident.hybrid.target_loop import QIAN2014_TARGET, Target
 from ident.plain import written
 from ident.run import Specimen
 from ident.stability.judgement import Judgement, judge
 from ident.words.message import message
 from ident.words.number import trimmed
-from ident.words.shown import Listing, Shown
+from ident.words.result_tables import Listing, TabularResult
 
 _TITLES = {"gain": "gain margin", "phase": "phase margin", "sensitivity_peak": "sensitivity peak"}
 LITTLE_MARGIN = 2.5
@@ -41,7 +41,7 @@ LITTLE_MARGIN = 2.5
 
 
 @dataclass(frozen=True)
-class ControllerDesign(Shown):
+class ControllerDesign(TabularResult):
     """A design, its margins, its robustness over the fitted covariance (None where that is unknown), and notes.
 
     `beyond` says what leaves the limits of the rig where the controller runs its case, `stability` whether that loop is
@@ -184,7 +184,7 @@ def on_case(made: ControllerDesign, fit: FitResult, case: Case, before: EarlierC
     """The design with whether its case is stable under it, and what leaves the limits of the rig.
 
     The cause of an unstable case is named where the case is known as it was `before`. The case is simulated where
-    limits are stated. Raises Unusable as :func:`ident.hybrid.rig.simulate_hybrid`.
+    limits are stated. Raises Unusable as :func:`ident.hybrid.hybrid_simulation.simulate_hybrid`.
     """
     of = machine(fit, case)
     if not of.nonlinear:

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from ident.errors import Unusable
 from ident.hybrid.case import Case
-from ident.hybrid.ground import Ground
+from ident.hybrid.ground_motion import GroundMotion
 from ident.run import Specimen
 from ident.words.nearest import did_you_mean
 
@@ -100,7 +100,7 @@ class CoupledCase:
         return self.parts[0].case.sample_rate
 
     @property
-    def ground(self) -> Ground:
+    def ground(self) -> GroundMotion:
         """The motion of the ground."""
         return self.parts[0].case.ground
 

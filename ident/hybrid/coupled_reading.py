@@ -24,7 +24,7 @@ from numpy.typing import NDArray
 from ident.errors import Unusable
 from ident.hybrid.case import Case, called_or_read, case_of, matrix
 from ident.hybrid.coupled_case import QUANTITIES, CoupledCase, Part, System, in_coordinates_of, transformed
-from ident.readers.fields import Fields
+from ident.readers.typed_fields import Fields
 from ident.run import Specimen
 
 Array = NDArray[np.float64]

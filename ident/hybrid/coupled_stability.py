@@ -19,7 +19,7 @@ from ident.hybrid.stability import coupled_loop
 from ident.parallel import each, one_thread
 from ident.progress import Progress, Report, silent
 from ident.words.number import count
-from ident.words.shown import Listing, Shown
+from ident.words.result_tables import Listing, TabularResult
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
@@ -94,7 +94,7 @@ def _frequencies(of: CoupledCase) -> Array:
 
 
 @dataclass(frozen=True, eq=False)
-class DelayMap(Shown):
+class DelayMap(TabularResult):
     """Whether the loop is stable over the delays of two parts, in samples, the others as the case has them.
 
     `names` are the parts, `first` (m,) and `second` (n,) their delays, `stable` and `radius` (m, n) of each pair, the

@@ -10,9 +10,9 @@ from numpy.typing import NDArray
 
 from ident.fit.result import FitResult
 from ident.hybrid.changed_machine import ChangedMachine
-from ident.hybrid.draws import DRAWS, Covariance, Spread, drawn_parameters
 from ident.hybrid.interval import Interval
 from ident.hybrid.loop_figures import QUANTITIES, loop_figure
+from ident.hybrid.parameter_samples import DRAWS, Covariance, Spread, drawn_parameters
 from ident.words.number import trimmed
 from ident.words.percent import percent
 

@@ -16,13 +16,13 @@ from ident.hybrid.case import Case
 from ident.hybrid.controller import SampledController, no_controller
 from ident.hybrid.coupled_case import CoupledCase, System
 from ident.hybrid.coupled_loop import CoupledLoop
-from ident.hybrid.coupled_rig import machines_of
-from ident.hybrid.draws import DRAWS, Covariance, Spread, drawn_parameters
+from ident.hybrid.coupled_simulation import machines_of
 from ident.hybrid.hybrid_loop import HybridLoop
+from ident.hybrid.hybrid_simulation import RUNAWAY
 from ident.hybrid.interval import Interval
 from ident.hybrid.loop import LANES
 from ident.hybrid.machine import Machine, machine
-from ident.hybrid.rig import RUNAWAY
+from ident.hybrid.parameter_samples import DRAWS, Covariance, Spread, drawn_parameters
 from ident.hybrid.rig_assembly import rig_of, run
 from ident.hybrid.scores import rms
 from ident.hybrid.specimen_effects import of_specimen, reference_of
@@ -104,7 +104,8 @@ def drawn_simulations(
 ) -> DrawnSimulations:
     """A case on machines drawn from a `spread` of a fit, without one from its covariance; sixteen side by side.
 
-    The controller is the same for all of them. Raises Unusable as :func:`ident.hybrid.rig.simulate_hybrid`.
+    The controller is the same for all of them. Raises Unusable as
+    :func:`ident.hybrid.hybrid_simulation.simulate_hybrid`.
     """
     machines = [(machine(one, case, effects),) for one in _drawn(fit, draws, seed, spread)]
     ground = case.ground.samples(case.sample_rate)

@@ -29,7 +29,7 @@ from ident.hybrid.rational import Rational
 from ident.hybrid.reduction import reduced
 from ident.hybrid.sampled_loop import SampledLoop
 from ident.hybrid.state_space import StateSpace, sampled_plant
-from ident.hybrid.target import QIAN2014_TARGET, Target
+from ident.hybrid.target_loop import QIAN2014_TARGET, Target
 from ident.linear import LinearModel
 from ident.words.nearest import did_you_mean
 

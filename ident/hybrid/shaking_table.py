@@ -22,7 +22,7 @@ from ident.fit.result import FitResult
 from ident.hybrid.case import Case, Noise
 from ident.hybrid.controller import AheadController, no_controller
 from ident.hybrid.feedforward import command
-from ident.hybrid.followed import plant_in
+from ident.hybrid.feedforward_tracking import plant_in
 from ident.hybrid.linear_plant import linear_plant
 from ident.hybrid.machine import Machine, machine
 from ident.hybrid.rig_assembly import rig_of, run

@@ -14,9 +14,9 @@ from ident.errors import Unusable
 from ident.fit.result import FitResult
 from ident.hybrid.case import Case
 from ident.hybrid.controller import SampledController, no_controller
+from ident.hybrid.hybrid_simulation import RUNAWAY
 from ident.hybrid.loop import LANES
 from ident.hybrid.machine import Machine, machine
-from ident.hybrid.rig import RUNAWAY
 from ident.hybrid.rig_assembly import rig_of, run
 from ident.hybrid.scores import rms
 from ident.hybrid.specimen_effects import references
@@ -25,7 +25,7 @@ from ident.parallel import each
 from ident.progress import Progress, Report, silent
 from ident.words.engineering import quantity
 from ident.words.percent import percent
-from ident.words.shown import Listing, Shown
+from ident.words.result_tables import Listing, TabularResult
 
 Array = NDArray[np.float64]
 SHARES = 20
@@ -35,7 +35,7 @@ LARGEST = 0.95
 
 
 @dataclass(frozen=True, eq=False)
-class ShareMap(Shown):
+class ShareMap(TabularResult):
     """Of each pair of shares (0 to 1) of mass and stiffness, (masses, stiffnesses).
 
     `stable`; `reference_rms` and `tracking_rms` as in :class:`ident.hybrid.scores.Scores`, NaN where it ran away;

@@ -10,16 +10,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ident.errors import Unusable
+from ident.hybrid.innovation_test import InnovationTest
 from ident.hybrid.tracking import GAIN, TAU, Noise, Tracker
-from ident.hybrid.verdict import Verdict
 from ident.matrix import Matrix
 from ident.run import Run
 from ident.words.engineering import quantity
 from ident.words.message import message
 from ident.words.nearest import did_you_mean
 from ident.words.number import plain, trimmed
+from ident.words.result_tables import Listing, TabularResult
 from ident.words.run_name import run_name
-from ident.words.shown import Listing, Shown
 
 Array = NDArray[np.float64]
 ROWS = 4096
@@ -31,7 +31,7 @@ _GAIN_OF_DIFFERENCES = np.sqrt(70.0)  # of the fourth difference on white noise
 
 
 @dataclass(frozen=True, eq=False)
-class Track(Shown):
+class Track(TabularResult):
     """One run: times t (s, or samples), τ, k and their standard deviations, all (n,); noise assumed, and verdict."""
 
     run: Run
@@ -41,7 +41,7 @@ class Track(Shown):
     gain: Array
     std_tau: Array
     std_gain: Array
-    verdict: Verdict
+    verdict: InnovationTest
 
     def listings(self) -> Iterator[Listing | str]:
         """The last estimates, the noise, and the verdict."""

@@ -15,7 +15,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ident.errors import Unusable
 from ident.hybrid import kalman
-from ident.hybrid.verdict import Verdict, verdict
+from ident.hybrid.innovation_test import InnovationTest, innovation_test
 from ident.run import HOLDS
 
 Array = NDArray[np.float64]
@@ -155,9 +155,9 @@ class Tracker:
         return found
 
     @property
-    def verdict(self) -> Verdict:
+    def verdict(self) -> InnovationTest:
         """Whether the first-order loop holds for what was seen until now, and why."""
-        return verdict(self.state)
+        return innovation_test(self.state)
 
 
 def _check(sample_rate: float, hold: str, tau0: float, gain0: float) -> None:

@@ -1,7 +1,7 @@
 """Alarms of a loop that is tracked while a test runs: it is of first order no longer, or it leaves a limit of the rig.
 
-Innovations are judged in the filter's windows of 512 samples (:mod:`ident.hybrid.verdict`). Two in a row that fail, or
-outliers in a quarter of 1024 samples, are an alarm; a single one may be a parameter that has just changed.
+Innovations are judged in the filter's windows of 512 samples (:mod:`ident.hybrid.innovation_test`). Two in a row that
+fail, or outliers in a quarter of 1024 samples, are an alarm; a single one may be a parameter that has just changed.
 """
 
 from __future__ import annotations

@@ -16,11 +16,11 @@ from ident.fit.result import Estimate, FitResult
 from ident.hybrid.changed_machine import Carried, Change, ChangedMachine, changed_machine
 from ident.hybrid.chosen_gain import ChosenGain, GainTarget, choose_gain
 from ident.hybrid.drawn_loops import DrawnLoops, drawn_loops
-from ident.hybrid.draws import Spread
-from ident.hybrid.fig_19 import said_of_fig_19
 from ident.hybrid.oil_column import PeakSearch, find_peak
+from ident.hybrid.parameter_samples import Spread
 from ident.hybrid.peak_problem import PeakTarget
 from ident.hybrid.peaks import Peak, peaks
+from ident.hybrid.qian_figure_19 import note_on_figure_19
 from ident.hybrid.reached_limits import reached
 from ident.hybrid.root_locus import Pole, RootLocus, poles, root_locus
 from ident.hybrid.servo_loop import servo_loop, values_before
@@ -33,7 +33,7 @@ from ident.stability.gain_margin import WANTED
 from ident.stability.judgement import STABLE, UNSTABLE, Judgement, judge
 from ident.words.engineering import multiple
 from ident.words.number import plain, trimmed
-from ident.words.shown import Listing, Shown
+from ident.words.result_tables import Listing, TabularResult
 
 Array = NDArray[np.float64]
 USUAL_GAINS = (1.0, 10.0)
@@ -73,7 +73,7 @@ class Before:
 
 
 @dataclass(frozen=True)
-class WhatIf(Shown):
+class WhatIf(TabularResult):
     """An identified machine after a change. `critical_gain` is the smallest Kp above which it is no longer stable.
 
     It is None where the machine is stable, or unstable, at all gains that were looked at. `peak` is what was found for
@@ -326,7 +326,7 @@ def _notes(machine: ChangedMachine, responses: tuple[Response, ...], oil: BulkMo
     flat = [each.gain for each in responses if not any(peak.frequency < HIGHEST for peak in each.peaks)]
     if flat:
         yield f"No peak below {trimmed(HIGHEST)} Hz{_at_gains(flat)}."
-    told = said_of_fig_19(machine, tuple(peak for each in responses for peak in each.peaks))
+    told = note_on_figure_19(machine, tuple(peak for each in responses for peak in each.peaks))
     if told:
         yield told
     if oil:

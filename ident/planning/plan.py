@@ -29,11 +29,11 @@ from ident.planning.signal import AskedRun, Program
 from ident.progress import Progress, Report, silent
 from ident.rig.limits import RigLimits, Utilisation
 from ident.run import Run
-from ident.words.listed import first_of
 from ident.words.number import count, plain
 from ident.words.percent import percent
+from ident.words.result_tables import Listing, TabularResult
 from ident.words.run_name import run_name
-from ident.words.shown import Listing, Shown
+from ident.words.sentence import first_of
 
 AIM = 0.98
 """Share of the tightest limit that a run takes at the worst corner: the rest is for what lies between the points."""
@@ -44,7 +44,7 @@ _STAGE = "plan"
 
 
 @dataclass(frozen=True)
-class Plan(Shown):
+class Plan(TabularResult):
     """The runs of a program on a rig. `model` is that of the fit, "" where the commands alone were judged.
 
     `unjudged` are limits that are stated and that nothing predicts.

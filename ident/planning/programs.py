@@ -11,9 +11,9 @@ from typing import Any
 from ident.design.excitation import KINDS, RAMP
 from ident.errors import Unusable
 from ident.planning.signal import AskedRun, Program, Signal
-from ident.readers.fields import Fields
 from ident.readers.loop_settings import loop_gain, sample_rate
 from ident.readers.strict_yaml import read_yaml
+from ident.readers.typed_fields import Fields
 from ident.run import USES, Specimen
 from ident.synthesis.matrix import BAND, SAMPLE_RATE, plans
 from ident.units.quantity import quantity, shown, si_scale, split

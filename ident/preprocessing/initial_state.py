@@ -7,8 +7,8 @@ from dataclasses import replace
 from ident import beginning
 from ident.preprocessing.step import Prepared, Step, Threshold
 from ident.run import USES, Run
-from ident.words.listed import first_of
 from ident.words.run_name import run_name
+from ident.words.sentence import first_of
 
 THRESHOLDS = (
     Threshold(

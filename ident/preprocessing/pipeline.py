@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 
 from ident.errors import Unusable
@@ -89,3 +89,11 @@ def _done(matrix: Matrix) -> set[str]:
 def off_said(step: Step) -> str:
     """What is said of a step that is switched off."""
     return f"The step {step.name} of preprocessing is switched off: {step.without}."
+
+
+def outcome_sentences(outcomes: Sequence[StepOutcome], notes: Sequence[str] = ()) -> Iterator[str]:
+    """A sentence or more for each step that changed something or is switched off, where the notes do not have it."""
+    noted = " ".join(notes)
+    for outcome in outcomes:
+        if outcome.told and outcome.told not in noted:
+            yield outcome.told

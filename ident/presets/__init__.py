@@ -1,7 +1,7 @@
 """A name in, a model out: each a paper's choice of stages, with its citation."""
 
 from collections.abc import Sequence
-from functools import lru_cache
+from functools import cache, lru_cache
 from importlib import import_module
 
 from ident.effects import CATALOGUE, effect
@@ -55,4 +55,11 @@ def _with_effects(name: str, effects: frozenset[str], custom: tuple[Effect, ...]
     return bare.with_effects(tuple(known for known in (*CATALOGUE, *custom) if known.name in effects))
 
 
-__all__ = ["PRESETS", "Preset", "preset"]
+@cache
+def parameter_names() -> tuple[str, ...]:
+    """The names of every parameter of a preset and of an effect of the catalogue, each once."""
+    of_models = (parameter.name for model in PRESETS.values() for parameter in model.parameters)
+    return tuple(dict.fromkeys((*of_models, *(parameter.name for known in CATALOGUE for parameter in known.added))))
+
+
+__all__ = ["PRESETS", "Preset", "parameter_names", "preset"]

@@ -10,13 +10,13 @@ from ident.cached import cached_property
 from ident.chain.chain import Chain
 from ident.chain.channels import READABLE
 from ident.chain.conditions import CONDITIONS
-from ident.chain.refusals import unfit
+from ident.chain.refused_effects import unfit
 from ident.effects.effect import Effect
 from ident.equations.equation import Equation
 from ident.errors import Unusable
 from ident.matrix import Matrix
 from ident.parameter import Parameter
-from ident.presets.middle import about
+from ident.presets.stroke_centre import about_stroke_centre
 from ident.stages import MASS_SPRING_DAMPER, MEASURED_LOAD
 from ident.words.nearest import did_you_mean
 from ident.words.run_name import run_name
@@ -178,7 +178,7 @@ class Model:
         if not effects:
             return self
         known = self.known | {parameter.in_equations for effect in effects for parameter in effect.added}
-        chain = self.chain.with_effects(tuple(about(effect, self.middle) for effect in effects))
+        chain = self.chain.with_effects(tuple(about_stroke_centre(effect, self.middle) for effect in effects))
         if set(chain.symbols) - known:
             raise unfit(next(e for e in effects if set(self.chain.with_effects((e,)).symbols) - known))
         return replace(self, chain=chain)

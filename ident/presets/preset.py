@@ -8,16 +8,15 @@ from dataclasses import dataclass, field, replace
 from ident.cached import cached_property
 from ident.chain.channels import refuse_unmeasured
 from ident.chain.disturbance import disturbed
-from ident.chain.varying import varying
+from ident.chain.measured_conditions import with_measured_conditions
 from ident.errors import Unusable
 from ident.matrix import Matrix
 from ident.parameter import Parameter
 from ident.presets.display import Display
 from ident.presets.model import Combined, Model
 from ident.presets.record_units import RecordUnits
-from ident.presets.required_data import RequiredData
+from ident.presets.required_data import RequiredData, refuse_unstated
 from ident.presets.search_plan import SearchPlan
-from ident.presets.stated import refuse_unstated
 from ident.run import DISTURBANCES, KINEMATIC, MOTIONS
 from ident.stages import OPENED_BY_COMMAND, Scale
 from ident.stages.scale import OF_THE_RUNS
@@ -117,7 +116,7 @@ class Preset(Model):
             preset = replace(preset, data=replace(preset.data, share_force=()))
         preset = preset.disturbed_as(matrix, load)
         if preset.kind == "chain":
-            preset = replace(preset, chain=varying(preset.chain, matrix.runs))
+            preset = replace(preset, chain=with_measured_conditions(preset.chain, matrix.runs))
         return preset, matrix
 
     def _driven_as(self, matrix: Matrix) -> Preset:

@@ -2,10 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 
+from ident.errors import Unusable
+from ident.matrix import Matrix
 from ident.presets.convention import Convention
+
+_STATED = {"piston_area": "missing-area", "supply_pressure": "missing-supply"}
+"""What a model may need of the actuator, and the code of its refusal."""
 
 
 @dataclass(frozen=True)
@@ -37,3 +42,12 @@ class RequiredData:
     """What runs may leave open, and the values that are then held."""
     share_force: tuple[str, ...] = ()
     """Parameters that one factor for all leaves without a trace while no force is known: the first is then held."""
+
+
+def refuse_unstated(needs: Iterable[str], matrix: Matrix) -> None:
+    """Raise Unusable for what a model needs of the actuator that is neither stated nor measured in every run."""
+    for what in needs:
+        measured = all(what in run.channels for run in matrix.runs)
+        if getattr(matrix.actuator, what) is None and not measured:
+            said = what.replace("_", " ")
+            raise Unusable(_STATED[what], f"the {said} is not known", f"actuator.{what}", "state it, with its unit")

@@ -11,7 +11,6 @@ from typing import Unpack
 
 from ident.errors import Unusable
 from ident.matrix import Matrix
-from ident.readers.apart import read_apart
 from ident.readers.archive import Archive
 from ident.readers.controldesk import read_controldesk
 from ident.readers.dat import read_dat
@@ -20,18 +19,19 @@ from ident.readers.dialect import FOUND, Dialect
 from ident.readers.gzipped import unpacked
 from ident.readers.hold import with_hold
 from ident.readers.limits import LIMITS, Limits, check_size
+from ident.readers.record_without_description import from_arrays, from_table, of_file
 from ident.readers.rig import rig_in
 from ident.readers.run import read_run
 from ident.readers.run_description import RunDescription
+from ident.readers.sandboxed_parser import read_sandboxed
 from ident.readers.source import DESCRIPTION, Beside, Folder, Source, alone, beside
-from ident.readers.stated import from_arrays, from_table, of_file
 from ident.readers.table import Table
 from ident.readers.text import read_text
 from ident.run import Run
 from ident.words.arguments import of_kind
 from ident.words.number import count
+from ident.words.record_description import Stated
 from ident.words.run_name import run_name
-from ident.words.stated import Stated
 
 __all__ = ["Limits", "from_arrays", "from_table", "read_matrix", "read_source"]
 
@@ -61,7 +61,7 @@ def read_matrix(path: Path | str, limits: Limits = LIMITS, **stated: Unpack[Stat
     """The matrix in a folder, beside its matrix.yaml, or in a .zip, nothing being unpacked to disk.
 
     Of a bare record, as run.csv, the caller states what matrix.yaml would: the unit of each channel, the clock, and
-    what else is known, see :class:`ident.words.stated.Stated`.
+    what else is known, see :class:`ident.words.record_description.Stated`.
 
     Raises Unusable for everything that is wrong with it; docs/matrix-format.md lists the codes.
     """
@@ -206,7 +206,7 @@ def read_table(data: bytes, name: str, stated: Dialect, limits: Limits, where: s
     if stated != FOUND:
         raise Unusable("bad-dialect", "a dialect is for text files", f"{where} dialect".strip(), "leave it out")
     if ending in FOREIGN:
-        return read_apart(FOREIGN[ending], data, name, limits)
+        return read_sandboxed(FOREIGN[ending], data, name, limits)
     kind = BINARY[ending]
     if kind == "dat":
         return read_dat(data, name, limits, near)

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from ident.errors import Unusable
-from ident.readers.fields import Fields
+from ident.readers.typed_fields import Fields
 from ident.run import CHANNELS, DISTURBANCES
 from ident.units.quantity import DIMENSIONS, Scale, parameter_value, shown, split, unit_scale
 

@@ -6,11 +6,11 @@ Those of MTS's station manager (793) are some lines about the test, names, units
 from __future__ import annotations
 
 from ident.errors import Unusable
-from ident.readers.apart import read_apart
 from ident.readers.diadem import HEADS, read_diadem
 from ident.readers.dialect import Dialect
 from ident.readers.layout import line_start
 from ident.readers.limits import Limits
+from ident.readers.sandboxed_parser import read_sandboxed
 from ident.readers.source import Beside
 from ident.readers.table import Table
 from ident.readers.text import as_utf8, is_number, read_text
@@ -26,7 +26,7 @@ def read_dat(data: bytes, where: str, limits: Limits, beside: Beside) -> Table:
     Raises Unusable: what the readers of these raise.
     """
     if data.startswith(MDF):
-        return read_apart("mdf", data, where, limits)
+        return read_sandboxed("mdf", data, where, limits)
     if data.startswith(MTS):
         return read_mts(data, where, limits)
     if data.startswith(HEADS):

@@ -10,7 +10,6 @@ from ident.errors import Unusable
 from ident.matrix import Actuator, Controller
 from ident.presets import preset
 from ident.presets.description import described
-from ident.readers.fields import Fields
 from ident.readers.limits import Limits
 from ident.readers.provenance_description import describe_test
 from ident.readers.regulator_description import describe_regulator
@@ -19,6 +18,7 @@ from ident.readers.run_description import RunDescription, describe_run
 from ident.readers.source import DESCRIPTION, inside
 from ident.readers.split import validation_id
 from ident.readers.strict_yaml import read_yaml
+from ident.readers.typed_fields import Fields
 from ident.rig.provenance import UNSTATED, Provenance
 from ident.rig.regulator import PositionControl
 from ident.run import Run

@@ -10,7 +10,7 @@ from dataclasses import dataclass, fields, replace
 from typing import Any
 
 from ident.errors import Unusable
-from ident.readers.fields import Fields
+from ident.readers.typed_fields import Fields
 
 DELIMITERS: Mapping[str, str | None] = {"tab": "\t", "semicolon": ";", "comma": ",", "pipe": "|", "space": None}
 """What may separate columns, by its name, the first of equals; a space stands for any number of blanks."""

@@ -14,7 +14,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ident.run import BENCH, Run, Samples
-from ident.words.listed import first_of
+from ident.words.sentence import first_of
 
 LOST = 0.005
 """Of the command, RMS: lines that lose less, at every run, stay. Why: a good transducer has noise of 0.003, and what

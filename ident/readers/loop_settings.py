@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from ident.errors import Unusable
-from ident.readers.fields import Fields
+from ident.readers.typed_fields import Fields
 from ident.units.quantity import known_powers, parameter_value, quantity, shape, shown, split
 
 GAIN_UNIT = "V/m"

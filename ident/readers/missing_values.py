@@ -16,8 +16,8 @@ from numpy.typing import NDArray
 from ident.errors import Unusable
 from ident.readers.clock import STEP_OF_A_LATE_SAMPLE, Clock, evened, read_clock
 from ident.run import Samples
-from ident.words.listed import all_of
 from ident.words.number import count
+from ident.words.sentence import all_of
 
 Rows = NDArray[np.bool_]
 Numbers = NDArray[np.int_]

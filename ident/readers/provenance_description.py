@@ -7,7 +7,7 @@ from datetime import date
 from typing import Any
 
 from ident.errors import Unusable
-from ident.readers.fields import Fields
+from ident.readers.typed_fields import Fields
 from ident.rig.provenance import TEXTS, Provenance
 from ident.units.quantity import shown
 

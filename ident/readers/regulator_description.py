@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from ident.errors import Unusable
-from ident.readers.fields import Fields
+from ident.readers.typed_fields import Fields
 from ident.rig.regulator import REGULATOR_UNITS, PositionControl, Regulator
 from ident.units.quantity import parameter_value, shown
 

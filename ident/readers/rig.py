@@ -16,8 +16,8 @@ from pathlib import Path
 from typing import Any
 
 from ident.errors import Unusable
-from ident.readers.fields import Fields
 from ident.readers.strict_yaml import read_yaml
+from ident.readers.typed_fields import Fields
 from ident.rig.limits import DIMENSIONS, RigLimits
 
 KEY = "rig"

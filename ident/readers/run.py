@@ -8,8 +8,8 @@ from dataclasses import replace
 import numpy as np
 
 from ident.errors import Unusable
+from ident.readers.earlier_command import with_past
 from ident.readers.missing_values import Numbers, OnOneClock, on_one_clock
-from ident.readers.past import with_past
 from ident.readers.run_description import RunDescription, TimeColumn
 from ident.readers.split import Split, split
 from ident.readers.table import Array, Table, numeric

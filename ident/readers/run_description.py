@@ -9,11 +9,11 @@ from typing import Any
 from ident.errors import Unusable
 from ident.readers.channel_description import ChannelDescription, describe_channels, describe_disturbance
 from ident.readers.dialect import Dialect, describe_dialect
-from ident.readers.fields import Fields
 from ident.readers.loop_settings import loop_gain, sample_rate
 from ident.readers.source import inside
 from ident.readers.split import Split, describe_split
 from ident.readers.trend import TRENDS
+from ident.readers.typed_fields import Fields
 from ident.run import BENCH, HOLDS, KINDS, MOTIONS, USES, Run, Specimen
 from ident.units.quantity import quantity, shown, split, unit_scale
 from ident.words.nearest import did_you_mean

@@ -7,8 +7,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ident.errors import Unusable
-from ident.readers.fields import Fields
 from ident.readers.loop_settings import seconds_or_samples
+from ident.readers.typed_fields import Fields
 from ident.run import BENCH, Run, Samples
 from ident.words.number import count
 from ident.words.run_name import run_name

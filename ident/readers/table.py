@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 
 from ident.errors import Unusable
 from ident.units.quantity import shown
-from ident.words.listed import first_of
 from ident.words.nearest import did_you_mean
+from ident.words.sentence import first_of
 
 Array = NDArray[Any]
 NUMERIC = "iuf"  # dtype kinds: whole numbers and floats

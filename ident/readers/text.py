@@ -23,7 +23,7 @@ from ident.readers.limits import Limits, check_size
 from ident.readers.numeral import NO_VALUE, has_no_value, is_prefixed
 from ident.readers.table import Array, Table
 from ident.readers.time_stamp import seconds
-from ident.readers.upright import upright
+from ident.readers.transposed_text import upright
 from ident.units.quantity import shown
 
 _HEAD = 1 << 20  # bytes by which an encoding is told

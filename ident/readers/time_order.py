@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 from ident.readers.clock import of_few_digits
 from ident.readers.table import NUMERIC, Array
 from ident.run import Samples
-from ident.words.listed import all_of
 from ident.words.number import count
+from ident.words.sentence import all_of
 
 
 def oldest_first(raw: Mapping[str, Array]) -> tuple[dict[str, Array], str]:

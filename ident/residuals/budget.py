@@ -27,7 +27,7 @@ from ident.parallel import each
 from ident.residuals.decimation import averaged, stride
 from ident.run import Run
 from ident.words.percent import percent
-from ident.words.shown import Listing, Shown
+from ident.words.result_tables import Listing, TabularResult
 
 Array = NDArray[np.float64]
 _REACHES = (3, 8, 24)  # samples of the correction to either side of now; the best is taken
@@ -37,7 +37,7 @@ _LEVELS = (1e-8, 1e-6, 1e-4, 1e-2)  # of the diagonal, against directions that a
 
 
 @dataclass(frozen=True)
-class Budget(Shown):
+class Budget(TabularResult):
     """The parts of eq. (17) as fractions, combining quadratically; `bounds` are (lower, upper) of each.
 
     `noise` is None where nothing tells it: then it is within `nonlinear`, up to its upper bound.

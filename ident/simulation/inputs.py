@@ -9,11 +9,11 @@ from numpy.typing import NDArray
 
 from ident.chain.chain import DISTURBANCE, FORCE, INPUT, INPUT_RATE
 from ident.chain.channels import BESIDE_MEAN, means
-from ident.chain.varying import MEASURED_CONDITIONS, is_measured
+from ident.chain.measured_conditions import MEASURED_CONDITIONS, is_measured
 from ident.run import DISTURBANCES, Run
-from ident.simulation.between import band_limited
-from ident.simulation.closed_way import covered, drift
+from ident.simulation.intersample_command import band_limited
 from ident.simulation.kernel.layout import BEYOND
+from ident.simulation.periodic_displacement import covered, drift
 from ident.slopes import bends, bends_of_way, curvatures, slopes
 
 Array = NDArray[np.float64]
@@ -107,7 +107,7 @@ def _record(run: Run, name: str) -> Array:
 def closed(speed: Array) -> Array:
     """How much the mean from each sample of a speed (n,) to the next is beyond that of the two, 0 behind the last.
 
-    See :mod:`ident.simulation.closed_way`.
+    See :mod:`ident.simulation.periodic_displacement`.
     """
     of_two, by_phase = 0.5 * (speed[1:] + speed[:-1]), covered(speed)
     beyond = bends(speed) if by_phase is None else np.append(by_phase - of_two, 0.0)

@@ -28,7 +28,7 @@ from numba.core.extending import _Intrinsic
 from numba.core.registry import CPUDispatcher
 
 from ident.cached import cached_property
-from ident.simulation.kept import found, in_turn, keep
+from ident.simulation.code_cache import found, in_turn, keep
 from ident.simulation.uninterrupted import uninterrupted
 
 Function = TypeVar("Function", bound=Callable[..., Any])

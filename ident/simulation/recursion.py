@@ -1,7 +1,8 @@
 """The exact response of a linear chain to a sampled command.
 
 Between samples the command is what the run's `hold` says, a polynomial through its values at nodes of the sample (see
-:mod:`ident.simulation.between`), so that the response at the samples is a recursion without any error of integration:
+:mod:`ident.simulation.intersample_command`), so that the response at the samples is a recursion without any error of
+integration:
 
     s[k+1] = Φ s[k] + Σ_j Γj u(k + τj),   y[k] = C s[k] + D u[k],   Φ = exp(A T)
 
@@ -20,7 +21,7 @@ from scipy.linalg import expm
 from scipy.special import factorial
 
 from ident.linear import LinearModel
-from ident.simulation.between import nodes
+from ident.simulation.intersample_command import nodes
 from ident.simulation.kernel.machine_code import address
 from ident.simulation.machine_call import advance_groups
 from ident.time_budget import check_time

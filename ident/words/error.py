@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from ident.unstable import UNSTABLE
 from ident.words.percent import percent, percent_in_print
 from ident.words.run_name import run_name
-from ident.words.uses import data
+from ident.words.titles import data
 
 MEAN_COUNTS = 1.5
 """The ratio of the error with the mean counted to that without, 1, beyond which both stand wherever the error does.

@@ -13,15 +13,13 @@ from typing import Any
 
 from ident.words.engineering import quantity
 from ident.words.error import error_said, unstable_on
-from ident.words.listed import all_of, first_of, one_of
 from ident.words.messages import MESSAGES
 from ident.words.number import count
-from ident.words.percent import percent
+from ident.words.percent import percent, probability_said
 from ident.words.plus_minus import plus_minus
-from ident.words.probability import probability_said
 from ident.words.run_name import run_name
-from ident.words.titles import title
-from ident.words.uses import data
+from ident.words.sentence import all_of, first_of, one_of
+from ident.words.titles import data, title
 
 
 @dataclass(frozen=True)

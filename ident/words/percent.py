@@ -1,4 +1,4 @@
-"""Fractions in per cent, as every table, sentence and figure says them; large ones as so many times."""
+"""Fractions and probabilities in per cent, as tables, sentences and figures say them; large ones as so many times."""
 
 from __future__ import annotations
 
@@ -14,6 +14,7 @@ TIMES = 9.995
 
 It is 10 less what rounds up to it in three digits. "2317 %" has to be converted by its reader, "23.2 times" is read.
 """
+_LEAST_SURE, _MOST_SURE = 0.01, 0.99  # beyond which the trials that a probability was calibrated on say nothing finer
 
 
 def percent(fraction: float | None, unknown: str = "–", minus: str = "-") -> str:
@@ -49,3 +50,15 @@ def change(share: float, sign: str = "-") -> str:
 def _times(fraction: float, minus: str = "−") -> str:
     """ "12.3 times"."""
     return f"{plain(fraction, 3).replace('−', minus)} times"
+
+
+def probability_said(p: float | None) -> str:
+    """A probability, never as certain: 0.874 → "87 %", 0.9999 → "over 99 %", 1e-5 → "under 1 %".
+
+    A dash where it is not known.
+    """
+    if p is None:
+        return "–"
+    if p > _MOST_SURE:
+        return f"over {100 * _MOST_SURE:.0f} %"
+    return f"under {100 * _LEAST_SURE:.0f} %" if p < _LEAST_SURE else f"{100 * p:.0f} %"

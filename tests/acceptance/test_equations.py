@@ -12,7 +12,7 @@ import pytest
 from ident.chain.chain import Chain
 from ident.equations.equation import Equation
 from ident.presets import PRESETS
-from ident.simulation.between import ends
+from ident.simulation.intersample_command import ends
 from ident.simulation.recursion import discretise, respond
 from tests.reference import qian_reference as reference
 

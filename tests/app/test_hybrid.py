@@ -17,8 +17,8 @@ from app.jobs.steps import Runs
 from ident.fit.result import FitResult
 from ident.hybrid.case import qian
 from ident.hybrid.controller import SampledController
-from ident.hybrid.ground import Ground
-from ident.hybrid.rig import simulate_hybrid
+from ident.hybrid.ground_motion import GroundMotion
+from ident.hybrid.hybrid_simulation import simulate_hybrid
 from tests.app.conftest import archived
 from tests.app.test_bad_inputs import kept, refused_by_service
 from tests.app.test_diagnoses import ended
@@ -89,7 +89,7 @@ def test_the_same_key_makes_one_controller(service, fitted):
 def test_a_simulation_says_what_the_library_says(service, simulation, controller, fitted):
     """Record, case and controller come through HTTP, the queue and the database to the last digit."""
     fit = FitResult.from_json(service.get(f"{API}/fits/{fitted}").json()["result"])
-    ground = Ground("record", "Small shake", QUIET, factor=1.0, step=0.01)
+    ground = GroundMotion("record", "Small shake", QUIET, factor=1.0, step=0.01)
     case = qian().__class__(**{**vars(qian()), "name": "own case", "ground": ground})
     acting = SampledController.from_json(service.get(f"{API}/controllers/{controller['id']}.json").json())
     expected = simulate_hybrid(fit, case, acting).to_json()

@@ -12,7 +12,7 @@ from typing import Any, cast
 
 import pytest
 
-from app.access.who import START
+from app.access.caller import START
 from app.approvals.endpoints import approve_fit
 from app.context import Context
 from app.database import connect, migrate, sessions

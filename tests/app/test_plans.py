@@ -11,7 +11,7 @@ import pytest
 import yaml
 
 from app.plans import service as plans
-from app.plans.asked import AskedPlan
+from app.plans.request_parsing import AskedPlan
 from ident.progress import Progress
 
 API = "/api/v1"

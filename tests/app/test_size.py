@@ -18,8 +18,8 @@ from sqlalchemy.orm import Session, sessionmaker
 from app.context import Context
 from app.database import sessions
 from app.parameters import export
-from app.parameters.repository import found
-from app.parameters.wanted import Wanted
+from app.parameters.repository import matching_sets
+from app.parameters.set_query import SetQuery
 from benchmarks.line_filled import PARAMETERS, fill
 
 SETS = 20_000
@@ -36,26 +36,26 @@ def many(tmp_path_factory: pytest.TempPathFactory) -> Iterator[sessionmaker[Sess
 
 @pytest.fixture(autouse=True)
 def _small(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(found, "FEW", FEW)
-    monkeypatch.setattr(found, "_SAMPLE", FEW // 10)
-    monkeypatch.setattr(found, "_TESTED", FEW // 20)
+    monkeypatch.setattr(matching_sets, "FEW", FEW)
+    monkeypatch.setattr(matching_sets, "_SAMPLE", FEW // 10)
+    monkeypatch.setattr(matching_sets, "_TESTED", FEW // 20)
 
 
-def within(share: float, *names: str, **others: Any) -> Wanted:
+def within(share: float, *names: str, **others: Any) -> SetQuery:
     """The sets whose parameters, drawn independently, lie in the middle so that this share matches all."""
     each = share ** (1 / len(names))
     ends = {name: norm.ppf([0.5 - each / 2, 0.5 + each / 2], *PARAMETERS[name][:2]) for name in names}
     lowest, highest = ({name: float(end[side]) for name, end in ends.items()} for side in (0, 1))
-    return Wanted(lowest=lowest, highest=highest, **others)
+    return SetQuery(lowest=lowest, highest=highest, **others)
 
 
 BY_VALUE, BY_NUMBER = "ix_set_values_name_value", "ix_set_values_name_number"
 SOUND = ("SCAN some", "SCAN CONSTANT ROW")
 """Not of a table: what was found by an index already, and nothing at all."""
 CASES = {
-    "serial": (Wanted(serial="SW-000042"), "ix_parameter_sets_serial"),
-    "batch": (Wanted(batch="B0042"), "ix_parameter_sets_batch"),
-    "in force": (Wanted(current=True), "ix_approvals_number_in_force"),
+    "serial": (SetQuery(serial="SW-000042"), "ix_parameter_sets_serial"),
+    "batch": (SetQuery(batch="B0042"), "ix_parameter_sets_batch"),
+    "in force": (SetQuery(current=True), "ix_approvals_number_in_force"),
     "one range, few": (within(0.001, "Z0"), BY_VALUE),
     "one range, some": (within(0.01, "Z0"), BY_VALUE),
     "one range, half": (within(0.5, "Z0"), BY_NUMBER),
@@ -67,7 +67,7 @@ CASES = {
 }
 
 
-def plans(session: Session, wanted: Wanted, before: int | None) -> list[list[str]]:
+def plans(session: Session, wanted: SetQuery, before: int | None) -> list[list[str]]:
     """How SQLite answers each statement that a page is found by."""
     sent: list[tuple[str, Any]] = []
 
@@ -76,7 +76,7 @@ def plans(session: Session, wanted: Wanted, before: int | None) -> list[list[str
 
     connection = session.connection()
     event.listen(connection, "before_cursor_execute", note)
-    found.numbers(session, wanted, before, 100)
+    matching_sets.numbers(session, wanted, before, 100)
     event.remove(connection, "before_cursor_execute", note)
     explained = [connection.exec_driver_sql(f"EXPLAIN QUERY PLAN {text}", given) for text, given in sent]
     return [[row[-1] for row in rows] for rows in explained]
@@ -96,10 +96,10 @@ def test_a_page_is_found_by_the_index_that_suits(many: sessionmaker[Session], ca
     assert not [step for step in steps if "TEMP B-TREE" in step], each
 
 
-def every(session: Session, wanted: Wanted, limit: int) -> list[int]:
+def every(session: Session, wanted: SetQuery, limit: int) -> list[int]:
     """The numbers on every page, one after the other."""
     seen: list[int] = []
-    while page := found.numbers(session, wanted, seen[-1] if seen else None, limit):
+    while page := matching_sets.numbers(session, wanted, seen[-1] if seen else None, limit):
         seen += page
     return seen
 

@@ -8,9 +8,9 @@ from functools import cached_property
 
 import numpy as np
 
-from ident.bench import quantity
 from ident.bench.acceptance import found_quantities
 from ident.bench.analysis import Analysis, analyse
+from ident.bench.estimate import BenchEstimate
 from ident.bench.model import Model
 from tests.bench.sets import as_set, true_model
 from tests.reference import kononykhin_reference as reference
@@ -25,7 +25,7 @@ class Found:
     records: list[reference.Record]
 
     @cached_property
-    def quantities(self) -> dict[str, quantity.Found]:
+    def quantities(self) -> dict[str, BenchEstimate]:
         """Those of the sheet, as found."""
         return found_quantities(self.analysis)
 

@@ -9,9 +9,9 @@ from ident.bench import motion
 from ident.bench.effect_ranking import finely
 from ident.bench.model import Model
 from ident.bench.motion import groups
-from ident.bench.observed import Observed, _unsettled, rate_wanted
 from ident.bench.readings import Readings, fastest, readings
 from ident.bench.records import Record, _in_steps, _refined
+from ident.bench.reduced_record import Observed, _unsettled, rate_wanted
 from ident.bench.speed_table import SpeedTable
 
 RATE = 1000.0

@@ -13,8 +13,8 @@ from ident.bench import analysis, identification, polish, scatter
 from ident.bench.criteria import BENCH_CRITERIA
 from ident.bench.least_squares import solve
 from ident.bench.model import Model
-from ident.bench.observed import Observed
 from ident.bench.records import Record
+from ident.bench.reduced_record import Observed
 from ident.bench.residual import Residual
 from ident.bench.speed_table import SpeedTable
 

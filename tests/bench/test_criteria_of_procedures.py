@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from ident.bench import analysis, frequency, position_loop, speed, static, straightness, time_constant
+from ident.bench import analysis, frequency, position_loop, speed, speed_linearity, static, time_constant
 from ident.bench.model import Model
 from ident.bench.position_loop import AmplitudeMargin
 from ident.bench.records import Record
@@ -266,7 +266,7 @@ def test_a_table_is_read_at_two_hundred_and_one_currents():
         asked.append(len(current))
         return current
 
-    straightness.of_table(SimpleNamespace(nodes=[1.0], speed=known))  # type: ignore[arg-type]
+    speed_linearity.of_table(SimpleNamespace(nodes=[1.0], speed=known))  # type: ignore[arg-type]
     assert asked == [201]
 
 

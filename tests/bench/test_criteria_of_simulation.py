@@ -11,8 +11,8 @@ import pytest
 from ident.bench import model as models
 from ident.bench.exact_response import PARTS, division
 from ident.bench.model import Answer, Model
-from ident.bench.observed import Observed
 from ident.bench.records import Record
+from ident.bench.reduced_record import Observed
 from ident.bench.speed_table import SpeedTable
 
 STILL, FULL = 0.002, 0.5

@@ -10,7 +10,7 @@ import pytest
 from ident.bench.exact_response import delayed, respond_exact
 from ident.bench.model import CONSTANTS as NAMES
 from ident.bench.model import DELAY, Model
-from ident.bench.observed import Observed
+from ident.bench.reduced_record import Observed
 from ident.bench.residual import Residual
 from ident.bench.response import respond
 from ident.bench.speed_table import SPLINE

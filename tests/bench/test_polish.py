@@ -6,8 +6,8 @@ import pytest
 
 from ident.bench.least_squares import solve
 from ident.bench.model import Model
-from ident.bench.observed import Observed, observe
 from ident.bench.polish import polished
+from ident.bench.reduced_record import Observed, observe
 from ident.bench.residual import Residual
 from tests.bench.sets import as_set, true_model
 from tests.reference import kononykhin_reference as reference

@@ -12,12 +12,12 @@ from scipy.optimize import minimize
 from ident.bench.analysis import analyse
 from ident.bench.frequency import frequency_response
 from ident.bench.motion import groups
-from ident.bench.observed import observe
 from ident.bench.records import BenchSet
+from ident.bench.reduced_record import observe
 from ident.bench.sine_fit import as_printed, dominant, fit_sine
 from ident.bench.smoothing import METHODS, bezier, on_bezier
 from ident.bench.speed import curve
-from ident.bench.straightness import straightness
+from ident.bench.speed_linearity import straightness
 from ident.bench.time_constant import dynamics
 from ident.errors import Unusable
 from tests.bench.sets import as_set, true_model

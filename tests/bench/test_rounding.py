@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from ident.bench.motion import groups
-from ident.bench.observed import Observed
 from ident.bench.records import Record, bench_set
+from ident.bench.reduced_record import Observed
 from ident.bench.speed import _constant
 from ident.resolution import resolution
 from tests.bench.sets import as_matrix

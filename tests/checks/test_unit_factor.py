@@ -13,7 +13,7 @@ from ident.checks.response import respond
 from ident.checks.unit_factor import FACTORS, factor, unit_causes, unit_factor
 from ident.drafts.answers import Answer, Answers
 from ident.drafts.draft import Draft
-from ident.drafts.raw import read_raw
+from ident.drafts.raw_file import read_raw
 from ident.drafts.text import drafted, gathered
 from ident.fit.settings import Settings
 from ident.matrix import Matrix

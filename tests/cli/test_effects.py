@@ -124,7 +124,7 @@ def test_a_kept_effect_is_named_without_its_file(servoident, few, lapped, tmp_pa
 
 def test_a_diagnosis_ranks_what_is_kept_where_it_is_asked_to(lapped, servoident):
     """Beside what it was given, which comes first; what the model cannot take is left out."""
-    from app.cli.kept_here import beside
+    from app.cli.local_effects import beside
 
     servoident("effects", "keep", lapped)
     given = {"name": "lapped", "meaning": "given"}

@@ -12,8 +12,8 @@ import pytest
 from app.cli.at_option import moved_to
 from ident.hybrid.controller import no_controller
 from ident.hybrid.coupled_reading import read_system
-from ident.hybrid.coupled_rig import simulate_coupled
-from ident.hybrid.followed import Followed
+from ident.hybrid.coupled_simulation import simulate_coupled
+from ident.hybrid.feedforward_tracking import FeedforwardTracking
 from ident.run import Specimen
 from tests.app.test_conditions import sets
 from tests.hybrid.cases import fitted
@@ -66,7 +66,7 @@ def test_what_the_feedforward_is_worth_is_told(servoident, tmp_path):
     given = ("--case", case, "--controller", "feedforward", "--json", tmp_path / "scores.json", "--out", out)
     done = servoident("hybrid", fit, *given)
     assert done.returncode == 0, done.stderr
-    told = Followed.from_json(json.loads((tmp_path / "scores.json").read_text())["feedforward"])
+    told = FeedforwardTracking.from_json(json.loads((tmp_path / "scores.json").read_text())["feedforward"])
     assert told.draws == 100
     assert told.gain == 100
     assert told.limit > 200

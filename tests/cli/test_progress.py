@@ -10,14 +10,14 @@ import pytest
 from app.cli.interrupts import heard
 from app.cli.progress import shown
 from ident.progress import Expected, Progress
-from ident.simulation import kept
+from ident.simulation import code_cache
 from ident.simulation.jit import jit
 
 
 @pytest.fixture
 def new_function(tmp_path, monkeypatch):
     """Ask for a function that no earlier process has compiled, as a new process would."""
-    monkeypatch.setattr(kept, "cache_folder", lambda: tmp_path)
+    monkeypatch.setattr(code_cache, "cache_folder", lambda: tmp_path)
 
     def ask(factor=2.0):
         @jit()

@@ -6,7 +6,7 @@ import pytest
 
 from ident.errors import Unusable
 from ident.fit.choices import settings_of
-from ident.fit.given import of_model, with_candidates, with_candidates_given
+from ident.fit.parameter_bounds import of_model, with_candidates, with_candidates_given
 from ident.fit.settings import Settings
 from ident.presets import preset
 from ident.workflows import diagnose, identify

@@ -28,7 +28,7 @@ from ident.fit.result import FitResult, Structure, TransducerOffset
 from ident.fit.settings import Settings
 from ident.matrix import Actuator, Matrix
 from ident.presets import preset
-from ident.presets.suited import unusual
+from ident.presets.suitable_models import unusual
 from ident.progress import silent
 from ident.run import Run
 from ident.workflows import identify

@@ -7,7 +7,7 @@ import pytest
 
 from ident.drafts.answers import Answer, Answers
 from ident.drafts.draft import Draft
-from ident.drafts.raw import read_or_shown, read_raw
+from ident.drafts.raw_file import read_or_shown, read_raw
 from ident.drafts.text import as_yaml, drafted, gathered
 from ident.errors import Unusable
 from ident.readers import read_matrix

@@ -9,7 +9,7 @@ import pytest
 
 from ident.drafts.answers import NONE, Answer, Answers, FileAnswers
 from ident.drafts.draft import Draft
-from ident.drafts.raw import read_raw
+from ident.drafts.raw_file import read_raw
 from ident.drafts.text import drafted, gathered
 from ident.errors import Unusable
 from ident.readers import read_matrix

@@ -10,7 +10,7 @@ from scipy.io import savemat
 
 from ident.drafts.answers import Answer, Answers
 from ident.drafts.draft import Draft
-from ident.drafts.raw import read_raw
+from ident.drafts.raw_file import read_raw
 from tests.readers.lab_files import lvm
 
 T = 0.01 * np.arange(40)

@@ -7,7 +7,7 @@ import pytest
 
 from ident.drafts.answers import Answer, Answers
 from ident.drafts.draft import Draft
-from ident.drafts.raw import read_raw
+from ident.drafts.raw_file import read_raw
 from ident.drafts.signal_files import named_runs, with_runs_joined
 from ident.drafts.text import drafted, gathered
 from ident.errors import Unusable

@@ -16,7 +16,7 @@ from ident.matrix import Actuator
 from ident.parameter import Parameter
 from ident.presets import PRESETS, Preset, preset
 from ident.run import Run, Specimen
-from ident.simulation.between import ends
+from ident.simulation.intersample_command import ends
 from ident.simulation.recursion import discretise, respond
 from ident.simulation.simulate import responses
 from ident.simulation.steps import steps_needed

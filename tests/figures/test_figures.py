@@ -14,9 +14,9 @@ import ident.figures.study
 from ident.comparison.compare import Comparison
 from ident.errors import Unusable
 from ident.figures import FIGURES, MEDIA, figure, render, renders
-from ident.figures.look import LOOKS
 from ident.figures.residual_map import residual_map
 from ident.figures.study import Study
+from ident.figures.theme import LOOKS
 from ident.fit.result import Starts
 from ident.workflows import study
 from tests.figures.conftest import make_comparison

@@ -10,7 +10,7 @@ from tests.conftest import short_searches
 
 USUAL = {
     "test_criteria_of_search.py",
-    "test_ends.py",
+    "test_local_optima.py",
     "test_fifth_order.py",
     "test_far_bounds.py",
     "test_paper_search.py",

@@ -17,10 +17,10 @@ from ident.beginning import beginning
 from ident.diagnosis.candidate_models import CandidateModels
 from ident.fit.first_guesses import begins_about_middle, in_order, order_stays
 from ident.fit.identification import Identification, completed
+from ident.fit.initial_state_estimation import BestInitialState, better
 from ident.fit.normal_matrices import NormalMatrices
 from ident.fit.result import FitResult
 from ident.fit.settings import Settings
-from ident.fit.settling import Least, better
 from ident.fit.simulated_fitness import SimulatedFitness
 from ident.fit.simulated_runs import SimulatedRuns, every_run
 from ident.linear import LinearModel
@@ -290,9 +290,9 @@ def test_of_two_guesses_the_one_that_leads_to_less_counts(saturated, monkeypatch
 def test_of_two_guesses_that_lead_as_far_the_one_without_an_offset_counts():
     """In saturation a position that is shifted changes nothing else; less of the record left comes first."""
 
-    def end(left: float, offset: float) -> Least:
+    def end(left: float, offset: float) -> BestInitialState:
         blocks = np.array([[[1.0, 0.0], [0.0, left]]])
-        return Least(
+        return BestInitialState(
             np.zeros(1),
             NormalMatrices(np.zeros((1, 1)), np.zeros((1, 0)), 1.0, offset, blocks=blocks, remove=np.ones((2, 1))),
         )

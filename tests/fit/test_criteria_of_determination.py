@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from ident.fit import slow_answer, summary
+from ident.fit import low_frequency_delay, summary
 from ident.fit.settings import Settings
 from ident.fit.uncertainty import Covariance, covariance
 
@@ -133,9 +133,9 @@ def lag_is_read_at(monkeypatch: pytest.MonkeyPatch, *poles: float) -> float:
         space=SimpleNamespace(values=lambda _: {}),
         matrix=SimpleNamespace(actuator=None),
     )
-    monkeypatch.setattr(slow_answer, "conditions", lambda *_: {})
-    monkeypatch.setattr(slow_answer, "_times", lambda *_: ())
-    slow_answer.lags(objective, SimpleNamespace(output="displacement"), np.ones((1, 1)))
+    monkeypatch.setattr(low_frequency_delay, "conditions", lambda *_: {})
+    monkeypatch.setattr(low_frequency_delay, "_times", lambda *_: ())
+    low_frequency_delay.lags(objective, SimpleNamespace(output="displacement"), np.ones((1, 1)))
     return asked[0]
 
 

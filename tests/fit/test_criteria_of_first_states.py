@@ -10,9 +10,9 @@ import pytest
 
 from ident.fit import continued
 from ident.fit.continued import ContinuedIdentification
+from ident.fit.initial_state_estimation import BestInitialState, InitialStateEstimation, better
 from ident.fit.normal_matrices import NormalMatrices, block_length, normal_matrices_of
 from ident.fit.products import shares_of
-from ident.fit.settling import Least, Settling, better
 from ident.fit.simulated_runs import SimulatedRuns
 from ident.run import Run
 from tests.fit.windows_of import record
@@ -77,7 +77,7 @@ def test_first_states_hold_or_promise_much_by_what_they_explain(explained, settl
     assert NormalMatrices.promises.fget(of) is promises
 
 
-def steps(settling: Settling, *powers: float, promises: bool = True) -> list[Any]:
+def steps(settling: InitialStateEstimation, *powers: float, promises: bool = True) -> list[Any]:
     """Along what a run goes on in rounds that leave these powers; None where it does not."""
     gone_on = (settling.step("r", START, found(power, promises)) for power in powers)
     return [None if one is None else one[1] for one in gone_on]
@@ -85,7 +85,7 @@ def steps(settling: Settling, *powers: float, promises: bool = True) -> list[Any
 
 def test_a_damped_step_begins_with_a_millionth_and_is_damped_a_hundredfold():
     """After straight ones in vain. It is damped a tenth as much after one that helped."""
-    settling = Settling()
+    settling = InitialStateEstimation()
     *_, last = steps(settling, 1.0, *[2.0] * 4)
     assert last == pytest.approx(1e-6, rel=0.1, abs=0.0)
     assert steps(settling, 2.0, 2.0, 0.5) == pytest.approx([1e-4, 1e-2, 1e-3], rel=0.1)
@@ -94,17 +94,20 @@ def test_a_damped_step_begins_with_a_millionth_and_is_damped_a_hundredfold():
 @pytest.mark.parametrize(("less", "goes_on"), [(0.85e-3, False), (1.15e-3, True)])
 def test_a_round_counts_that_explains_a_thousandth(less, goes_on):
     """Where little is promised one round may not count, and the second ends it; of two ends as good one is better."""
-    settling = Settling()
+    settling = InitialStateEstimation()
     *_, last = steps(settling, 1.0, 1.0, 1.0 - less, promises=False)
     assert (last is not None) is goes_on
-    ends = [Least(START, found(1.0, offset=0.5)), Least(START, found(1.0 / (1.0 - less) + less**2, offset=0.1))]
+    ends = [
+        BestInitialState(START, found(1.0, offset=0.5)),
+        BestInitialState(START, found(1.0 / (1.0 - less) + less**2, offset=0.1)),
+    ]
     assert (better(ends) is ends[0]) is goes_on
 
 
 @pytest.mark.parametrize(("promises", "rounds"), [(False, 1), (True, 4)])
 def test_so_many_rounds_may_be_in_vain(promises, rounds):
     """Then no step follows, or where much is promised a damped one."""
-    *gone_on, last = steps(Settling(), *[1.0] * (rounds + 1), promises=promises)
+    *gone_on, last = steps(InitialStateEstimation(), *[1.0] * (rounds + 1), promises=promises)
     assert gone_on == ["straight"] * rounds
     assert last != "straight"
 

@@ -9,10 +9,10 @@ import numpy as np
 import pytest
 
 from ident.errors import Unusable
-from ident.fit import inverse_dynamics, regressed
+from ident.fit import drive_regression, inverse_dynamics
+from ident.fit.drive_regression import RegressedIdentification
 from ident.fit.identification import Identification
 from ident.fit.inverse_dynamics import _Record, _solved, _weighted, regress
-from ident.fit.regressed import RegressedIdentification
 from ident.fit.settings import Settings
 from ident.matrix import Actuator, Matrix
 from ident.run import Run
@@ -108,8 +108,8 @@ def test_the_model_of_a_regression_has_next_to_no_spring(monkeypatch):
         raise Known(settings.fixed["k0"])
 
     monkeypatch.setattr(Identification, "__init__", known)
-    monkeypatch.setattr(regressed, "regress", lambda _: None)
-    monkeypatch.setattr(regressed, "_values", lambda _: {})
+    monkeypatch.setattr(drive_regression, "regress", lambda _: None)
+    monkeypatch.setattr(drive_regression, "_values", lambda _: {})
     with pytest.raises(Known) as found:
         RegressedIdentification(SimpleNamespace(), Settings(model="drive"))
     assert found.value.args[0] == pytest.approx(1e-6, rel=0.15, abs=0.0)

@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from ident.fit.ends import End, agreeing, at_bound, rivals, valley
 from ident.fit.far_bounds import far_from
+from ident.fit.local_optima import LocalOptimum, agreeing, at_bound, competing_optima, equivalent_points
 from ident.fit.modes import FOLLOWED
 from ident.fit.multistart import _all_ends, bad_runs, multistart
 from ident.fit.settings import Settings
@@ -23,15 +23,15 @@ from ident.simulation.steps import MOST
 QIAN = PRESETS["qian2014"]
 
 
-def end(error: float) -> End:
+def end(error: float) -> LocalOptimum:
     """An end with this error."""
-    return End(error, {}, np.full(1, 0.5))
+    return LocalOptimum(error, {}, np.full(1, 0.5))
 
 
 def test_ends_are_one_valley_agree_or_compete_by_their_errors():
     """A millionth, a thousandth and a hundredth of the error."""
     ends = [end(1.0 + 1e-6 * off) for off in (0.0, 0.85, 1.15, 850.0, 1150.0, 8500.0, 11500.0)]
-    assert (len(valley(ends)), agreeing(ends, ends[0]), len(rivals(ends))) == (2, 4, 4)
+    assert (len(equivalent_points(ends)), agreeing(ends, ends[0]), len(competing_optima(ends))) == (2, 4, 4)
 
 
 class Objective:
@@ -70,7 +70,7 @@ def test_a_value_is_at_its_bound_within_a_millionth_of_the_axis(place, is_at):
     space = Space((Axis("m0", 1.0, 2.0, logarithmic=False),), ("m0",), {}, {})
     for point in (np.array([place]), np.array([1.0 - place])):
         assert space.at_bound("m0", point) is is_at
-        assert at_bound(End(1.0, {}, point)) is is_at
+        assert at_bound(LocalOptimum(1.0, {}, point)) is is_at
 
 
 def bad(errors: list[float]) -> int:

@@ -11,10 +11,10 @@ import pytest
 
 from ident.errors import Unusable
 from ident.fit import genetic, identification
-from ident.fit.ends import distinct
 from ident.fit.evolution import cma_es, differential_evolution
 from ident.fit.genetic import around, begin, default_step
 from ident.fit.identification import Identification
+from ident.fit.local_optima import distinct
 from ident.fit.search import Search, options_of
 from ident.fit.settings import Settings
 from ident.fit.trial_runs import decimated, trial_runs

@@ -7,7 +7,7 @@ import pytest
 
 from ident.drafts.answers import Answer, Answers
 from ident.drafts.draft import Draft
-from ident.drafts.raw import read_raw
+from ident.drafts.raw_file import read_raw
 from ident.readers import read_matrix
 from ident.workflows import identify
 

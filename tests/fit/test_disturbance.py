@@ -12,7 +12,7 @@ import yaml
 from ident.errors import Unusable
 from ident.fit.settings import Settings
 from ident.matrix import Actuator, Matrix
-from ident.presets.suited import in_question
+from ident.presets.suitable_models import in_question
 from ident.readers import read_matrix
 from ident.run import Run
 from ident.workflows import compare, diagnose, identify

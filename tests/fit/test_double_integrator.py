@@ -7,7 +7,7 @@ import pytest
 from scipy.linalg import solve_discrete_are
 
 from ident.fit import identification
-from ident.fit.anchoring import Anchoring, gains
+from ident.fit.multiple_shooting import ShootingWindows, gains
 from ident.fit.result import Combination, FitResult
 from ident.fit.settings import Settings
 from ident.matrix import Actuator, Matrix
@@ -73,13 +73,13 @@ def test_a_drive_without_disturbances_whose_speed_lasts_is_fitted_whole():
 
 @pytest.mark.parametrize("memory", [0.0, 3.0, 20.0])
 def test_white_noise_over_windows_is_as_large_as_is_said(memory):
-    anchoring = Anchoring(16, memory)
+    anchoring = ShootingWindows(16, memory)
     noise = np.random.default_rng(3).standard_normal(320_000)
     assert np.mean(anchoring(noise) ** 2) == pytest.approx(anchoring.noise, rel=0.03)
 
 
 def test_a_signal_in_parts_is_the_whole_signal():
-    anchoring, signal = Anchoring(8, 5.0), np.random.default_rng(4).standard_normal((100, 2, 3))
+    anchoring, signal = ShootingWindows(8, 5.0), np.random.default_rng(4).standard_normal((100, 2, 3))
     stream = anchoring.from_start()
     parts = [stream(signal[first : first + 24]) for first in range(0, 100, 24)]
     assert np.allclose(np.concatenate(parts), anchoring(signal))
@@ -88,17 +88,17 @@ def test_a_signal_in_parts_is_the_whole_signal():
 def test_a_speed_that_was_there_before_is_taken_away_and_no_other():
     """A steady slope is known after some memories of the filter, from the data before; a kink in a window stays."""
     k = np.arange(200.0)
-    left = Anchoring(20, 4.0)(0.3 * k)
+    left = ShootingWindows(20, 4.0)(0.3 * k)
     assert np.abs(left[100:]).max() < 1e-6
-    kinked = Anchoring(20, 4.0)(np.maximum(k - 110, 0.0))
+    kinked = ShootingWindows(20, 4.0)(np.maximum(k - 110, 0.0))
     assert kinked[119] == pytest.approx(9.0)
 
 
 def test_where_a_record_begins_is_no_speed():
     """It was one of the whole first sample, so that the first window led far away."""
-    assert np.abs(Anchoring(20, 1.2)(np.full((60, 2), 3.0))).max() < 1e-9
+    assert np.abs(ShootingWindows(20, 1.2)(np.full((60, 2), 3.0))).max() < 1e-9
     signal = np.random.default_rng(5).standard_normal(100)
-    assert np.allclose(Anchoring(20, 1.2)(signal + 7.0), Anchoring(20, 1.2)(signal))
+    assert np.allclose(ShootingWindows(20, 1.2)(signal + 7.0), ShootingWindows(20, 1.2)(signal))
 
 
 def test_the_gains_are_those_of_the_steady_riccati_equation():

@@ -11,7 +11,7 @@ import scipy.signal
 from ident.fit.reduction import Basis, reduced
 from ident.noise.power_density import power_density
 from ident.run import HOLDS, Run
-from ident.simulation.between import at_nodes, ends
+from ident.simulation.intersample_command import at_nodes, ends
 from ident.simulation.recursion import discretise, respond, responses
 
 RATE = 1000.0

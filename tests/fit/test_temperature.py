@@ -8,7 +8,7 @@ import pytest
 from ident.checks.check import check
 from ident.drafts.answers import Answers
 from ident.drafts.draft import Draft
-from ident.drafts.raw import read_raw
+from ident.drafts.raw_file import read_raw
 from ident.readers import read_matrix
 from ident.workflows import identify
 

@@ -9,7 +9,7 @@ import pytest
 
 from ident.fit.result import Estimate, FitResult
 from ident.hybrid.case import Case, case_of, qian
-from ident.hybrid.ground import Ground
+from ident.hybrid.ground_motion import GroundMotion
 from ident.presets import preset
 
 EL_CENTRO = Path(__file__).parents[3] / "shared" / "data" / "ground_motion" / "el_centro_1940_ns.txt"
@@ -24,9 +24,9 @@ def fitted(model: str = "qian2014", **values: float) -> FitResult:
     return FitResult(model, (), found, {}, (), (), {}, {}, {}, (), "ga", 0, 0, 0.0, "", "")
 
 
-def noise(seconds: float, seed: int = 0) -> Ground:
+def noise(seconds: float, seed: int = 0) -> GroundMotion:
     """Band-limited white noise 0 to 30 Hz of 0.1 g RMS."""
-    return Ground(duration=seconds, seed=seed)
+    return GroundMotion(duration=seconds, seed=seed)
 
 
 def el_centro(case: Case, seconds: float | None = None) -> Case:

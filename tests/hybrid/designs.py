@@ -7,7 +7,7 @@ from functools import lru_cache
 import numpy as np
 
 from ident.hybrid.loop_shaping import design
-from ident.hybrid.target import QIAN2014_TARGET
+from ident.hybrid.target_loop import QIAN2014_TARGET
 from ident.linear import LinearModel
 from ident.presets import preset
 from tests.reference import controlled_loop_reference as reference

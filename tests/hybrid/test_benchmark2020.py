@@ -16,8 +16,8 @@ from ident.fit.result import FitResult
 from ident.fit.settings import Settings
 from ident.hybrid.case import Case, benchmark2020
 from ident.hybrid.controller_design import design_controller
+from ident.hybrid.hybrid_simulation import simulate_hybrid
 from ident.hybrid.linear_plant import linear_plant
-from ident.hybrid.rig import simulate_hybrid
 from ident.matrix import Actuator, Matrix
 from ident.run import Run
 from ident.workflows import diagnose, identify

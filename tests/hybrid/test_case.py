@@ -10,7 +10,7 @@ import scipy.linalg
 
 from ident.errors import Unusable
 from ident.hybrid.case import BUILT_IN, benchmark2020, case_of, modal_damping, qian, read_case
-from ident.hybrid.ground import GRAVITY, Ground, read_record
+from ident.hybrid.ground_motion import GRAVITY, GroundMotion, read_record
 from ident.hybrid.scores import delay, peak, rms, scores
 from ident.run import Specimen
 
@@ -119,7 +119,7 @@ def test_a_column_of_a_record_is_taken_alone(tmp_path):
             read_record(file, 1)
 
 
-@pytest.mark.parametrize("motion", [Ground("sine", frequency=600.0), Ground(band=(0.0, 600.0))])
+@pytest.mark.parametrize("motion", [GroundMotion("sine", frequency=600.0), GroundMotion(band=(0.0, 600.0))])
 def test_a_motion_faster_than_the_loop_samples_is_refused(motion):
     """600 Hz at 1000 Hz would be shown as another frequency."""
     with pytest.raises(Unusable, match="cannot be sampled"):
@@ -128,14 +128,14 @@ def test_a_motion_faster_than_the_loop_samples_is_refused(motion):
 
 def test_noise_and_sine_have_the_size_that_was_asked_for():
     """The RMS of the noise within its band, the peak of the sine; one seed, one motion."""
-    shaken = Ground(duration=4.0, amplitude=2.0, band=(1.0, 20.0), seed=5)
+    shaken = GroundMotion(duration=4.0, amplitude=2.0, band=(1.0, 20.0), seed=5)
     found = shaken.samples(1000.0)
     power, frequency = np.abs(np.fft.rfft(found)) ** 2, np.fft.rfftfreq(len(found), 1e-3)
     assert np.sqrt(np.mean(found**2)) == pytest.approx(2.0)
     assert power[(frequency < 0.99) | (frequency > 20.01)].sum() < 1e-12 * power.sum()
     assert np.array_equal(found, shaken.samples(1000.0))
     assert not np.array_equal(found, replace(shaken, seed=6).samples(1000.0))
-    assert Ground("sine", duration=2.0, amplitude=3.0, frequency=2.0).samples(1000.0).max() == pytest.approx(3.0)
+    assert GroundMotion("sine", duration=2.0, amplitude=3.0, frequency=2.0).samples(1000.0).max() == pytest.approx(3.0)
 
 
 def test_scores_say_what_they_compare():

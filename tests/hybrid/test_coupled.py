@@ -10,11 +10,11 @@ from ident.hybrid.case import case_of
 from ident.hybrid.compensation import Compensation
 from ident.hybrid.controller import no_controller
 from ident.hybrid.coupled_reading import coupled_of
-from ident.hybrid.coupled_rig import machines_of, simulate_coupled
+from ident.hybrid.coupled_simulation import machines_of, simulate_coupled
 from ident.hybrid.coupled_stability import coupled_critical_delay, delay_map
+from ident.hybrid.hybrid_simulation import simulate_hybrid
 from ident.hybrid.linear_plant import linear_plant
 from ident.hybrid.loop_shaping import design
-from ident.hybrid.rig import simulate_hybrid
 from tests.hybrid.cases import fitted
 from tests.hybrid.coupled_cases import FAST, GROUND, beam, table
 from tests.reference import coupled_reference as reference

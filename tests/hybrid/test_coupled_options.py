@@ -9,9 +9,9 @@ from ident.design.spread import Spread
 from ident.errors import Unusable
 from ident.hybrid.controller import no_controller
 from ident.hybrid.coupled_loop import EarlierParts
-from ident.hybrid.coupled_rig import simulate_coupled
+from ident.hybrid.coupled_simulation import simulate_coupled
 from ident.hybrid.drawn_simulations import drawn_coupled
-from ident.hybrid.draws import drawn_parameters
+from ident.hybrid.parameter_samples import drawn_parameters
 from ident.run import Specimen
 from tests.hybrid.cases import fitted
 from tests.hybrid.coupled_cases import FAST, beam

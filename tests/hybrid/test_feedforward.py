@@ -13,10 +13,9 @@ import pytest
 
 from ident.errors import Unusable
 from ident.figures.feedforward import feedforward_figure
-from ident.figures.look import look
+from ident.figures.theme import look
 from ident.fit.result import FitResult
 from ident.fit.settings import Settings
-from ident.hybrid.draws import drawn_parameters
 from ident.hybrid.feedforward import (
     FeedforwardController,
     Plant,
@@ -26,8 +25,9 @@ from ident.hybrid.feedforward import (
     plant_of,
     tracked,
 )
-from ident.hybrid.followed import Followed
+from ident.hybrid.feedforward_tracking import FeedforwardTracking
 from ident.hybrid.inverse import Inverse
+from ident.hybrid.parameter_samples import drawn_parameters
 from ident.matrix import Actuator
 from ident.run import Specimen
 from ident.workflows import identify
@@ -141,7 +141,7 @@ def test_a_fit_gives_the_feedforward_and_its_band(fit):
     assert np.all(low <= high)
     assert np.mean((found.both >= low) & (found.both <= high)) > 0.5
     assert found.margin > 6
-    drawing = feedforward_figure(Followed.of(found, 40), look("light")).to_dict()
+    drawing = feedforward_figure(FeedforwardTracking.of(found, 40), look("light")).to_dict()
     assert "band" in str(drawing).lower()
     with pytest.raises(Unusable, match="supply_pressure"):
         plant_of(fit, replace(actuator, supply_pressure=None), 50.0)
@@ -159,7 +159,7 @@ def test_a_specimen_lowers_nothing_that_is_not_its_own():
 def test_a_loop_that_is_stable_at_any_gain_has_no_limit_in_words_and_in_json():
     """No infinity stands where a reader, or a JSON parser, expects a number."""
     curve = (0.0, 1.0)
-    found = Followed(
+    found = FeedforwardTracking(
         gain=20.0,
         limit=None,
         draws=0,
@@ -177,4 +177,4 @@ def test_a_loop_that_is_stable_at_any_gain_has_no_limit_in_words_and_in_json():
     )
     assert found.said[0] == "gain 20 V/m, stable at any gain"
     assert found.to_json()["limit"] is None
-    assert Followed.from_json(found.to_json()) == found
+    assert FeedforwardTracking.from_json(found.to_json()) == found

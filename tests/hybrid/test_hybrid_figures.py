@@ -12,8 +12,8 @@ from ident.figures.hybrid_response import hybrid_response, rows
 from ident.figures.hybrid_time import hybrid_time
 from ident.figures.share_map import share_map_chart
 from ident.figures.subjects import Simulated
+from ident.hybrid.hybrid_simulation import simulate_hybrid
 from ident.hybrid.linear_plant import linear_plant
-from ident.hybrid.rig import simulate_hybrid
 from ident.hybrid.share_map import share_map
 from tests.hybrid.cases import fitted, of_qian
 

@@ -7,8 +7,8 @@ import pytest
 import scipy.linalg
 
 from ident.hybrid.controller import no_controller
+from ident.hybrid.hybrid_simulation import simulate_hybrid
 from ident.hybrid.machine import machine
-from ident.hybrid.rig import simulate_hybrid
 from ident.hybrid.stability import spectral_radius
 from tests.hybrid.cases import fitted, of_qian
 from tests.reference.hybrid_reference import Actuator, Specimen, Structure, ramps, rods

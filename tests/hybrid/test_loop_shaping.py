@@ -15,7 +15,7 @@ from ident.hybrid.rational import Rational
 from ident.hybrid.reduction import deviation
 from ident.hybrid.sampled_loop import SampledLoop, channels
 from ident.hybrid.state_space import sampled_plant
-from ident.hybrid.target import QIAN2014_TARGET
+from ident.hybrid.target_loop import QIAN2014_TARGET
 from ident.linear import LinearModel
 from tests.hybrid.designs import IMPLIED, RATE, STATED, as_model, decibel, degrees, designed, matrices, measured, qian
 from tests.reference import controlled_loop_reference as reference

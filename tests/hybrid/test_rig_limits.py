@@ -10,7 +10,7 @@ import pytest
 from ident.hybrid.case import case_of
 from ident.hybrid.changed_machine import Change
 from ident.hybrid.controller_design import design_controller, on_case
-from ident.hybrid.rig import simulate_hybrid
+from ident.hybrid.hybrid_simulation import simulate_hybrid
 from ident.hybrid.what_if import what_if
 from ident.matrix import Actuator
 from ident.rig.limits import RigLimits

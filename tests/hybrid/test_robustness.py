@@ -11,8 +11,8 @@ from ident.errors import Unusable
 from ident.fit.result import Estimate
 from ident.fit.settings import Settings
 from ident.hybrid.controller_design import design_controller
-from ident.hybrid.draws import drawn_parameters
 from ident.hybrid.linear_plant import linear_plant
+from ident.hybrid.parameter_samples import drawn_parameters
 from ident.run import Specimen
 from ident.workflows import identify
 from tests.acceptance.matrices import as_matrix, records_of

@@ -11,10 +11,10 @@ import pytest
 import scipy.linalg
 
 from ident.errors import Unusable
-from ident.hybrid.acting import controller_called
 from ident.hybrid.case import case_of
-from ident.hybrid.ground import GRAVITY
-from ident.hybrid.rig import simulate_hybrid
+from ident.hybrid.controller_lookup import controller_called
+from ident.hybrid.ground_motion import GRAVITY
+from ident.hybrid.hybrid_simulation import simulate_hybrid
 from ident.hybrid.share_map import share_map
 from tests.hybrid.cases import EL_CENTRO, fitted
 from tests.reference.hybrid_reference import Actuator, Specimen, rods

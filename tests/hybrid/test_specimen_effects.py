@@ -9,11 +9,11 @@ import pytest
 import scipy.integrate
 
 from ident.hybrid.case import benchmark2020
-from ident.hybrid.followed import followed_in
+from ident.hybrid.feedforward_tracking import followed_in
+from ident.hybrid.hybrid_simulation import simulate_hybrid
 from ident.hybrid.linear_plant import linear_plant
 from ident.hybrid.loop_shaping import design
 from ident.hybrid.machine import machine
-from ident.hybrid.rig import simulate_hybrid
 from ident.hybrid.scores import rms
 from ident.hybrid.share_map import share_map
 from ident.hybrid.specimen_effects import reference_of

@@ -14,8 +14,8 @@ from ident.hybrid.case import qian
 from ident.hybrid.changed_machine import Change
 from ident.hybrid.controller_design import design_controller
 from ident.hybrid.drawn_simulations import drawn_simulations
-from ident.hybrid.draws import drawn_parameters
-from ident.hybrid.followed import followed_in
+from ident.hybrid.feedforward_tracking import followed_in
+from ident.hybrid.parameter_samples import drawn_parameters
 from ident.hybrid.what_if import what_if
 from ident.run import Specimen
 from tests.hybrid.cases import fitted, noise

@@ -9,15 +9,15 @@ import numpy as np
 import pytest
 
 from ident.errors import Unusable
-from ident.figures.look import look
 from ident.figures.render import render
 from ident.figures.root_locus import root_locus
+from ident.figures.theme import look
 from ident.figures.what_if_response import what_if_response
 from ident.fit.bulk_modulus import bulk_modulus, oil_volume, with_bulk_modulus
 from ident.fit.result import Estimate, FitResult
 from ident.hybrid.changed_machine import Change, changed_machine
-from ident.hybrid.fig_19 import PRINTED
 from ident.hybrid.oil_column import AS_GOOD, find_peak
+from ident.hybrid.qian_figure_19 import PRINTED
 from ident.hybrid.what_if import what_if
 from ident.matrix import Actuator
 from ident.run import Specimen

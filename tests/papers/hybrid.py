@@ -12,13 +12,13 @@ import numpy as np
 import scipy.integrate
 
 from ident.fit.settings import Settings
-from ident.hybrid.acting import controller_called
 from ident.hybrid.case import qian
 from ident.hybrid.compensation import Compensation
+from ident.hybrid.controller_lookup import controller_called
 from ident.hybrid.feedforward import command
-from ident.hybrid.followed import followed_in
+from ident.hybrid.feedforward_tracking import followed_in
+from ident.hybrid.hybrid_simulation import simulate_hybrid
 from ident.hybrid.machine import machine
-from ident.hybrid.rig import simulate_hybrid
 from ident.hybrid.specimen_effects import reference_of
 from ident.hybrid.tracked_run import track
 from ident.hybrid.tracking import Tracker
@@ -34,7 +34,7 @@ from tests.hybrid import test_feedforward as inverse
 from tests.hybrid import test_shaking_table as table
 from tests.hybrid import test_specimen_effects as hysteretic
 from tests.hybrid.cases import el_centro, fitted, of_fifth_order, of_qian
-from tests.hybrid.test_rig import shaped
+from tests.hybrid.test_hybrid_simulation import shaped
 from tests.papers import data
 from tests.papers.row import Measured, Row, counted
 from tests.reference import first_order_reference as lag

@@ -10,10 +10,10 @@ import scipy.integrate
 
 from ident.fit.result import FitResult
 from ident.fit.settings import Settings
+from ident.hybrid.hybrid_simulation import simulate_hybrid
 from ident.hybrid.linear_plant import linear_plant
 from ident.hybrid.loop_shaping import design
 from ident.hybrid.machine import machine
-from ident.hybrid.rig import simulate_hybrid
 from ident.hybrid.scores import rms
 from ident.hybrid.specimen_effects import reference_of
 from ident.readers import read_matrix

@@ -12,11 +12,11 @@ from ident.hybrid.case import qian
 from ident.hybrid.changed_machine import Change, changed_machine
 from ident.hybrid.chosen_gain import GainTarget, choose_gain
 from ident.hybrid.controller_design import design_controller
-from ident.hybrid.coupled_rig import simulate_coupled
+from ident.hybrid.coupled_simulation import simulate_coupled
 from ident.hybrid.drawn_simulations import drawn_simulations
-from ident.hybrid.fig_19 import PRINTED
+from ident.hybrid.hybrid_simulation import simulate_hybrid
 from ident.hybrid.oil_column import PeakSearch, find_peak
-from ident.hybrid.rig import simulate_hybrid
+from ident.hybrid.qian_figure_19 import PRINTED
 from ident.hybrid.share_map import share_map
 from ident.hybrid.what_if import WhatIf, what_if
 from ident.matrix import Actuator
@@ -28,7 +28,7 @@ from tests.hybrid.cases import el_centro, fitted, noise, of_qian
 from tests.hybrid.coupled_cases import beam
 from tests.hybrid.designs import STATED, decibel, degrees, designed, measured
 from tests.hybrid.test_coupled import NONE, TWO
-from tests.hybrid.test_rig import shaped
+from tests.hybrid.test_hybrid_simulation import shaped
 from tests.hybrid.test_spread import TWENTY, machines
 from tests.hybrid.test_what_if import AXES, SMALL, WIDER, fit_of
 from tests.papers.row import Measured, Row, counted

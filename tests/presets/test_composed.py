@@ -18,7 +18,7 @@ from ident.matrix import Actuator, Matrix
 from ident.presets import PRESETS, preset
 from ident.presets.description import CHOICES, SHOWN, described
 from ident.presets.machine import machine
-from ident.presets.suited import in_question
+from ident.presets.suitable_models import in_question
 from ident.readers import read_matrix
 from ident.run import Run
 from ident.workflows import diagnose, identify

@@ -19,7 +19,7 @@ from ident.errors import Unusable
 from ident.fit.settings import Settings
 from ident.matrix import Actuator, Matrix
 from ident.presets import preset
-from ident.presets.suited import in_question, suited
+from ident.presets.suitable_models import in_question, suitable_models
 from ident.readers import read_matrix
 from ident.run import Run
 from ident.workflows import compare, diagnose, identify
@@ -161,7 +161,7 @@ def test_friction_that_a_current_commands_is_named_where_it_follows_the_current(
 def test_a_moved_specimen_is_found(seed):
     """Stiffness and damping within 1 % and four standard errors; the error is the noise."""
     matrix = specimen(seed)
-    assert suited(matrix.runs)[0].name == "specimen"
+    assert suitable_models(matrix.runs)[0].name == "specimen"
     fit = identify(matrix, Settings(model="specimen"))
     for name, true in (("kS", 3e3), ("cS", 400.0)):
         found = fit.parameters[name]
@@ -201,7 +201,7 @@ def test_hidden_friction_of_a_specimen_is_named_and_the_error_falls_to_the_noise
 def test_a_motor_is_found(seed):
     """Speed gain and time constant: the mass is one by convention. Units are those of the command."""
     matrix = motor(seed)
-    assert suited(matrix.runs)[0].name == "motor"
+    assert suitable_models(matrix.runs)[0].name == "motor"
     fit = identify(matrix, Settings(model="motor"))
     assert fit.values["Kt"] / fit.values["c0"] == pytest.approx(3.5, rel=0.005)
     assert fit.values["m0"] / fit.values["c0"] == pytest.approx(0.3, rel=0.01)
@@ -243,7 +243,7 @@ def test_a_loop_that_nobody_stated_and_that_explains_hardly_anything_is_doubted(
 def test_where_no_model_is_driven_by_what_was_recorded_the_channels_are_named():
     run = Run("r", "", RATE, {"force": TIME, "displacement": TIME})
     with pytest.raises(Unusable, match="displacement, force"):
-        suited([run])
+        suitable_models([run])
     with pytest.raises(Unusable, match="use the model specimen"):
         identify(specimen(1), Settings())
 
@@ -272,7 +272,7 @@ def test_a_torque_or_a_force_drives_a_mass_and_nothing_else_is_in_question(unit,
     ],
 )
 def test_the_model_that_is_taken_for_measured_machines(measured_data, name, model):
-    assert suited(read_matrix(measured_data / name).runs)[0].name == model
+    assert suitable_models(read_matrix(measured_data / name).runs)[0].name == model
 
 
 def test_a_measured_damper_lacks_friction_that_yields_first(measured_data):
@@ -315,7 +315,7 @@ def test_a_specimen_that_is_moved_in_position_is_one_that_is_moved_in_speed():
         )
 
     by_position = replace(by_speed, runs=tuple(map(moved, by_speed.runs)))
-    assert suited(by_position.runs)[0].name == "specimen"
+    assert suitable_models(by_position.runs)[0].name == "specimen"
     fits = [identify(matrix, Settings(model="")) for matrix in (by_speed, by_position)]
     assert fits[1].model == "specimen"
     for name in ("cS", "kS"):

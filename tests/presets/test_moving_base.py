@@ -11,7 +11,7 @@ from scipy.signal import butter, sosfiltfilt
 
 from ident.fit.settings import Settings
 from ident.matrix import Actuator, Matrix
-from ident.presets.suited import in_question
+from ident.presets.suitable_models import in_question
 from ident.readers.column_names import channel_of
 from ident.readers.run_description import describe_run
 from ident.run import Run

@@ -15,7 +15,7 @@ from ident.effects import CATALOGUE
 from ident.fit.settings import Settings
 from ident.matrix import Actuator, Matrix
 from ident.presets import preset
-from ident.presets.suited import in_question, suited
+from ident.presets.suitable_models import in_question, suitable_models
 from ident.run import Run
 from ident.workflows import diagnose, identify
 from tests.conftest import of_few_effects
@@ -82,8 +82,8 @@ def test_what_is_stated_of_an_actuator_shows_oil():
 def test_no_cylinder_is_in_question_where_a_motor_turns(volts):
     t = np.arange(1000) / RATE
     run = Run("r", "", RATE, {"command": t, "velocity": t}, {"command": volts, "velocity": "rad/s"}, output="velocity")
-    assert not [known.name for known in suited([run]) if known.chain.has_oil]
-    assert [known.name for known in suited([run], oil=True) if known.chain.has_oil]
+    assert not [known.name for known in suitable_models([run]) if known.chain.has_oil]
+    assert [known.name for known in suitable_models([run], oil=True) if known.chain.has_oil]
 
 
 def test_an_electric_drive_has_no_effect_of_oil():

@@ -14,7 +14,7 @@ from ident.effects import CATALOGUE
 from ident.fit.settings import Settings
 from ident.matrix import Actuator, Matrix
 from ident.presets import preset
-from ident.presets.suited import in_question
+from ident.presets.suitable_models import in_question
 from ident.run import Run, Specimen
 from ident.workflows import diagnose, identify
 from tests.conftest import of_few_effects

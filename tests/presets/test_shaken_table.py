@@ -7,7 +7,7 @@ import pytest
 from scipy.signal import butter, lsim, sosfiltfilt
 
 from ident.matrix import Actuator, Matrix
-from ident.presets.suited import in_question
+from ident.presets.suitable_models import in_question
 from ident.run import Run
 from ident.workflows import identify
 

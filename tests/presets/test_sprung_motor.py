@@ -11,7 +11,7 @@ import scipy
 from ident.diagnosis.structure_selection import choose_structure
 from ident.fit.settings import Settings
 from ident.matrix import Actuator, Matrix
-from ident.presets.suited import in_question
+from ident.presets.suitable_models import in_question
 from ident.run import Run
 from ident.workflows import diagnose, identify
 from tests.conftest import of_few_effects

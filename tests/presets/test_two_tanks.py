@@ -12,7 +12,7 @@ from ident.diagnosis.candidate_models import CandidateModels
 from ident.fit.identification import Identification
 from ident.fit.settings import Settings
 from ident.matrix import Actuator, Matrix
-from ident.presets.suited import suited
+from ident.presets.suitable_models import suitable_models
 from ident.run import Run
 from ident.workflows import diagnose, identify
 
@@ -110,8 +110,8 @@ def test_an_overflow_is_tried_whatever_is_predicted_of_it(matrix):
 
 
 def test_tanks_are_thought_of_where_command_and_output_stay_on_one_side_of_zero(matrix):
-    assert "two_tanks" in {model.name for model in suited(matrix.runs)}
+    assert "two_tanks" in {model.name for model in suitable_models(matrix.runs)}
     run = matrix.runs[0]
     for name in ("command", "displacement"):
         about_zero = {**run.channels, name: run.channels[name] - run.channels[name].mean()}
-        assert "two_tanks" not in {model.name for model in suited([replace(run, channels=about_zero)])}
+        assert "two_tanks" not in {model.name for model in suitable_models([replace(run, channels=about_zero)])}

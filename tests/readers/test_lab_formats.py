@@ -159,20 +159,20 @@ PARSERS = {
 @pytest.mark.parametrize(("parser", "code"), [("eats", "too-large"), ("hangs", "too-slow"), ("crashes", "broken-eats")])
 def test_a_parser_that_goes_astray_ends_as_a_refusal(parser, code, tmp_path, monkeypatch):
     """One that eats memory, one that never ends, one that takes its process down."""
-    from ident.readers.apart import read_apart
+    from ident.readers.sandboxed_parser import read_sandboxed
 
     _install(tmp_path, monkeypatch, parser)
     limits = Limits(parser_seconds=1.0 if parser == "hangs" else 10.0, parser_memory=1 << 30)
     with pytest.raises(Unusable) as refused:
-        read_apart(parser, b"x", "run", limits)
+        read_sandboxed(parser, b"x", "run", limits)
     assert refused.value.code == code.replace("eats", parser)
 
 
 def test_what_a_parser_prints_is_not_taken_for_its_answer(tmp_path, monkeypatch):
-    from ident.readers.apart import read_apart
+    from ident.readers.sandboxed_parser import read_sandboxed
 
     _install(tmp_path, monkeypatch, "prints")
-    table = read_apart("prints", b"x", "run", LIMITS)
+    table = read_sandboxed("prints", b"x", "run", LIMITS)
     assert table.load([0])[0].tolist() == [1.0, 2.0]
     assert LIMITS.parser_seconds <= 10
     assert LIMITS.parser_memory <= 3 * LIMITS.file

@@ -7,7 +7,7 @@ import pytest
 
 from ident.drafts.answers import Answers
 from ident.drafts.draft import Draft
-from ident.drafts.raw import read_raw
+from ident.drafts.raw_file import read_raw
 from ident.errors import Unusable
 from ident.readers.dialect import Dialect
 from ident.readers.layout import recognise

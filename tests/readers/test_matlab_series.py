@@ -9,7 +9,7 @@ from contextlib import suppress
 import numpy as np
 import pytest
 
-from ident.drafts.raw import read_raw
+from ident.drafts.raw_file import read_raw
 from ident.errors import Unusable
 from ident.readers import mat_objects
 from ident.readers.limits import LIMITS

@@ -10,7 +10,7 @@ import h5py
 import numpy as np
 import pytest
 
-from ident.drafts.raw import read_raw
+from ident.drafts.raw_file import read_raw
 from ident.errors import Unusable
 from ident.readers.limits import LIMITS
 from ident.readers.mat import read_mat

@@ -9,7 +9,7 @@ import pytest
 import yaml
 
 from ident.drafts.draft import Answers, Draft
-from ident.drafts.raw import read_raw
+from ident.drafts.raw_file import read_raw
 from ident.errors import Unusable
 from ident.matrix import Matrix
 from ident.readers import read_matrix

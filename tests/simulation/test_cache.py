@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from ident.simulation import kept
+from ident.simulation import code_cache
 from ident.simulation.cache import IN_USE, OLDEST, tidy, tidy_daily
 
 DAY = 86_400.0
@@ -68,19 +68,19 @@ def test_a_folder_is_looked_through_once_a_day(tmp_path: Path) -> None:
 
 
 def test_a_new_kernel_makes_room_for_itself(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(kept, "cache_folder", lambda: tmp_path)
+    monkeypatch.setattr(code_cache, "cache_folder", lambda: tmp_path)
     kernel(tmp_path, "old", OLDEST + DAY)
-    kept.keep("a program", b"its machine code")
-    assert kept.found("a program") == b"its machine code"
+    code_cache.keep("a program", b"its machine code")
+    assert code_cache.found("a program") == b"its machine code"
     assert "old" not in names(tmp_path)
 
 
 def test_a_kernel_that_is_used_stays(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """However long ago it was compiled."""
-    monkeypatch.setattr(kept, "cache_folder", lambda: tmp_path)
-    kept.keep("a program", b"its machine code")
+    monkeypatch.setattr(code_cache, "cache_folder", lambda: tmp_path)
+    code_cache.keep("a program", b"its machine code")
     (file,) = (file for file in tmp_path.iterdir() if file.suffix == ".o")
     os.utime(file, (time.time() - OLDEST - DAY,) * 2)
-    assert kept.found("a program") == b"its machine code"
+    assert code_cache.found("a program") == b"its machine code"
     tidy(tmp_path)
-    assert kept.found("a program") == b"its machine code"
+    assert code_cache.found("a program") == b"its machine code"

@@ -14,7 +14,7 @@ import numba
 import numpy as np
 import pytest
 
-from ident.simulation import kept
+from ident.simulation import code_cache
 from ident.simulation.jit import jit, made_of, shared, within
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -31,7 +31,7 @@ def calling(x, bias=0.5):
 
 @pytest.fixture
 def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    monkeypatch.setattr(kept, "cache_folder", lambda: tmp_path)
+    monkeypatch.setattr(code_cache, "cache_folder", lambda: tmp_path)
     return tmp_path
 
 
@@ -107,7 +107,7 @@ def test_what_a_closure_reads_counts():
     assert list(made_of(scaled(2.0))) == list(made_of(scaled(2.0)))
 
 
-@pytest.mark.parametrize("read", [[1.0], kept])
+@pytest.mark.parametrize("read", [[1.0], code_cache])
 def test_what_may_change_unseen_is_refused(read):
     with pytest.raises(TypeError, match="GAIN"):
         list(made_of(calling(CALLED.replace("GAIN = 2.0", ""), GAIN=read)))
@@ -126,7 +126,7 @@ def test_one_process_at_a_time_compiles_a_function(folder):
         return True
 
     def fails() -> None:
-        with kept.in_turn("text"):
+        with code_cache.in_turn("text"):
             assert not is_free()
             raise ZeroDivisionError
 
@@ -137,18 +137,18 @@ def test_one_process_at_a_time_compiles_a_function(folder):
 
 def test_who_has_waited_for_long_compiles_by_itself(folder, monkeypatch):
     """A process that was interrupted while it compiled, and never ended, kept all others waiting."""
-    monkeypatch.setattr(kept, "LONGEST_TURN", 0.1)
-    with kept.in_turn("text"):
+    monkeypatch.setattr(code_cache, "LONGEST_TURN", 0.1)
+    with code_cache.in_turn("text"):
         (file,) = folder.glob("*.lock")
         with file.open("rb") as other, pytest.raises(BlockingIOError):
             fcntl.flock(other, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        with kept.in_turn("text"):
+        with code_cache.in_turn("text"):
             went_on = True
     assert went_on
 
 
 def test_it_is_compiled_where_nothing_can_be_kept(monkeypatch):
-    monkeypatch.setattr(kept, "cache_folder", lambda: Path("/nowhere"))
+    monkeypatch.setattr(code_cache, "cache_folder", lambda: Path("/nowhere"))
     assert calling()(1.5) == 3.5
 
 

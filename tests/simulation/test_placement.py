@@ -19,7 +19,7 @@ from ident.linear import LinearModel
 from ident.matrix import Actuator
 from ident.run import Run, Specimen
 from ident.presets import PRESETS, preset
-from ident.simulation.between import ends
+from ident.simulation.intersample_command import ends
 from ident.simulation.recursion import LANES, advance, discretise
 from ident.simulation.simulate import Simulation
 

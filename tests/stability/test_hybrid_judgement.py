@@ -12,8 +12,8 @@ from ident.hybrid.case import Case, qian
 from ident.hybrid.controller import no_controller
 from ident.hybrid.controller_design import design_controller
 from ident.hybrid.hybrid_loop import EarlierCase, judge_hybrid
+from ident.hybrid.hybrid_simulation import simulate_hybrid
 from ident.hybrid.machine import machine
-from ident.hybrid.rig import simulate_hybrid
 from ident.run import Specimen
 from ident.words.engineering import quantity
 from tests.hybrid.cases import fitted, noise

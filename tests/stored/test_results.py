@@ -11,7 +11,7 @@ from typing import Any, get_args, get_type_hints
 import pytest
 from pydantic import BaseModel
 
-from app.cli.given import read_diagnosis, read_fit
+from app.cli.input_files import read_diagnosis, read_fit
 from ident.diagnosis.competing_models import competing_models
 from ident.diagnosis.result import Diagnosis, LabelErrors, Verdict
 from ident.errors import Unusable

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from app.cli.arguments import bounds, method_options, values
 from app.cli.whatif import specimen_of
-from app.pages.what_if_asked import asked
+from app.pages.what_if_request import what_if_request
 from ident.errors import Unusable
 from ident.presets import preset
 from ident.readers.description import describe
@@ -79,8 +79,10 @@ def test_a_description_takes_one_in_quotes_and_names_it_where_yaml_parts_a_mappi
 
 
 def test_the_forms_of_the_pages_take_one():
-    wanted = asked({"gain_from": "2,5", "gain_to": "7,5", "specimen.mass": "0,87 kg", "tolerance": "1,5 Hz"})
-    assert wanted == asked({"gain_from": "2.5", "gain_to": "7.5", "specimen.mass": "0.87 kg", "tolerance": "1.5 Hz"})
+    wanted = what_if_request({"gain_from": "2,5", "gain_to": "7,5", "specimen.mass": "0,87 kg", "tolerance": "1,5 Hz"})
+    assert wanted == what_if_request(
+        {"gain_from": "2.5", "gain_to": "7.5", "specimen.mass": "0.87 kg", "tolerance": "1.5 Hz"}
+    )
 
 
 @pytest.mark.parametrize(

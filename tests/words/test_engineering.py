@@ -6,7 +6,7 @@ import pytest
 
 from ident.words.display import displaying
 from ident.words.engineering import NO_UNIT, multiple, printed_unit, quantity, scaled_unit
-from ident.words.symbols import symbol
+from ident.words.titles import symbol
 
 
 @pytest.mark.parametrize(

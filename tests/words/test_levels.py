@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from ident.run import USES
 from ident.words.severity import level, levels
-from ident.words.uses import DATA, data, runs
+from ident.words.titles import DATA, data, runs
 
 
 def test_levels_are_those_of_a_compiler_the_worst_first():

@@ -1,10 +1,10 @@
-"""Fractions in per cent."""
+"""Fractions and probabilities in per cent: a probability is said as far as it was calibrated, and never as certain."""
 
 from __future__ import annotations
 
 import pytest
 
-from ident.words.percent import change, percent, percent_in_print
+from ident.words.percent import change, percent, percent_in_print, probability_said
 
 
 @pytest.mark.parametrize(
@@ -41,3 +41,11 @@ def test_a_minus_may_be_the_printers():
 )
 def test_a_change_is_told_to_a_tenth_of_a_per_cent(share, sign, text):
     assert change(share, sign) == text
+
+
+@pytest.mark.parametrize(
+    ("p", "said"),
+    [(0.874, "87 %"), (0.01, "1 %"), (0.009, "under 1 %"), (0.99, "99 %"), (1.0, "over 99 %"), (None, "–")],
+)
+def test_a_probability_is_said_in_whole_per_cent_within_one_and_ninety_nine(p, said):
+    assert probability_said(p) == said

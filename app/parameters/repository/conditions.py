@@ -9,7 +9,7 @@ from typing import Any
 from sqlalchemy import BindParameter, ColumnElement, Select, bindparam, func, select
 from sqlalchemy.orm import aliased
 
-from app.parameters.wanted import Wanted
+from app.parameters.set_query import SetQuery
 from app.tables import ApprovalRow, SetRow, ValueRow
 
 Numbers = Select[Any]
@@ -44,7 +44,7 @@ class Shape:
     approved: bool | None
 
 
-def values(wanted: Wanted) -> dict[str, Any]:
+def values(wanted: SetQuery) -> dict[str, Any]:
     """What is asked, by the names under which the conditions read it."""
     found: dict[str, Any] = {name: getattr(wanted, name) for name in _READ if getattr(wanted, name) is not None}
     for at, (name, (lower, upper)) in enumerate(wanted.ranges.items()):
@@ -52,7 +52,7 @@ def values(wanted: Wanted) -> dict[str, Any]:
     return found
 
 
-def shape(wanted: Wanted) -> Shape:
+def shape(wanted: SetQuery) -> Shape:
     """The shape of what is asked."""
     given = frozenset(name for name in _READ if getattr(wanted, name) is not None)
     return Shape(given, len(wanted.ranges), wanted.current, wanted.approved)

@@ -8,9 +8,9 @@ from typing import Any, NamedTuple
 from sqlalchemy import BindParameter, bindparam, func, select
 from sqlalchemy.orm import Session
 
-from app.parameters.repository import found
+from app.parameters.repository import matching_sets
 from app.parameters.repository.conditions import APPROVAL, SET, approvals
-from app.parameters.wanted import Wanted
+from app.parameters.set_query import SetQuery
 from app.tables import ApprovalRow, SetRow, ValueRow
 
 
@@ -60,9 +60,9 @@ _APPROVALS_OF = (
 )
 
 
-def sets(session: Session, wanted: Wanted, before: int | None, limit: int) -> list[FoundSet]:
+def sets(session: Session, wanted: SetQuery, before: int | None, limit: int) -> list[FoundSet]:
     """Sets, newest first, from the one before this number on."""
-    numbers = found.numbers(session, wanted, before, limit)
+    numbers = matching_sets.numbers(session, wanted, before, limit)
     asked = {"numbers": numbers}
     values: dict[int, list[Any]] = {number: [] for number in numbers}
     for row in session.execute(_VALUES_OF, asked):
@@ -77,11 +77,11 @@ def sets(session: Session, wanted: Wanted, before: int | None, limit: int) -> li
     return [FoundSet._make([*row, values[row[0]], approved.get(row[0]), row[0] in current]) for row in rows]
 
 
-def titles(session: Session, wanted: Wanted) -> Sequence[tuple[str, str]]:
+def titles(session: Session, wanted: SetQuery) -> Sequence[tuple[str, str]]:
     """Name and unit of every parameter that these sets have."""
     query = select(ValueRow.name, ValueRow.unit).group_by(ValueRow.name, ValueRow.unit)
-    if wanted != Wanted():
-        query = query.where(ValueRow.number.in_(found.every(wanted)))
+    if wanted != SetQuery():
+        query = query.where(ValueRow.number.in_(matching_sets.every(wanted)))
     return [(name, unit) for name, unit in session.execute(query.order_by(func.min(ValueRow.place), ValueRow.name))]
 
 

@@ -13,7 +13,7 @@ from ident.chain.conditions import conditions
 from ident.diagnosis.auxiliary_channels import channels_of
 from ident.diagnosis.criteria import CRITERIA
 from ident.diagnosis.fitted_model import FittedModel
-from ident.fit.anchoring import Anchoring
+from ident.fit.multiple_shooting import ShootingWindows
 from ident.fit.responses import Sensitivities
 from ident.matrix import Actuator
 from ident.parallel import each
@@ -42,7 +42,7 @@ class RunData:
     sensitivities: Array
     free: Array
     residual: Array
-    anchoring: Anchoring
+    anchoring: ShootingWindows
     signals: Mapping[str, Array]
 
 

@@ -29,7 +29,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ident.equations.grammar import statement_of
-from ident.simulation.kept import kept
+from ident.simulation.code_cache import kept
 from ident.simulation.kernel.vector_functions import FUNCTIONS, declared, everywhere, function
 from ident.simulation.uninterrupted import uninterrupted
 

@@ -13,7 +13,7 @@ from fastapi.testclient import TestClient
 from sqlalchemy import text as statement
 from sqlalchemy.exc import DBAPIError
 
-from app.access import noting
+from app.access import audited_changes
 from app.tables import AnswerRow, AuditRow, Base, SessionRow, TokenRow, WorkerRow
 from tests.app.access.table import API, OF_API, Call
 from tests.app.conftest import zipped
@@ -126,7 +126,7 @@ def test_a_change_leaves_one_line_and_is_none_without_it(
     path, sent = API + call.path.format(**of), content(call, made)
     headers = {"Authorization": f"Bearer {made['bearer']}", "X-Request-ID": request, "Idempotency-Key": request}
     with monkeypatch.context() as patch:
-        patch.setattr(noting.repository, "note", full)
+        patch.setattr(audited_changes.repository, "note", full)
         answer = service.request(call.method, path, headers=headers, **sent)
     assert (answer.status_code, answer.json()["code"]) == (507, "disk-full")
     assert (lines(service), stored(service)) == (before, rows)

@@ -16,7 +16,7 @@ from typing import Any
 
 import pytest
 
-from app.jobs.course import Course
+from app.jobs.stage_times import Course
 from app.jobs.time_left import MOST, time_left
 from ident.progress import Progress
 

@@ -11,9 +11,9 @@ import pytest
 from sqlalchemy.orm import Session
 
 from app.database import connect, migrate, sessions
-from app.jobs.course import Course
 from app.jobs.history import elapsed, left
 from app.jobs.service import view
+from app.jobs.stage_times import Course
 from app.settings import Settings
 from app.tables import JobRow, before
 from ident.progress import Progress

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import pytest
 
-from app.jobs.course import Course, read
+from app.jobs.stage_times import Course, read
 from app.jobs.time_left import time_left
 from ident.progress import Progress
 

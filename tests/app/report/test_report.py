@@ -8,7 +8,7 @@ from html.parser import HTMLParser
 
 import pytest
 
-from app.cli.given import read_diagnosis
+from app.cli.input_files import read_diagnosis
 from app.report.document import document
 from ident.diagnosis.result import Diagnosis
 from ident.errors import Unusable

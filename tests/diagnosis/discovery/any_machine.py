@@ -18,7 +18,7 @@ from ident.diagnosis.candidate_models import CandidateModels
 from ident.diagnosis.discovery.candidate_terms import signals_of
 from ident.diagnosis.discovery.run_data import RunData
 from ident.errors import Unusable
-from ident.fit.anchoring import Anchoring
+from ident.fit.multiple_shooting import ShootingWindows
 from ident.fit.settings import Settings
 from ident.fit.simulated_runs import every_run
 from ident.matrix import Actuator, Matrix
@@ -111,7 +111,7 @@ def records(models: CandidateModels, kind: str) -> tuple[RunData, ...]:
         beside = {name: np.full(run.length, value) for name, value in conditions(run, models.matrix.actuator).items()}
         sensitivities = np.column_stack([_signal(kind, rng, time) for _ in range(3)])
         residual = np.zeros(run.length) if kind == "noise-free" else 0.01 * rng.standard_normal(run.length)
-        record = RunData(run, RATE, sensitivities, np.ones((run.length, 1)), residual, Anchoring(0), signals)
+        record = RunData(run, RATE, sensitivities, np.ones((run.length, 1)), residual, ShootingWindows(0), signals)
         found.append(replace(record, signals={**beside, "t": time, **signals}))
     return tuple(found)
 

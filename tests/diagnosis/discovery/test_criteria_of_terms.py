@@ -21,7 +21,7 @@ from ident.diagnosis.discovery.term_candidate import TermCandidate, term_candida
 from ident.diagnosis.discovery.term_evidence import TermEvidence, _of_run
 from ident.diagnosis.discovery.term_library import TermLibrary
 from ident.diagnosis.discovery.term_to_effect import definition, searched_bounds
-from ident.fit.anchoring import Anchoring
+from ident.fit.multiple_shooting import ShootingWindows
 from ident.presets import preset
 from ident.run import Run
 
@@ -102,7 +102,7 @@ def test_the_search_reaches_a_third_beyond_the_band_of_the_command(frequency, in
     """A line at so many times the end of the band, in the regression and in the evidence."""
     rate, band = 100.0, 2 * np.pi * 10.0
     line = np.sin(frequency * band * np.arange(2000) / rate)
-    record: Any = SimpleNamespace(rate=rate, anchoring=Anchoring(0))
+    record: Any = SimpleNamespace(rate=rate, anchoring=ShootingWindows(0))
     found, _ = _within(line[:, None], record, band)
     assert bool(np.abs(found).max() > 1.0) is inside
     floor = np.random.default_rng(1).standard_normal(2000)
@@ -257,7 +257,7 @@ def test_two_first_values_lead_to_one_refit_within_a_hundredth_of_the_range(valu
 
 @pytest.mark.parametrize(("size", "sound"), [(0.8e60, True), (1.2e60, False)])
 def test_a_response_beyond_all_numbers_has_diverged(size, sound):
-    record: Any = SimpleNamespace(rate=1.0, anchoring=Anchoring(0))
+    record: Any = SimpleNamespace(rate=1.0, anchoring=ShootingWindows(0))
     _, finite = _within(np.array([[size], [0.0], [0.0]]), record, 1.0)
     assert bool(finite[0]) is sound
 

@@ -13,7 +13,7 @@ from ident.diagnosis.discovery import regressors
 from ident.diagnosis.discovery.regression import _rows
 from ident.diagnosis.discovery.regressors import Regressors
 from ident.diagnosis.discovery.term import Term
-from ident.fit.anchoring import Anchoring
+from ident.fit.multiple_shooting import ShootingWindows
 from ident.linear import LinearModel
 from ident.residuals.decimation import Response
 
@@ -27,7 +27,7 @@ def test_a_column_is_to_the_bit_what_it_is_alone(window):
     record = SimpleNamespace(
         run=SimpleNamespace(measured=rng.standard_normal(N)),
         rate=RATE,
-        anchoring=Anchoring(window),
+        anchoring=ShootingWindows(window),
         residual=rng.standard_normal(N),
         sensitivities=rng.standard_normal((N, 2)),
         free=rng.standard_normal((N, 1)),
