@@ -68,11 +68,11 @@ def left(folder: Path) -> int:
 
 
 def main(folder: Path, version: str, dies: int) -> None:
-    from app.jobs import engine
+    from app.jobs import engine, worker_side
     from app.settings import Settings
 
     if version == "older":
-        engine.added = lambda before, made: made  # noqa: ARG005  every step stored the whole history
+        worker_side.added = lambda before, made: made  # noqa: ARG005  every step stored the whole history
     queue = engine.Jobs(Settings(data=folder), Search(folder, dies))
     queue.launch()
     queue.submit(JOB)
