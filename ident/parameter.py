@@ -32,7 +32,7 @@ class Starts(Enum):
     STROKE_END = "end of the stroke"
     """The inverse of a way, 1/m: of the largest way that was covered, where a stop that was hit stands."""
     TOP_SPEED = "top speed"
-    """The inverse of a speed, s/m: of the largest speed that was measured, at which what limits it begins to act."""
+    """The inverse of a speed, s/m: of the largest speed that was measured, at which a limit begins to act."""
     STROKE_MIDDLE = "middle of the stroke"
     """A place, m: held at the middle of the stroke, to both sides of which the effect acts."""
     TIME = "time"

@@ -65,8 +65,8 @@ def way_of(effect: Effect) -> Parameter | None:
 def strength_in_records(base: FittedModel, effect: Effect) -> float | None:
     """The strength that the records show by themselves, SI; None where they show none.
 
-    A stop that was hit stands at the end of the way that was covered, to both sides of the middle of the stroke. What
-    limits a speed acts at the largest one.
+    A stop that was hit stands at the end of the way that was covered, to both sides of the middle of the stroke; a
+    limit of the speed at the largest one.
     """
     return _at_top_speed(base) if effect.strength.start is Starts.TOP_SPEED else _at_end(base, effect, {})
 

@@ -25,7 +25,7 @@ _NO_VALUE, _IN_CELL, _FIRST_CELL = 0, 1, 2
 """How a property stands: by a name, in a cell, in the table itself; and the cell of the first value."""
 _SERIES = "timeseries"
 _SIMULATION, _OUTPUTS, _CLOCK = "SimulationOutput", "Data", "tout"
-"""What Simulink returns, its property with the logged signals, and the one of these that is their time in s."""
+"""The output of a simulation, its property with the logged signals, and the one of these that is their time in s."""
 _DEEPEST = 8
 """Objects within objects, as a signal in a data set of Simulink."""
 _PER_SECOND = {"seconds": 1.0, "milliseconds": 1e-3, "microseconds": 1e-6, "minutes": 60.0, "hours": 3600.0}
