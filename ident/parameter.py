@@ -31,6 +31,8 @@ class Starts(Enum):
     """A time, s, in which a part relaxes: along its axis, which goes to many times the time of an answer."""
     STROKE_END = "end of the stroke"
     """The inverse of a way, 1/m: of the largest way that was covered, where a stop that was hit stands."""
+    TOP_SPEED = "top speed"
+    """The inverse of a speed, s/m: of the largest speed that was measured, at which a limit begins to act."""
     STROKE_MIDDLE = "middle of the stroke"
     """A place, m: held at the middle of the stroke, to both sides of which the effect acts."""
     TIME = "time"

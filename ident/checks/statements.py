@@ -13,7 +13,7 @@ from ident.run import BENCH
 from ident.words.message import Message, message
 
 FEWEST = 100  # samples to fit: ten for each of the six parameters and four initial states of a position loop
-_TURNING = ("rad", "rad/s", "N*m")  # units of an output
+_NO_CYLINDER = ("rad", "rad/s", "N*m", "1")  # units of an output of what turns, and of one in unknown units
 
 
 def statements(matrix: Matrix) -> Iterator[Finding]:
@@ -26,7 +26,7 @@ def statements(matrix: Matrix) -> Iterator[Finding]:
         for run in known
         if {"command", "drive_force"} & run.channels.keys()
         and run.units.get("command") != "1"
-        and run.units.get(run.output) not in _TURNING
+        and run.units.get(run.output) not in _NO_CYLINDER
         and run.output not in ("temperature", "current")
     ]
     hydraulic = [run for run in runs if "drive_force" not in run.channels]

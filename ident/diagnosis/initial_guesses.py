@@ -65,9 +65,10 @@ def way_of(effect: Effect) -> Parameter | None:
 def strength_in_records(base: FittedModel, effect: Effect) -> float | None:
     """The strength that the records show by themselves, SI; None where they show none.
 
-    A stop that was hit stands at the end of the way that was covered, to both sides of the middle of the stroke.
+    A stop that was hit stands at the end of the way that was covered, to both sides of the middle of the stroke; a
+    limit of the speed at the largest one.
     """
-    return _at_end(base, effect, {})
+    return _at_top_speed(base) if effect.strength.start is Starts.TOP_SPEED else _at_end(base, effect, {})
 
 
 def strength_in_model(base: FittedModel, effect: Effect) -> float | None:
@@ -87,6 +88,19 @@ def _at_end(base: FittedModel, effect: Effect, zeros: Mapping[str, float]) -> fl
     ]
     way = max((float(np.max(np.abs(x - middle))) for x in moved), default=0.0)
     return 1.0 / way if way > 0 else None
+
+
+def _at_top_speed(base: FittedModel) -> float | None:
+    """The inverse of the largest speed: measured, or that of a position over a quarter of the shortest period."""
+    top = 0.0
+    for run in base.fitness.runs:
+        if run.output == "velocity":
+            top = max(top, float(np.max(np.abs(run.measured))))
+        elif run.output == "displacement":
+            steps = max(1, round(run.sample_rate * np.pi / (2.0 * base.fitness.band)))
+            moved = np.abs(run.measured[steps:] - run.measured[:-steps])
+            top = max(top, float(np.max(moved, initial=0.0)) * run.sample_rate / steps)
+    return 1.0 / top if top > 0 else None
 
 
 def _guesses_of(base: FittedModel, parameter: Parameter, space: Space, known: Mapping[str, float]) -> tuple[float, ...]:

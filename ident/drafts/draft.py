@@ -346,8 +346,10 @@ def _clock(file: RawFile, said: FileAnswers) -> tuple[Answer, str, tuple[str, ..
         return Answer(answer.column, answer.unit or column.unit), "", tuple(_other_unit(column, answer.unit))
     named = [] if answer.column == NONE else [column for column in file.columns if is_time(column.meaning)]
     if len(named) == 1:
-        by_name = str(message("draft.named", column=shown(named[0].name), use="time"))
-        found = Answer(named[0].name, answer.unit or named[0].unit)
+        unit = unit_of(named[0])
+        use = "time" if unit == named[0].unit else f"time in {unit}"
+        by_name = str(message("draft.named", column=shown(named[0].name), use=use))
+        found = Answer(named[0].name, answer.unit or unit)
         return found, "", (by_name, *_other_unit(named[0], answer.unit))
     if (rate := file.rate) is None:
         clock = None if answer.column == NONE else unnamed_clock(file)

@@ -47,8 +47,8 @@ def _fitting(channel: str, columns: Sequence[Column]) -> Sequence[Column]:
 
 
 def unit_of(column: Column) -> str:
-    """The unit that the file states, or that the name is."""
-    return column.unit or next((unit for unit in UNITS_BY_NAME if said(column.meaning) == unit), "")
+    """The unit that the file states, or that the name tells."""
+    return column.unit or UNITS_BY_NAME.get(said(column.meaning), "")
 
 
 def unnamed_clock(file: RawFile) -> Column | None:

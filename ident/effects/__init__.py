@@ -66,6 +66,7 @@ OF_BENCH = _of_files(
 OF_RECORDS = _of_files(
     "speed_asymmetry",
     "progressive_drive",
+    "speed_limit",
     "root_outflow",
     "drive_hysteresis",
     "second_capacity",

@@ -79,6 +79,11 @@ def one_sided_command(matrix: Matrix) -> bool:
     return all("command" in run.channels and one_sided(run.command) for run in matrix.runs)
 
 
+def force_commanded(matrix: Matrix) -> bool:
+    """Whether the command of every run is the force of a drive, by its unit, and its motion is measured."""
+    return all(run.units.get("command") in ("N", "N*m") and run.output != "force" for run in matrix.runs)
+
+
 def speed_measured(matrix: Matrix) -> bool:
     """Whether a speed was recorded of every run, by a sensor of its own."""
     return all(run.output == "velocity" for run in matrix.runs)

@@ -37,7 +37,7 @@ through, T for the time of an answer; L and V, as W, are typical of the runs: th
 `_OWN`: within its own bounds.
 """
 
-_OF_MOTION = {"m": ("L", 2.0), "1/m": ("1/L", 2.0), "m/s": ("V", 1.0)}
+_OF_MOTION = {"m": ("L", 2.0), "1/m": ("1/L", 2.0), "m/s": ("V", 1.0), "s/m": ("1/V", 2.0)}
 """The same of what belongs to the motion, which would else be measured by the drive signal, or by its own bounds.
 
 A way of up to two deviations of the motion: a specimen may yield, or a spring begin to act, at the end of a sine only.

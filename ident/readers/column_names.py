@@ -118,8 +118,8 @@ TIMES = (
     "时间",
 )  # fmt: skip
 """Names of a column of times."""
-UNITS_BY_NAME = ("rpm",)
-"""Names that are a unit: what is called so is measured in it."""
+UNITS_BY_NAME = {"rpm": "rpm", "tout": "s"}
+"""The unit of what is called so: a name that is one, and the time of Simulink, which counts seconds."""
 _BY_UNIT = ("displacement", "velocity", "acceleration", "force")
 _IN_NAME = re.compile(r"^(.*\S)\s*[\[(<{\uff08]\s*([^\[\](){}<>\uff08\uff09]+?)\s*[\])>}\uff09]$")  # wide brackets, too
 _LETTERS = "mstAKlLhgNVWJ"

@@ -1,4 +1,4 @@
-"""The objects of a v5 MAT file: signals that MATLAB and Simulink save as ``timeseries``.
+"""The objects of a v5 MAT file: signals that MATLAB and Simulink save as ``timeseries``, and arrays of a simulation.
 
 A variable that is an object holds a reference alone. What it refers to stands behind the last variable, in an array of
 bytes that is a MAT file of its own: a table of names, classes and objects, and a cell for the value of each property.
@@ -24,6 +24,8 @@ _NAMES_AT = 40
 _NO_VALUE, _IN_CELL, _FIRST_CELL = 0, 1, 2
 """How a property stands: by a name, in a cell, in the table itself; and the cell of the first value."""
 _SERIES = "timeseries"
+_SIMULATION, _OUTPUTS, _CLOCK = "SimulationOutput", "Data", "tout"
+"""The output of a simulation, its property with the logged signals, and the one of these that is their time in s."""
 _DEEPEST = 8
 """Objects within objects, as a signal in a data set of Simulink."""
 _PER_SECOND = {"seconds": 1.0, "milliseconds": 1e-3, "microseconds": 1e-6, "minutes": 60.0, "hours": 3600.0}
@@ -106,6 +108,8 @@ class Objects:
                 if self.kind(number) == _SERIES:
                     yield from self._signal(held, called)
                     continue
+                if self.kind(number) == _SIMULATION:
+                    yield from _logged_arrays(held.get(_OUTPUTS))
                 for each in held.values():
                     yield from self._series(each, called, depth - 1, seen)
 
@@ -131,6 +135,17 @@ class Objects:
     def _part(self, value: Value) -> dict[str, Value]:
         """The properties of the one object that a value refers to."""
         return self.properties(value.objects[0]) if isinstance(value, Reference) and value.objects else {}
+
+
+def _logged_arrays(outputs: Value) -> Iterator[Series]:
+    """The arrays that Simulink logged, by their own names; those of another length than `tout` have no time."""
+    time = outputs.get(_CLOCK) if isinstance(outputs, dict) else None
+    if not isinstance(outputs, dict) or not isinstance(time, np.ndarray):
+        return
+    for field, values in outputs.items():
+        rows = _by_time(values, time.size) if isinstance(values, np.ndarray) and field != _CLOCK else None
+        if rows is not None:
+            yield Series(field, time.ravel(), rows, "")
 
 
 def _samples(length: float) -> int:

@@ -118,13 +118,13 @@ VERDICT: Mapping[str, str] = {
     "verdict.partly": "With {effects:all} the error on estimation data falls {change}.",
     "verdict.unconfirmed": "No effect was confirmed that lowers the error of {before:error}.",
     "verdict.shows_nothing":
-        "With {named} the error on estimation data falls further, but validation data show nothing of it: the error "
-        "there is {before:error} without it and {after:error} with it, and would be {due:error} if it acted. Either it "
+        "With {named} the error on estimation data falls further, but not beyond chance on validation data: it is "
+        "{before:error} there without it and {after:error} with it, and would be {due:error} if it acted. Either it "
         "only imitates something else, or the machine was different in these runs.",
     "verdict.changes_more":
-        "With {named} the error on estimation data falls further, but not on validation data: it is {before:error} "
-        "there without it and {after:error} with it, which changes the output by {shown:error}, more than the whole "
-        "error. Either it only imitates something else, or the machine was different in these runs.",
+        "With {named} the error on estimation data falls further, but not beyond chance on validation data: it is "
+        "{before:error} there without it and {after:error} with it, which changes the output by {shown:error}, more "
+        "than the whole error. Either it only imitates something else, or the machine was different in these runs.",
     "verdict.white":
         "Nothing seems to be missing: the residual, {before:error}, is white. The noise floor is not known.",
     "verdict.unpredicted":

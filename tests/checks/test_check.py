@@ -270,6 +270,23 @@ def test_a_machine_that_turns_is_asked_for_nothing_of_a_cylinder(faulty):
         assert ("repeat" in codes) is (of is moved)
 
 
+def test_an_output_in_unknown_units_is_asked_for_nothing_of_a_cylinder(faulty):
+    """Steps of an encoder for each second that a voltage makes: no ratio of a cylinder follows from a piston area."""
+    runs = [
+        replace(
+            run,
+            gain=None,
+            specimen=None,
+            output="velocity",
+            units={"command": "V", "velocity": "1"},
+            channels={"command": run.command, "velocity": run.measured},
+        )
+        for run in faulty.matrix.runs
+    ]
+    bare = replace(faulty.matrix, runs=tuple(runs), actuator=replace(faulty.matrix.actuator, piston_area=None))
+    assert not {finding.code for finding in check(bare)} & {"no-piston-area", "no-specimen", "one-condition"}
+
+
 def test_a_motion_called_command_that_a_force_answers_is_neither_a_controllers_nor_asked_for_a_specimen():
     """A specimen under load control: its motion follows the force, as a controller's command does."""
     rng = np.random.default_rng(3)

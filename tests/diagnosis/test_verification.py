@@ -100,6 +100,14 @@ def test_no_error_is_foretold_by_an_effect_that_changes_the_output_by_more_than_
     assert said in str(_shows_nothing("lead", change))
 
 
+@pytest.mark.parametrize("shown", [0.4, 0.6])
+def test_a_fall_within_chance_is_not_called_none(shown):
+    """Half of the power went, within two standard errors of a few blocks: *nothing of it*, it was said."""
+    change = VerifyChange("lead", 0.5, 0.36, 0.1, shown=shown)
+    said = str(_shows_nothing("lead", change))
+    assert "falls further, but not beyond chance on validation data: it is 50.0 % there without it and 36.0 %" in said
+
+
 def test_what_acts_seldom_shows_nothing():
     runs = [run_of(1)]
     found = [
@@ -160,7 +168,7 @@ def test_what_validation_data_show_nothing_of_is_said_and_not_named():
     assert (found.verdict.effects, found.verdict.unconfirmed) == ((), ("dead_zone",))
     assert [rung.added for rung in found.ladder] == [None, "dead_zone"]
     assert (recommended(found).added, [rung.added for rung in found.confirmed_ladder]) == ((), [None])
-    assert "falls further, but not on validation data: it is" in found.verdict.text
+    assert "falls further, but not beyond chance on validation data: it is" in found.verdict.text
     assert found.summary[0].startswith("Not confirmed: dead zone")
     assert found.summary[2].startswith("Next: compare the conditions of the validation runs")
     assert Diagnosis.from_json(found.to_json()).verdict == found.verdict

@@ -241,6 +241,18 @@ def test_a_command_that_rests_and_jumps_is_taken_as_held_and_it_is_said(command,
     assert not any("hold:" in doubt for doubt in said.doubts)
 
 
+def test_the_time_of_simulink_is_in_seconds_unless_another_unit_is_said():
+    """A file that it writes names its clock `tout` and states no unit; a time of another name is asked for its own."""
+    rows = [f"{n / 100:g},{np.sin(n):.6f},{np.sin(n - 1):.6f}" for n in range(40)]
+    draft = Draft([raw("\n".join(["tout,command (V),speed (rpm)", *rows, ""]))], Answers(serial="M"))
+    assert draft.description()["runs"][0]["time"] == {"column": "tout", "unit": "s"}
+    assert any("'tout' is used as time in s" in doubt for doubt in draft.doubts)
+    said = replace(draft, answers=Answers(serial="M", time=Answer("", "ms")))
+    assert said.description()["runs"][0]["time"] == {"column": "tout", "unit": "ms"}
+    other = Draft([raw("\n".join(["time,command (V),speed (rpm)", *rows, ""]))], Answers(serial="M"))
+    assert any("unit of the time" in missing.question for missing in other.missing)
+
+
 def test_of_a_record_without_a_command_the_motion_is_said_to_be_linear_between_samples():
     text = "\n".join(["time (s),travel (mm),load (N)", *(f"{n / 100:g},{np.sin(n / 9):g},1" for n in range(90)), ""])
     channels = {"displacement": Answer("travel (mm)"), "force": Answer("load (N)")}

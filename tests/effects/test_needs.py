@@ -98,6 +98,12 @@ def mass(resists: Callable[[float, float, float], float]) -> np.ndarray:
     return solved(rates, 2)[0]
 
 
+def beyond_speed(force: float, speed: float) -> float:
+    """The part of a force that a drive lacks, which ends between 0.72 and 0.9 m/s in its own direction."""
+    along = speed if force > 0 else -speed
+    return force * float(np.interp(along, [0.72, 0.9], [0.0, 1.0]))
+
+
 def tanks(edge: float) -> np.ndarray:
     """The lower of two tanks that run out by Torricelli's law; the upper runs over an edge, or with 0 over none."""
 
@@ -315,6 +321,12 @@ CASES = {
         lambda k: mass(lambda _t, x, _v: 30.0 * k * np.sin(x - 0.5)),
         {},
     ),
+    "speed_limit": Case(
+        "drive",
+        {"speed_limit.inverse_speed": 1.0 / 0.9, "speed_limit.share": 0.2},
+        lambda k: mass(lambda t, _x, v: beyond_speed(at(FORCE, t), k * v)),
+        {},
+    ),
     "load_friction": Case(
         "drive",
         {"load_friction.coefficient": 0.4},
@@ -409,9 +421,9 @@ def test_an_effect_is_looked_for_only_where_the_record_could_show_it():
     }  # its own outflow has one
     driven = {"command": "N", "displacement": "m", "vertical_load": "N", "load_pressure": "Pa"}
     recorded = {"command": FORCE, "displacement": about_zero}
-    assert not of_records & candidates("drive", driven, **recorded) - springs
+    assert of_records & candidates("drive", driven, **recorded) - springs == {"speed_limit"}
     found = candidates("drive", driven, vertical_load=SQUEEZE, load_pressure=SQUEEZE, **recorded)
-    assert of_records & found - springs == {"normal_force_friction", "pressure_friction"}
+    assert of_records & found - springs == {"normal_force_friction", "pressure_friction", "speed_limit"}
     answers = Run("r", "", RATE, {"velocity": SPEED, "force": FORCE, "load_pressure": SQUEEZE}, {}, output="force")
     moves = CandidateModels.of(Matrix(Actuator("A"), (answers,)), Settings(model="specimen")).effects
     shown = {"pressure_friction", "pressure_force", "degrading_hysteresis", "relaxation", "bilinear_stiffness"}
@@ -424,8 +436,10 @@ def test_an_effect_is_looked_for_only_where_the_record_could_show_it():
     rectified = candidates("motor", volts, command=FORCE, velocity=np.abs(speed))
     assert of_records & rectified - springs == {*motor, "rectified_sensor"}
     assert "rectified_sensor" not in candidates("motor", volts, command=LEVEL, velocity=np.abs(speed))
-    for turning in ({"command": "N*m", "displacement": "rad"}, {"command": "1", "displacement": "1"}):
-        assert of_records & candidates("drive", turning, **recorded) - springs == {"arm_gravity", "load_friction"}
+    for unit, more in (("N*m", {"speed_limit"}), ("1", set[str]())):
+        turning = {"command": unit, "displacement": "rad" if more else "1"}
+        found = candidates("drive", turning, **recorded) - springs
+        assert of_records & found == {"arm_gravity", "load_friction", *more}
 
 
 @pytest.mark.parametrize(

@@ -92,11 +92,12 @@ def test_such_a_decision_would_be_found(line):
 
 
 def test_what_an_effect_states_is_of_its_kind():
-    """A phase is a plain number, a frequency 1/s, a time s, an end of the stroke 1/m; what is known has any."""
+    """A phase is a plain number, a frequency 1/s, a time s, an end of the stroke 1/m, a top speed s/m."""
     units = {
         Starts.PHASE: "1",
         Starts.SPECTRAL_LINES: "1/s",
         Starts.STROKE_END: "1/m",
+        Starts.TOP_SPEED: "s/m",
         Starts.STROKE_MIDDLE: "m",
         Starts.TIME: "s",
         Starts.FRICTION: "Pa",

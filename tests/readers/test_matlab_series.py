@@ -201,3 +201,18 @@ def test_objects_that_all_refer_to_all_are_looked_at_once():
     )
     assert objects.properties(1) == {"p": everyone}
     assert list(objects.series(everyone, "x")) == []
+
+
+def test_arrays_that_simulink_logged_are_a_record_with_their_time():
+    """What ``sim`` returns holds them by their names; one of another length than their time is left out."""
+    objects = Objects()
+    contents = {"tout": column(T), "angle": column(SPEED), "inputU": column(VOLTS), "levels": array([[1.0], [2.0]])}
+    words = [name.encode().ljust(8, b"\0") for name in contents]
+    fields = element(5, struct.pack("<i", 8)) + element(1, b"".join(words))
+    logged = element(14, head(2, (1, 1)) + fields + b"".join(contents.values()))
+    out = objects.add("SimulationOutput", Data=logged)
+    table = read_mat(file(opaque("out", "Simulink.SimulationOutput", out), objects.behind()), "log.mat", LIMITS)
+    assert table.names == ("time", "angle", "inputU")
+    assert table.units == ("s", "", "")
+    for found, wanted in zip(table.load([0, 1, 2]), (T, SPEED, VOLTS), strict=True):
+        np.testing.assert_array_equal(found, wanted)
