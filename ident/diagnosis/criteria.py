@@ -443,6 +443,10 @@ class Conclusion:
     """[ratio of errors] Up to which terms alone come before terms in addition to the added effects. Why: they need one
     effect less.
     Test: test_criteria_of_comparison.py::test_terms_alone_come_first_up_to_an_error_five_per_cent_larger"""
+    half_sample: float = 0.1
+    """[sample intervals] Around half of one, within which the delay of a command may be that of a command that was
+    held. Why: what else is in the machine moves the delay a little; a machine's own delay is seldom there.
+    Test: test_held_commands.py::test_a_delay_of_half_a_sample_may_be_a_command_that_was_held"""
 
 
 @dataclass(frozen=True)

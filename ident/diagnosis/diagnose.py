@@ -17,6 +17,7 @@ from ident.diagnosis.discovery.discovery_result import DiscoveryResult
 from ident.diagnosis.fitted_model import FittedModel
 from ident.diagnosis.follow_up import error_budget, next_run
 from ident.diagnosis.free_shapes import from_the_start
+from ident.diagnosis.held_command import held_command_sentence
 from ident.diagnosis.label_checks import label_suspects
 from ident.diagnosis.moves import Moves
 from ident.diagnosis.prediction_horizon import longer_horizon
@@ -102,7 +103,8 @@ class Diagnoser:
         catalogue = self._with_follow_up(report(self.fit, self.models, selection, steps, findings))
         windows = (*self._windows(catalogue), *_forgiven(selection), *_sliding(selection))
         differing = run_sentences(selection, self.stages, self.budget) if catalogue.verdict.unexplained else ()
-        story = _Story(catalogue, findings, (*differing, *windows, *delays, *alternative_sentences(elsewhere)))
+        held = held_command_sentence(selection.fitted)
+        story = _Story(catalogue, findings, (*differing, *windows, *held, *delays, *alternative_sentences(elsewhere)))
         terms = DiscoveryResult()
         if is_searched(selection, self.stages, self.budget):
             self.budget.publish_verdict(self._told(story, INCOMPLETE, still_searching=True))

@@ -238,6 +238,10 @@ VERDICT: Mapping[str, str] = {
     "horizon.windows":
         "These errors are over windows of {horizon:.3g} s. The fit used windows of {fitted:.3g} s, in which the "
         "missing effect accumulates little error.",
+    "held":
+        "A delay of {delay:quantity} is half of a sample interval: a command that a converter holds between its "
+        "samples has that delay where it is read as straight lines. If yours was held, state hold: zoh and fit again: "
+        "then the command delay is no effect of the machine.",
     "delay":
         "At low frequency the output lags the command by {time}. These data cannot tell which lag or delay causes "
         "it: {names:listed}.",

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 from ident.diagnosis.candidate_models import CandidateModels
+from ident.diagnosis.held_command import held_command_sentence
 from ident.fit.settings import Settings
 from ident.matrix import Actuator, Matrix
 from ident.run import Run
@@ -72,3 +74,34 @@ def test_a_delay_of_more_than_half_a_step_is_searched_beyond_the_range_of_its_se
     assert found.ladder[-1].parameters["command_delay.delay"].value == pytest.approx(0.27, rel=0.01)
     assert not found.verdict.at_bound
     assert type(found).from_json(found.to_json()).verdict == found.verdict
+
+
+def jittering(seed: int = 1) -> Matrix:
+    """A motor of 0.3 s without any delay; a converter holds a new value at each sample, which no file states."""
+    random, rate, lag = np.random.default_rng(seed), 50.0, 0.3
+    u, keep = random.standard_normal(600), np.exp(-1 / rate / lag)
+    w = np.zeros(len(u))
+    for k in range(len(u) - 1):
+        w[k + 1] = keep * w[k] + (1.0 - keep) * 30.0 * u[k]
+    w += 0.005 * w.std() * random.standard_normal(len(w))
+    units = {"command": "V", "velocity": "rad/s"}
+    run = Run("r", "", rate, {"command": u, "velocity": w}, units, output="velocity")
+    return Matrix(Actuator("HELD"), (run,))
+
+
+@pytest.mark.usefixtures("with_delay")
+def test_a_delay_that_a_held_command_has_is_said_to_be_one():
+    found = diagnose(jittering(), settings=Settings(model="motor"), most=1, propose=False)
+    assert found.verdict.effects == ("command_delay",)
+    assert "ms is half of a sample interval" in found.verdict.text
+    assert "state hold: zoh" in found.verdict.text
+
+
+@pytest.mark.parametrize(
+    ("delay", "hold", "said"),
+    [(0.58, "linear", 1), (0.42, "linear", 1), (0.63, "linear", 0), (0.37, "linear", 0), (0.5, "zoh", 0)],
+)
+def test_a_delay_of_half_a_sample_may_be_a_command_that_was_held(delay, hold, said):
+    run = SimpleNamespace(hold=hold, sample_rate=10.0, time_unit="s")
+    fitted = SimpleNamespace(values={"command_delay__delay": delay / 10.0}, fitness=SimpleNamespace(runs=(run,)))
+    assert len(list(held_command_sentence(fitted))) == said
