@@ -10,8 +10,8 @@ _PROCEDURES = ("tests/bench/test_procedures.py",)
 ESTIMATION = (
     Mutation("what-no-model-explains", "ident/fit/reduction.py", "np.sqrt(distance * unit + rest)",
              "np.sqrt(distance * unit)", "the rest dropped from the fast eq. (17)", _FITNESS),
-    Mutation("hold-of-the-reduction", "ident/fit/reduction.py", "discretise(basis.filters, run.sample_rate, run.hold)",
-             'discretise(basis.filters, run.sample_rate, "linear")', "a held command reduced as lines", _FITNESS),
+    Mutation("hold-of-the-reduction", "ident/fit/reduction.py", "_recursion(basis, run.sample_rate, run.hold)",
+             '_recursion(basis, run.sample_rate, "linear")', "a held command reduced as lines", _FITNESS),
     Mutation("power-of-the-record", "ident/fit/reduction.py", "mean_free = gram[columns, columns]",
              "mean_free = 1.02 * gram[columns, columns]",
              "a factor of 1.02 in what eq. (17) divides by, 1.01 in the error", _FITNESS),
