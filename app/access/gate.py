@@ -17,7 +17,7 @@ from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from app.access import sessions
 from app.access.caller import START, Caller
-from app.access.identity import Shown, identify, shown_by
+from app.access.identity import PresentedToken, identify, presented_by
 from app.access.rates import Rate
 from app.access.roles import unknown
 from app.access.token_attempts import TokenAttempts, too_often
@@ -46,7 +46,7 @@ class Gate:
         if scope["type"] not in ("http", "websocket") or scope["path"] in OPEN or scope["path"].startswith(STATIC):
             await self.app(scope, receive, send)
             return
-        shown = shown_by(Headers(scope=scope))
+        shown = presented_by(Headers(scope=scope))
         try:
             answer = await self._signed_in(scope)
             if answer is None:
@@ -69,7 +69,7 @@ class Gate:
         if token is None:
             return None
         try:
-            who = await run_in_threadpool(self.tries.identify, self.context, Shown(token), address(scope))
+            who = await run_in_threadpool(self.tries.identify, self.context, PresentedToken(token), address(scope))
         except Failure:
             return None
         if who is not START:
@@ -80,7 +80,7 @@ class Gate:
         sessions.keep(answer, secret, scope["scheme"] == "https")
         return answer
 
-    async def _let_in(self, scope: Scope, shown: Shown | None) -> Caller:
+    async def _let_in(self, scope: Scope, shown: PresentedToken | None) -> Caller:
         """Who asks. Raises Failure 401, 429."""
         if shown is None:
             raise unknown()
@@ -98,7 +98,7 @@ class Gate:
         reads = "text/html" in request.headers.get("accept", "") and not scope["path"].startswith("/api/")
         return self.sign_in(request, error) if reads else refusal(error)
 
-    async def _answered(self, scope: Scope, receive: Receive, send: Send, shown: Shown | None) -> None:
+    async def _answered(self, scope: Scope, receive: Receive, send: Send, shown: PresentedToken | None) -> None:
         """Pass on; where the token ends meanwhile, the answer ends too."""
         begun = False
 
@@ -116,7 +116,7 @@ class Gate:
         if answering.cancelled_caught:
             await _ended(scope, receive, send, begun)
 
-    async def _watched(self, shown: Shown | None, answering: anyio.CancelScope) -> None:
+    async def _watched(self, shown: PresentedToken | None, answering: anyio.CancelScope) -> None:
         who: Caller | None = START
         while shown is not None and who is not None:
             await asyncio.sleep(LOOK)

@@ -26,7 +26,7 @@ _SELDOM = timedelta(minutes=1)  # between two notes of a token's last use
 
 
 @dataclass(frozen=True)
-class Shown:
+class PresentedToken:
     """What a request shows: the text of a token, or of a session's cookie."""
 
     text: str = field(repr=False)
@@ -38,20 +38,20 @@ class Shown:
         return hashlib.sha256(self.text.encode()).hexdigest()
 
 
-def shown_by(headers: Headers) -> Shown | None:
+def presented_by(headers: Headers) -> PresentedToken | None:
     """What headers show: a bearer's token, or else the cookie."""
     scheme, _, token = headers.get("authorization", "").partition(" ")
     if scheme.lower() == "bearer" and token.strip():
-        return Shown(token.strip())
+        return PresentedToken(token.strip())
     cookies: SimpleCookie = SimpleCookie()
     try:
         cookies.load(headers.get("cookie", ""))
     except CookieError:  # a malformed cookie is no cookie
         return None
-    return Shown(cookies[COOKIE].value, cookie=True) if COOKIE in cookies else None
+    return PresentedToken(cookies[COOKIE].value, cookie=True) if COOKIE in cookies else None
 
 
-def identify(context: Context, shown: Shown) -> Caller | None:
+def identify(context: Context, shown: PresentedToken) -> Caller | None:
     """Whose it is; None where it is nobody's, or is valid no more."""
     if not shown.cookie and same(shown.text, context.settings.token):
         return START

@@ -8,7 +8,7 @@ from app.access import repository, sessions
 from app.access.audited_changes import about
 from app.access.caller import Caller, Role
 from app.access.duration import duration
-from app.access.identity import Shown
+from app.access.identity import PresentedToken
 from app.access.secret import Secret
 from app.access.sessions import drop, end, keep
 from app.access.token_attempts import TokenAttempts
@@ -98,7 +98,7 @@ def view(row: TokenRow) -> TokenView:
 
 def sign_in(context: Context, tries: TokenAttempts, token: str, address: str) -> Secret:
     """Begin a session by a token; what its cookie is to hold. Raises Failure 401, 429."""
-    return sessions.begin(context, tries.identify(context, Shown(token.strip()), address))
+    return sessions.begin(context, tries.identify(context, PresentedToken(token.strip()), address))
 
 
 def display_units(records: Records, who: Caller) -> DisplayUnits:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from math import ceil
 
 from app.access.caller import Caller
-from app.access.identity import Shown, identify
+from app.access.identity import PresentedToken, identify
 from app.access.rates import Rate
 from app.access.roles import unknown
 from app.context import Context
@@ -22,7 +22,7 @@ class TokenAttempts:
         self._failures = Rate(a_minute / 60, a_minute)
         self._known: LRU[bool] = LRU(_KNOWN)
 
-    def identify(self, context: Context, shown: Shown, address: str) -> Caller:
+    def identify(self, context: Context, shown: PresentedToken, address: str) -> Caller:
         """Whose token it is. Raises Failure 401, and 429 where too many of the address were wrong."""
         wait = 0.0 if shown.print in self._known else self._failures.wait(address)
         if wait:
