@@ -101,7 +101,7 @@ class Draft:
             for channel, a in found.items()
             if channel not in said.channels
         ]
-        time, rate, assumed = _clock(file, said)
+        time, rate, assumed = _clock(file, said, found)
         used = [answer.column for answer in (*found.values(), time) if answer.column != ""]
         if twice := {str(column) for column in used if used.count(column) > 1}:
             raise Unusable(
@@ -336,7 +336,7 @@ def _stays(file: RawFile, channel: str, of: Answer, columns: Sequence[Column], s
     return channel in said.channels or all(number != one.number for one in columns)
 
 
-def _clock(file: RawFile, said: FileAnswers) -> tuple[Answer, str, tuple[str, ...]]:
+def _clock(file: RawFile, said: FileAnswers, channels: Mapping[str, Answer]) -> tuple[Answer, str, tuple[str, ...]]:
     """Column of times or rate, and what was assumed."""
     answer = said.time
     if said.rate:
@@ -345,6 +345,8 @@ def _clock(file: RawFile, said: FileAnswers) -> tuple[Answer, str, tuple[str, ..
         (column,) = _columns(file, file.table.number(answer.column, f"{file.name}: time"), "time")
         return Answer(answer.column, answer.unit or column.unit), "", tuple(_other_unit(column, answer.unit))
     named = [] if answer.column == NONE else [column for column in file.columns if is_time(column.meaning)]
+    if len(named) > 1:
+        named = _as_long_as(file, named, channels)
     if len(named) == 1:
         unit = unit_of(named[0])
         use = "time" if unit == named[0].unit else f"time in {unit}"
@@ -359,6 +361,12 @@ def _clock(file: RawFile, said: FileAnswers) -> tuple[Answer, str, tuple[str, ..
         return Answer(clock.number, answer.unit or clock.unit), "", (str(unnamed),)
     told = message(rate.told, rate=rate.value, variable=shown(rate.variable))
     return Answer(), f"{rate.value:g} Hz", (str(told),)
+
+
+def _as_long_as(file: RawFile, columns: Sequence[Column], channels: Mapping[str, Answer]) -> list[Column]:
+    """The columns with as many samples as the channels: a file of MATLAB may hold the clocks of other signals, too."""
+    lengths = {file.samples(answer.column).size for answer in channels.values()}
+    return [column for column in columns if file.samples(column.number).size in lengths]
 
 
 def _other_unit(time: Column, said: str) -> Iterator[str]:

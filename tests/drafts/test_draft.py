@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from io import BytesIO
 
 import numpy as np
 import pytest
+import scipy
 
 from ident.drafts.answers import NONE, Answer, Answers, FileAnswers
 from ident.drafts.draft import Draft
@@ -251,6 +253,17 @@ def test_the_time_of_simulink_is_in_seconds_unless_another_unit_is_said():
     assert said.description()["runs"][0]["time"] == {"column": "tout", "unit": "ms"}
     other = Draft([raw("\n".join(["time,command (V),speed (rpm)", *rows, ""]))], Answers(serial="M"))
     assert any("unit of the time" in missing.question for missing in other.missing)
+
+
+def test_of_two_clocks_the_one_as_long_as_the_record_is_taken_before_a_rate_of_another_signal():
+    """A workspace of MATLAB holds the step `TS` and the clock of another simulation beside those of the record."""
+    t = np.arange(200) / 100
+    held = {"Time": np.arange(500) / 1000, "time": t[:, None], "position": np.sin(t), "command": np.cos(t), "TS": 1e-3}
+    with BytesIO() as packed:
+        scipy.io.savemat(packed, held)
+        draft = Draft([read_raw(packed.getvalue(), "run.mat")], Answers(serial="M"))
+    assert draft.known(draft.files[0]).time == Answer("time", "")
+    assert draft.known(draft.files[0]).rate == ""
 
 
 def test_of_a_record_without_a_command_the_motion_is_said_to_be_linear_between_samples():
