@@ -76,6 +76,13 @@ class GeneticSearch:
     shortest_part: int = 512
     """[samples] Least of a run in such a search. Why: fewer are over before the machine has answered.
     Test: test_criteria_of_search.py::test_a_search_takes_the_beginnings_of_long_records_of_noise"""
+    stationary_parts: int = 8
+    """[parts] Of a record, which are compared. Why: as many periods or steps as show a machine are in an eighth.
+    Test: test_trial_runs.py::test_a_record_is_cut_where_its_parts_are_alike"""
+    stationary_ratio: float = 1.5
+    """[ratio] Of the largest part to the smallest, by the size and by the crossings of the mean, up to which a record
+    goes on as it begins. Why: of random steps with a hundred changes a part, one of twenty is beyond it by chance.
+    Test: test_trial_runs.py::test_a_record_is_cut_where_its_parts_are_alike"""
     candidates: int = 5
     """[vectors] Of the last generation that are refined. Why: each costs a refinement, and more seldom end elsewhere.
     Test: test_criteria_of_search.py::test_five_distinct_vectors_of_a_search_are_refined"""

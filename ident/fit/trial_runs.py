@@ -1,4 +1,4 @@
-"""Fewer samples of long records, for searches and trials: finely sampled records are decimated, noise is cut.
+"""Fewer samples of long records, for searches and trials: finely sampled ones are decimated, stationary ones cut.
 
 What a search finds is refined on every sample. A machine is simulated in as many steps as its modes ask for, whatever
 the distance of two samples: where the samples are decimated, only the command between two of them is no longer known.
@@ -9,11 +9,13 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ident.fit.criteria import FIT_CRITERIA
 from ident.run import Run
 
 _OF = FIT_CRITERIA.search
+Array = NDArray[np.float64]
 
 
 def trial_runs(runs: Sequence[Run], band: float, most: int) -> tuple[Run, ...]:
@@ -39,7 +41,7 @@ def band_stride(runs: Sequence[Run], band: float, remaining: float) -> int:
 
 
 def shortened(runs: Sequence[Run], samples: int) -> tuple[Run, ...]:
-    """The runs for a search, at most about `samples` in all: noise is cut after its first part, other runs are kept.
+    """The runs for a search, at most about `samples` in all: those that go on as they begin are cut, others are kept.
 
     The first part of a sweep would not show what the rest does.
     """
@@ -47,6 +49,24 @@ def shortened(runs: Sequence[Run], samples: int) -> tuple[Run, ...]:
     if total <= samples:
         return tuple(runs)
     return tuple(
-        run.part(0, max(_OF.shortest_part, run.length * samples // total)) if run.kind == "blwn" else run
+        run.part(0, max(_OF.shortest_part, run.length * samples // total)) if _goes_on_alike(run) else run
         for run in runs
     )
+
+
+def _goes_on_alike(run: Run) -> bool:
+    """Whether the first part of a run shows what the rest does: of noise, and of what is stationary."""
+    if run.kind == "blwn":
+        return True
+    return "command" in run.channels and is_stationary(run.command) and is_stationary(run.measured)
+
+
+def is_stationary(signal: Array) -> bool:
+    """Whether a signal (n,) is as large in each of its parts, and crosses its mean as often (Bendat and Piersol 2010).
+
+    What drifts, a sweep, and steps that are rare are not.
+    """
+    parts = np.array_split(signal - np.mean(signal), _OF.stationary_parts)
+    sizes = np.array([np.sqrt(np.mean(part**2)) for part in parts])
+    crossings = np.array([np.count_nonzero(np.diff(part > 0)) for part in parts])
+    return all(float(of.max()) <= _OF.stationary_ratio * float(of.min()) for of in (sizes, crossings))

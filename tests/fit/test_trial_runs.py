@@ -8,7 +8,7 @@ import pytest
 from ident.diagnosis.candidate_models import CandidateModels
 from ident.fit.settings import Settings
 from ident.fit.simulated_runs import SimulatedRuns
-from ident.fit.trial_runs import decimated
+from ident.fit.trial_runs import decimated, is_stationary, shortened
 from ident.matrix import Actuator, Matrix
 from ident.presets import preset
 from ident.run import Run
@@ -82,3 +82,30 @@ def test_as_many_steps_are_allowed_as_in_the_samples_of_the_record():
     chain = preset("qian2014").chain
     (steps,) = steps_needed(chain, np.array([-1e4 + 1e4j]), "linear", (), every=6)
     assert steps == 4 * MOST
+
+
+TURNS = np.sin(2.0 * np.pi * 240 * np.arange(24_000) / 24_000)  # 240 periods
+
+
+def larger(times: float, share: float) -> np.ndarray:
+    """A sine that is so many times as large in the first share of it."""
+    return np.where(np.arange(len(TURNS)) < share * len(TURNS), times, 1.0) * TURNS
+
+
+@pytest.mark.parametrize(
+    ("signal", "alike"),
+    [
+        (larger(1.4, 1 / 2), True),
+        (larger(1.6, 1 / 2), False),
+        (larger(2.0, 1 / 16), False),  # of a sixth it would be a smaller part
+        (larger(1.95, 1 / 20), True),  # of a tenth it would be a larger part
+        (np.sin(300.0 * np.linspace(0.3, 2.0, 24_000) ** 2), False),
+        (np.cumsum(np.random.default_rng(1).standard_normal(24_000)), False),
+        (np.repeat(np.random.default_rng(2).choice([-1.0, 1.0], 2400), 10), True),
+    ],
+)
+def test_a_record_is_cut_where_its_parts_are_alike(signal, alike):
+    assert is_stationary(signal) is alike
+    units = {"command": "N", "displacement": "m"}
+    run = Run("a", "", RATE, {"command": signal, "displacement": TURNS}, units)
+    assert shortened([run], 6000)[0].length == (6000 if alike else 24_000)
