@@ -99,7 +99,7 @@ def test_a_delay_that_a_held_command_has_is_said_to_be_one():
 
 @pytest.mark.parametrize(
     ("delay", "hold", "said"),
-    [(0.58, "linear", 1), (0.42, "linear", 1), (0.63, "linear", 0), (0.37, "linear", 0), (0.5, "zoh", 0)],
+    [(0.58, "linear", 1), (0.42, "linear", 1), (0.62, "linear", 0), (0.38, "linear", 0), (0.5, "zoh", 0)],
 )
 def test_a_delay_of_half_a_sample_may_be_a_command_that_was_held(delay, hold, said):
     run = SimpleNamespace(hold=hold, sample_rate=10.0, time_unit="s")
