@@ -1,4 +1,4 @@
-"""The messages of a diagnosis, whose text is in :mod:`ident.words.messages`, and their sentences."""
+"""The messages of a diagnosis, whose text is in :mod:`ident.words.verdict_messages`, and their sentences."""
 
 from __future__ import annotations
 

@@ -102,10 +102,12 @@ def test_a_motion_turns_where_its_speed_changes_sign():
 
 
 @pytest.mark.parametrize("machine", MACHINES)
-def test_every_effect_that_the_catalogue_has_for_a_machine_is_fitted_or_cannot_be_told(machine):
+def test_every_effect_that_is_fitted_or_cannot_be_told_is_one_of_the_machine(machine):
+    """An effect of the catalogue that is in neither list is new: no trial hides it until a candidate fits it."""
     model = preset(MODELS[machine])
-    of_any_record = [known for known in CATALOGUE if known not in OF_RECORDS]
-    assert {known.name for known in of_any_record if model.takes(known)} == {*APPLICABLE[machine], *UNTOLD[machine]}
+    of_any_record = {known.name for known in CATALOGUE if known not in OF_RECORDS and model.takes(known)}
+    assert {*APPLICABLE[machine], *UNTOLD[machine]} <= of_any_record
+    assert not {*APPLICABLE[machine]} & {*UNTOLD[machine]}
 
 
 # ------------------------------------------------------------------------------------------------ what a test allows
