@@ -19,7 +19,7 @@ from ident.diagnosis.selection import Selection
 from ident.diagnosis.sentences import delay_sentence, inconsistent_sentence
 from ident.diagnosis.stages import CONSISTENCY, LAGS, NOISE, OTHERS, VERIFY, Stages
 from ident.diagnosis.total_delay import lag_ambiguities, total_delay
-from ident.diagnosis.verdict import Findings, confirms
+from ident.diagnosis.verdict import Findings, confirms, lowers
 from ident.diagnosis.verification import VerifyChange
 from ident.progress import Progress
 from ident.run import MOTIONS
@@ -63,20 +63,27 @@ def _verify_changes(models: CandidateModels, steps: Rungs) -> Iterator[VerifyCha
     """The change of the validation error with each effect of the ladder, between rungs that are stable.
 
     A step says little of its own effect where its parameters made up for effects that were added later. So where
-    validation data do not confirm an effect at its step, they are asked again given all the others.
+    validation data do not confirm an effect at its step, but all effects together, they are asked again given all the
+    others.
     """
     stable = [(added, refit) for added, refit in steps if refit.stable]
-    last = stable[-1][1] if stable else None
     for (_, less), (added, more) in pairwise(stable):
         change = verified_change(added, less, more) if added else None
-        if change is not None:
-            given_others = None if more is last or confirms(change) else _given_others(models, change.effect, last)
-            yield given_others if given_others is not None and confirms(given_others) else change
+        if change is None:
+            continue
+        if more is not stable[-1][1] and not confirms(change):
+            given_others = _given_others(models, change.effect, stable[0][1], stable[-1][1])
+            change = given_others if given_others is not None and confirms(given_others) else change
+        yield change
 
 
-def _given_others(models: CandidateModels, effect: str, last: FittedModel | None) -> VerifyChange | None:
-    """The change of the validation error with an effect of the last model, given all others of that model."""
-    if last is None or effect not in last.effects:
+def _given_others(models: CandidateModels, effect: str, base: FittedModel, last: FittedModel) -> VerifyChange | None:
+    """The change of the validation error with an effect of the last model, given all others of that model.
+
+    None where all of them together do not lower the error beyond chance: each may then only undo what another does.
+    """
+    together = verified_change(effect, base, last)
+    if effect not in last.effects or together is None or not lowers(together):
         return None
     others = tuple(name for name in last.effects if name != effect)
     return verified_change(effect, models.refit(others, without_effect(last.values, effect)), last)

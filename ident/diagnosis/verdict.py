@@ -128,6 +128,11 @@ def shows_nothing(change: VerifyChange, criteria: Criteria = CRITERIA) -> bool:
     return not contradicts(change, criteria) and not is_shown_without_mean and fall <= chance < change.due - fall
 
 
+def lowers(change: VerifyChange, criteria: Criteria = CRITERIA) -> bool:
+    """Whether the error on validation data falls beyond chance."""
+    return -change.rise > criteria.verification.deviations * change.std_error
+
+
 def confirms(change: VerifyChange, criteria: Criteria = CRITERIA) -> bool:
     """Whether validation data confirm an effect: they neither contradict it nor fail to show it."""
     return not contradicts(change, criteria) and not shows_nothing(change, criteria)

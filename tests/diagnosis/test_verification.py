@@ -184,7 +184,7 @@ def test_with_nothing_missing_nothing_stands():
 class Ladder:
     """Three models: the fitted one, with a constant force, and with friction as well; what each change does."""
 
-    def __init__(self, alone: float, given_friction: float) -> None:
+    def __init__(self, alone: float, given_friction: float, together: float) -> None:
         self.base, self.force, self.both = (
             SimpleNamespace(effects=effects, stable=True, values={})
             for effects in ((), ("static_load",), ("static_load", "friction"))
@@ -194,6 +194,7 @@ class Ladder:
             ((), ("static_load",)): alone,
             (("static_load",), ("static_load", "friction")): 0.1,
             (("friction",), ("static_load", "friction")): given_friction,
+            ((), ("static_load", "friction")): together,
         }
 
     def refit(self, effects: tuple[str, ...], _start: object) -> SimpleNamespace:
@@ -210,12 +211,18 @@ class Ladder:
         return [(None, self.base), ("static_load", self.force), ("friction", self.both)]
 
 
-@pytest.mark.parametrize(("alone", "given_friction", "after"), [(0.5, 0.2, 0.2), (0.5, 0.6, 0.5), (0.3, 0.6, 0.3)])
+@pytest.mark.parametrize(
+    ("alone", "given_friction", "together", "after"),
+    [(0.5, 0.2, 0.3, 0.2), (0.5, 0.6, 0.3, 0.5), (0.3, 0.6, 0.3, 0.3), (0.5, 0.2, 0.39, 0.5)],
+)
 def test_an_effect_that_validation_data_confirm_only_given_the_others_is_confirmed(
-    monkeypatch, alone, given_friction, after
+    monkeypatch, alone, given_friction, together, after
 ):
-    """A constant force alone may make up for friction, and harms other data. Given the friction it does not."""
-    ladder = Ladder(alone, given_friction)
+    """A constant force alone may make up for friction, and harms other data. Given the friction it does not.
+
+    Where both together change nothing, one only undoes what the other does.
+    """
+    ladder = Ladder(alone, given_friction, together)
     monkeypatch.setattr(challenges, "verified_change", ladder.verified_change)
     force, friction = challenges._verify_changes(ladder, ladder.steps)
     assert (force.effect, force.after) == ("static_load", after)
