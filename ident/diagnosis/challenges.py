@@ -80,7 +80,7 @@ def _verify_changes(models: CandidateModels, steps: Rungs) -> Iterator[VerifyCha
 def _given_others(models: CandidateModels, effect: str, base: FittedModel, last: FittedModel) -> VerifyChange | None:
     """The change of the validation error with an effect of the last model, given all others of that model.
 
-    None where all of them together do not lower the error beyond chance: each may then only undo what another does.
+    None where all of them together do not lower the error beyond chance: each may then only undo another one.
     """
     together = verified_change(effect, base, last)
     if effect not in last.effects or together is None or not lowers(together):
