@@ -124,13 +124,20 @@ def shows_nothing(change: VerifyChange, criteria: Criteria = CRITERIA) -> bool:
     """
     deviations, fall = criteria.verification.deviations, -change.rise
     chance = deviations * change.std_error
-    is_shown_without_mean = change.fall_without_mean > deviations * change.std_error_without_mean
-    return not contradicts(change, criteria) and not is_shown_without_mean and fall <= chance < change.due - fall
+    if contradicts(change, criteria) or _lowers_about_mean(change, deviations):
+        return False
+    return fall <= chance < change.due - fall
 
 
 def lowers(change: VerifyChange, criteria: Criteria = CRITERIA) -> bool:
-    """Whether the error on validation data falls beyond chance."""
-    return -change.rise > criteria.verification.deviations * change.std_error
+    """Whether the error on validation data falls beyond chance, with the mean of the output or about it."""
+    deviations = criteria.verification.deviations
+    return -change.rise > deviations * change.std_error or _lowers_about_mean(change, deviations)
+
+
+def _lowers_about_mean(change: VerifyChange, deviations: float) -> bool:
+    """Whether the error without the mean falls beyond chance, where the mean counts in the fit."""
+    return change.fall_without_mean > deviations * change.std_error_without_mean
 
 
 def confirms(change: VerifyChange, criteria: Criteria = CRITERIA) -> bool:

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from ident.diagnosis.candidate_models import CandidateModels
 from ident.diagnosis.model_comparison import verified_change
-from ident.diagnosis.verdict import contradiction, contradicts
-from ident.diagnosis.verification import verify_change
+from ident.diagnosis.verdict import contradiction, contradicts, lowers
+from ident.diagnosis.verification import VerifyChange, verify_change
 from ident.fit.settings import Settings
 from ident.matrix import Actuator, Matrix
 from ident.run import Run
@@ -68,3 +70,10 @@ def test_a_mean_that_rises_contradicts_what_the_waveform_speaks_for():
     said = str(contradiction(change).message("lead"))
     assert said.startswith("With lead the error with its mean on validation data rises from ")
     assert "without the mean it falls from " in said
+
+
+@pytest.mark.parametrize(("before", "after", "fallen"), [(0.39, 0.24, True), (0.39, 0.38, False), (0.30, 0.33, False)])
+def test_an_error_falls_where_it_falls_about_a_mean_that_is_not_explained(before, after, fallen):
+    change = VerifyChange("friction", before, after, 0.02, with_mean=(0.53, 0.74), std_error_without_mean=0.02)
+    assert lowers(change) is fallen
+    assert lowers(replace(change, with_mean=(0.53, 0.40), before=0.3, after=0.3))
