@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from app.pages.sparkline import ERROR, Drift, drift
 from app.parameters.error import error_of
 from ident.errors import Unusable
+from ident.fit import sheet_quantity
 from ident.presets import preset
 from ident.rig.conditions import CONDITIONS, PREFIX
 from ident.words.engineering import quantity
@@ -111,8 +112,12 @@ def drifts(sets: Sequence[ParameterSetView], model: str) -> tuple[tuple[str, Dri
 
 
 def _parameters(shown: ParameterSetView) -> tuple[tuple[str, str], ...]:
-    symbols = {name: _symbol(shown.model, name) for name in shown.parameters}
-    return tuple((symbols[name], quantity(entry.value, entry.unit)) for name, entry in shown.parameters.items())
+    """Those of the model: a set also holds its acceptance sheet and the conditions of its test."""
+    return tuple(
+        (_symbol(shown.model, name), quantity(entry.value, entry.unit))
+        for name, entry in shown.parameters.items()
+        if not name.startswith((sheet_quantity.PREFIX, PREFIX))
+    )
 
 
 def _symbol(model: str, name: str) -> str:

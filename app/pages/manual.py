@@ -21,6 +21,7 @@ DOCS = Path(__file__).resolve().parents[2] / "docs"
 AT = "/manual/"
 FIRST = "index"
 _DIRECTIVE = re.compile(r"```\{(?!toctree)")  # what only Sphinx makes: such a page is in the site alone
+_COMMENT = re.compile(r"^<!--.*?-->\n", re.MULTILINE | re.DOTALL)
 _TOCTREE = re.compile(r"```\{toctree\}\n:caption: (?P<caption>.+)\n:hidden:\n\n(?P<names>[^`]+)```")
 
 
@@ -50,7 +51,7 @@ def file_of(name: str) -> Path | None:
 @cache
 def manual_page(path: Path) -> ManualPage:
     """A page of the documentation; what it links to outside of it is no link here."""
-    text = path.read_text("utf-8")
+    text = _COMMENT.sub("", path.read_text("utf-8"))
     parser = MarkdownIt("commonmark", {"html": False}, renderer_cls=_Renderer).enable("table")
     tokens = parser.parse(text)
     name = path.relative_to(DOCS).with_suffix("").as_posix()

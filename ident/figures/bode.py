@@ -337,7 +337,7 @@ def _drawn(study: Study, look: Look, options: Options) -> Filled:
     if look.small:
         return bode(responses, _briefly(responses, name, look), study.matrix.actuator, look, band=band)
     read = [readouts(one, study.fit, study.matrix.actuator, responses.band) for one in compared]
-    told = _told(responses, study.fit, len(candidates), name, read)
+    told = words.wrapped(_told(responses, study.fit, len(candidates), name, read), look)
     return bode(responses, told, study.matrix.actuator, look, band=band, read=read)
 
 
@@ -355,7 +355,8 @@ def _several(study: Study, several: Sequence[FitResult], look: Look, options: Op
         errors=[partial(response_error, fit, run, actuator) for fit in fits],
     )
     read = [readouts(each, fit, actuator, responses.band) for each, fit in zip(compared, fits, strict=True)]
-    return bode(responses, _told_of_several(responses, read), actuator, look, band=band_of(options), read=read)
+    told = words.wrapped(_told_of_several(responses, read), look)
+    return bode(responses, told, actuator, look, band=band_of(options), read=read)
 
 
 def _axis(options: Options) -> str:

@@ -20,6 +20,7 @@ from ident.figures.theme import LOOKS
 from ident.fit.result import Starts
 from ident.workflows import study
 from tests.figures.conftest import make_comparison
+from tests.short_form import short_form
 
 OF_CHAINS = tuple(name for name, drawing in FIGURES.items() if drawing.kind == "chain")
 DRAWN: dict[tuple[object, ...], bytes] = {}
@@ -116,6 +117,13 @@ def test_the_bode_plot_shows_a_few_verify_runs_and_says_of_how_many(matrix, fit)
     assert shown <= {run.id for run in matrix.of_use("verify")}
     assert 3 <= len(shown) <= 6
     assert f"{len(shown)} of 21 runs" in spec["title"]["subtitle"][1]
+
+
+@pytest.mark.parametrize("name", short_form(OF_CHAINS, "bode"))
+def test_a_caption_ends_where_a_figure_of_a_page_ends(name, matrix, fit):
+    """A page draws figures at three quarters of their width, which hold 98 letters of a caption."""
+    spec = drawn(name, matrix, fit, share=0.76)
+    assert max(map(len, spec["title"]["subtitle"])) <= 98
 
 
 @pytest.mark.full

@@ -65,3 +65,9 @@ def test_without_the_documentation_beside_the_program_nothing_leads_there(
     monkeypatch.setattr(manual, "DOCS", tmp_path)
     assert "/manual/" not in service.get("/").text
     assert service.get("/manual/index").status_code == 404
+
+
+def test_a_comment_of_the_source_is_not_shown() -> None:
+    """Pages that a program writes begin with one."""
+    assert "<!--" in (manual.DOCS / "cli.md").read_text("utf-8")
+    assert "&lt;!--" not in manual.manual_page(manual.DOCS / "cli.md").text
