@@ -11,6 +11,8 @@ from scipy.ndimage import maximum_filter1d, minimum_filter1d
 from ident.run import DISTURBANCES, KINEMATIC, MOTIONS, Run, Samples
 
 HELD = 0.002  # of an input's range, within which the input rests
+_LOOKED_AT = 8
+"""Samples of a stretch that are looked at first. No answer depends on it."""
 STATES = ("load_pressure", "pressure_a", "pressure_b", "spool", "temperature")
 """Channels that follow from the inputs."""
 
@@ -28,7 +30,17 @@ def acting(run: Run) -> list[Samples]:
 
 def held(inputs: Sequence[Samples], samples: int) -> NDArray[np.bool_]:
     """Whether every input rests over so many samples from each on, (n − samples + 1,)."""
+    if not all(_may_rest(u, samples) for u in inputs):
+        return np.zeros(max(len(inputs[0]) - samples + 1, 0), dtype=bool)
     return np.asarray(np.all([spans(u, samples) <= HELD * np.ptp(u) for u in inputs], axis=0))
+
+
+def _may_rest(x: Samples, samples: int) -> bool:
+    """Whether a few samples of each stretch allow that it rests: next to no stretch of noise does."""
+    step = max(1, samples // _LOOKED_AT)
+    near = np.abs(np.diff(x[::step])) <= HELD * np.ptp(x)
+    count = samples // step - 1  # of the differences that lie in any stretch
+    return count < 1 or len(near) < count or bool(np.convolve(near, np.ones(count)).max() > count - 0.5)
 
 
 def spans(x: Samples, samples: int) -> Samples:

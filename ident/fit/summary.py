@@ -33,6 +33,7 @@ from ident.fit.transducer import Offset, offset_at, offsets_that_count, rest_of
 from ident.fit.uncertainty import Covariance, covariance
 from ident.matrix import Matrix
 from ident.noise.floor import Floors
+from ident.parallel import each
 from ident.presets.preset import Combined
 from ident.presets.record_units import SAMPLE
 from ident.presets.suitable_models import is_assumed_loop
@@ -390,8 +391,8 @@ def _known_zeros(settings: Settings, runs: Sequence[Run], offsets: Mapping[str, 
 
 def _unrecorded(runs: Sequence[Run]) -> Iterator[str]:
     """What is said first where an input acts on the runs that is not recorded."""
-    for run in runs:
-        for stretch in missing_inputs(run)[:1]:
+    for stretches in each(missing_inputs, runs):
+        for stretch in stretches[:1]:
             yield str(message("missing_input.fit", evidence=stretch.evidence))
 
 
