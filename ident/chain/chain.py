@@ -65,8 +65,9 @@ class Chain:
     about: tuple[tuple[str, str], ...] = ()
 
     def __post_init__(self) -> None:
+        places = {stage.place for stage in self.stages}
         for effect in self.effects:
-            if not self._core & {equation.target for equation in effect.equations}:
+            if effect.place not in places or not self._core & {equation.target for equation in effect.equations}:
                 raise unfit(effect)
             for signal, unit in effect.units.items():
                 if unit and self.units.get(signal, unit) != unit:

@@ -8,6 +8,7 @@ import os
 import sqlite3
 import subprocess
 import sys
+import time
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
@@ -23,6 +24,8 @@ from tests.app.conftest import zipped
 from tests.bad_inputs import BAD_FOLDERS, BAD_MATRICES, Bad
 from tests.conftest import Program
 from tests.matrix_folder import MatrixFolder
+
+PATIENCE = 60.0  # s, for jobs of other tests
 
 
 @dataclass(frozen=True)
@@ -66,8 +69,14 @@ def folder(tmp_path: Path) -> MatrixFolder:
 
 
 def kept(service: TestClient) -> tuple[list[Path], dict[str, int]]:
-    """Every stored file, and the numbers of records."""
+    """Every stored file, and the numbers of records, once no job of another test stores its result any more."""
     context = service.app.state.context
+    ends = time.monotonic() + PATIENCE
+    with context.engine.connect() as connection:
+        working = text("SELECT count(*) FROM jobs WHERE state IN ('queued', 'running')")
+        while connection.execute(working).scalar_one() and time.monotonic() < ends:
+            connection.rollback()
+            time.sleep(0.05)
     with context.engine.connect() as connection:
         tables = ("actuators", "matrices", "jobs")
         counts = {table: connection.execute(text(f"SELECT count(*) FROM {table}")).scalar_one() for table in tables}

@@ -48,7 +48,7 @@ OTHER_UNIT = {
         "flow_force",
     },
     "strano": {"second_lag"},
-    "drive under control": {"command_limit", "integral_action", "lead", "pressure_feedback", "flow_force"},
+    "drive under control": {"command_limit", "integral_action", "lead", "pressure_feedback"},
 }
 """What has a signal to act on there, but in rated currents or newtons where the effect is of metres."""
 NULL_BIAS: Effect = next(effect for effect in CATALOGUE if effect.name == "null_bias")
