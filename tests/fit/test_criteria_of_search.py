@@ -259,3 +259,20 @@ def test_the_first_generation_of_cma_es_has_a_deviation_of_a_quarter():
 
 def test_the_options_of_searches_are_those_of_the_criteria():
     assert genetic.RANGES.keys() >= {name for of in LIMITS.values() for name in of}
+
+
+def test_the_best_vectors_keep_the_errors_by_which_they_were_the_best():
+    """They may have been worked out more exactly than those of a later generation, which would lose them."""
+    options, asked = usual(), []
+
+    def worse_later(points: np.ndarray) -> np.ndarray:
+        asked.append(len(points))
+        return rough(points) + 10.0 * (len(asked) - 1)
+
+    first = begin(AXES, 0, options)
+    second = first | default_step(first, worse_later, options)
+    third = second | default_step(second, worse_later, options)
+    best = np.sort(second["history"][0]["errors"])[:10]
+    assert asked == [200, 190]
+    assert third["history"][1]["errors"][:10] == best.tolist()
+    assert third["best"] == second["best"]
