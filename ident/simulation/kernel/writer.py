@@ -243,7 +243,7 @@ class Writer(Source):
         memory = [f"b[{(known.first + i) * LANES} + lane]" for i in range(order)]
         if stage == "4":  # their errors of second order cancel
             self._write(f"{key}_x_m", f"0.5 * ({key}_x_2 + {key}_x_3)")
-        inputs = {"f": "f", "1": "1", "2": "12", "3": "13", "4": "1m4"}[stage]
+        inputs = {"f": "f", "1": "1", "m": "1m", "2": "12", "3": "13", "4": "1m4"}[stage]
         terms = [*memory, *(f"{key}_x_{of}" for of in inputs)]
         first = known.first + order + sum(order * (order + before) for before in range(1, len(inputs)))
         for i in range(order):
