@@ -76,7 +76,7 @@ newton_meter_second = newton_meter * second = Nms
 lpm = liter / minute
 gpm = gallon / minute
 percent = 0.01
-counts = 1
+counts = 1 = count = ticks = lsb = LSB
 radian = 1 = rad
 degree = 0.017453292519943295 = deg
 revolution = 6.283185307179586 = rev

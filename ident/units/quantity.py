@@ -32,7 +32,7 @@ DIMENSIONS = {
     "angular velocity": "rad/s",
        "acceleration": "m/s^2", "force": "N", "pressure": "Pa", "stiffness": "N/m", "damping": "N*s/m", "current": "A",
     "voltage": "V", "temperature": "K", "flow": "m^3/s", "dimensionless": "1", "per sample": "1/sample",
-    "angle": "rad", "torque": "N*m",
+    "angle": "rad", "torque": "N*m", "power": "W",
 }  # fmt: skip
 """Dimension by name to its SI unit; an SI unit (``m^4/s``) may stand wherever a dimension's name may."""
 
