@@ -56,6 +56,12 @@ def angle_measured(matrix: Matrix) -> bool:
     return all(run.units.get("displacement") in ("rad", "1") and "displacement" in run.channels for run in matrix.runs)
 
 
+def position_driven(matrix: Matrix) -> bool:
+    """Whether a position is to be reproduced of every run, and its command is no position: no loop returns the mass, so
+    a spring may. Of a speed alone nothing tells the place of rest."""
+    return all(run.output == "displacement" and run.units.get("command") not in ("m", "rad") for run in matrix.runs)
+
+
 def force_answers(matrix: Matrix) -> bool:
     """Whether every run gives the motion and records the force: what is tested is moved, such as a damper."""
     return all(run.output == "force" for run in matrix.runs)

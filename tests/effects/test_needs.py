@@ -231,6 +231,12 @@ CASES = {
         lambda k: lag(lambda x: x + 0.7 * k * (np.sign(x) * np.sqrt(0.6 * abs(x)) - x)),
         {},
     ),
+    "progressive_loss": Case(
+        "first_order",
+        {"progressive_loss.inverse_output": 0.8},
+        lambda k: lag(lambda x: x + 0.8 * k * x * abs(x)),
+        {},
+    ),
     "overflow": Case(
         "first_order",
         {"overflow.inverse_level": 1.0, "overflow.ratio": 30.0},
@@ -321,6 +327,13 @@ CASES = {
         lambda k: mass(lambda _t, x, _v: 30.0 * k * np.sin(x - 0.5)),
         {},
     ),
+    "spring_preload": Case(
+        "drive",
+        {"spring_preload.force": 12.0, "spring_preload.width": 0.02},
+        lambda k: mass(lambda _t, x, _v: 12.0 * k * float(np.clip(x / 0.02, -1.0, 1.0))),
+        {},
+        1e-2,
+    ),
     "speed_limit": Case(
         "drive",
         {"speed_limit.inverse_speed": 1.0 / 0.9, "speed_limit.share": 0.2},
@@ -410,20 +423,26 @@ def test_an_effect_is_looked_for_only_where_the_record_could_show_it():
     springs = {"elastic_coupling", "elastic_load"}
     metres = {"command": "m", "displacement": "m"}
     found = candidates("first_order", metres, command=about_zero, displacement=about_zero)
-    assert of_records & found == {"drive_hysteresis", "second_capacity"}
+    lags = {"progressive_loss", "drive_hysteresis", "second_capacity"}
+    assert of_records & found == lags
     level = {"speed_asymmetry", "progressive_drive", "overflow", "sensor_curve"}
     recorded = {"command": LEVEL, "displacement": LEVEL}
     found = candidates("first_order", metres, **recorded)
-    assert of_records & found == {*level, "root_outflow", "drive_hysteresis", "second_capacity"}
+    assert of_records & found == {*level, "root_outflow", *lags}
     assert of_records & candidates("two_tanks", metres, **recorded) == {
         *level,
         "upper_overflow",
     }  # its own outflow has one
     driven = {"command": "N", "displacement": "m", "vertical_load": "N", "load_pressure": "Pa"}
     recorded = {"command": FORCE, "displacement": about_zero}
-    assert of_records & candidates("drive", driven, **recorded) - springs == {"speed_limit"}
+    assert of_records & candidates("drive", driven, **recorded) - springs == {"spring_preload", "speed_limit"}
     found = candidates("drive", driven, vertical_load=SQUEEZE, load_pressure=SQUEEZE, **recorded)
-    assert of_records & found - springs == {"normal_force_friction", "pressure_friction", "speed_limit"}
+    assert of_records & found - springs == {
+        "spring_preload",
+        "normal_force_friction",
+        "pressure_friction",
+        "speed_limit",
+    }
     answers = Run("r", "", RATE, {"velocity": SPEED, "force": FORCE, "load_pressure": SQUEEZE}, {}, output="force")
     moves = CandidateModels.of(Matrix(Actuator("A"), (answers,)), Settings(model="specimen")).effects
     shown = {"pressure_friction", "pressure_force", "degrading_hysteresis", "relaxation", "bilinear_stiffness"}
@@ -439,7 +458,7 @@ def test_an_effect_is_looked_for_only_where_the_record_could_show_it():
     for unit, more in (("N*m", {"speed_limit"}), ("1", set[str]())):
         turning = {"command": unit, "displacement": "rad" if more else "1"}
         found = candidates("drive", turning, **recorded) - springs
-        assert of_records & found == {"arm_gravity", "load_friction", *more}
+        assert of_records & found == {"arm_gravity", "spring_preload", "load_friction", *more}
 
 
 @pytest.mark.parametrize(
