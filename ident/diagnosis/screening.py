@@ -358,7 +358,8 @@ def _from_records(
 def _trials(
     models: CandidateModels, base: FittedModel, space: Space, name: str, known: Mapping[str, float]
 ) -> Iterator[_Trial]:
-    """The strengths to try, SI: shares of the way from off to each bound, from wherever the shapes may begin."""
+    """The strengths to try, SI: shares of the way from off to each bound, from wherever the shapes may begin; and of an
+    effect that is a spring at small motions, those in the place of a part of the machine's spring."""
     lower, upper = space.reach(models.strength(name), known)
     covered = strength_in_records(base, models.effects[name])
     shapes = initial_guesses(base, models.effects[name], space, known)
@@ -376,6 +377,9 @@ def _trials(
     for shape in shapes:
         for end in (upper, lower):
             yield from (_Trial(name, share * end, shape) for share in shares if end)
+    for start in in_place_of_spring(base, models.effects[name]):
+        others = {other: value for other, value in start.items() if other in known and value != known[other]}
+        yield _Trial(name, others.pop(models.strength(name)), others)
 
 
 @dataclass(frozen=True)

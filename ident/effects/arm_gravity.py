@@ -8,7 +8,9 @@ ARM_GRAVITY = Effect(
     name="arm_gravity",
     place="load",
     meaning="the weight of an arm resists in proportion to the sine of its angle",
-    strength=Parameter("torque", "G", "N", 0.0, 1e4, 0.0, "torque of the weight with the arm held level"),
+    strength=Parameter(
+        "torque", "G", "N", 0.0, 1e4, 0.0, "torque of the weight with the arm held level", of_motion=True
+    ),
     texts=("R = R + G * sin((x - x0) / ra)",),
     units={"R": "N"},
     shape=(

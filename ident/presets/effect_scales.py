@@ -37,10 +37,17 @@ through, T for the time of an answer; L and V, as W, are typical of the runs: th
 `_OWN`: within its own bounds.
 """
 
-_OF_MOTION = {"m": ("L", 2.0), "1/m": ("1/L", 2.0), "m/s": ("V", 1.0), "s/m": ("1/V", 2.0)}
+_OF_MOTION = {
+    "m": ("L", 2.0),
+    "1/m": ("1/L", 2.0),
+    "m/s": ("V", 1.0),
+    "s/m": ("1/V", 2.0),
+    "N": ("F*(1 + 1/L)", 2.0),
+}
 """The same of what belongs to the motion, which would else be measured by the drive signal, or by its own bounds.
 
 A way of up to two deviations of the motion: a specimen may yield, or a spring begin to act, at the end of a sine only.
+A weight that the drive lifts through L radians has the torque F/L of an arm held level, or F where it turns farther.
 """
 _RINGING = 4.0
 """Times the highest frequency that the commands excite, up to which a part of the machine may ring: what is held, or
