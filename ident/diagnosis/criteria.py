@@ -125,9 +125,9 @@ class StructureSelection:
     within_reach: float = 10.0
     """[ratio of held-out errors] To the best model with its effect, up to which a smaller one is given a second effect.
     Why: with one of two effects that it lacks a machine leaves up to ten times what a larger one leaves; chosen by what
-    it costs, since it only counts where it explains the records.
+    it costs, since it only counts where it explains the records, or more than a larger one.
     Test: test_smaller_machines.py::
-    test_a_smaller_machine_with_two_effects_is_compared_where_it_explains_the_records"""
+    test_a_smaller_machine_with_two_effects_is_compared_where_it_explains_more_than_a_larger_one"""
     longer_gain: float = 10.0
     """[log-likelihood] Gain of longer windows over the fitted ones, beyond the logarithm of the number of models. Why:
     one in 20,000 by chance.

@@ -210,17 +210,20 @@ def _with_an_effect_each(
 
 
 def _explaining(judged: _JudgedStructure, others: Collection[_JudgedStructure], report: Report) -> _JudgedStructure:
-    """A model with a second effect, where it then explains the records and has fewer parameters than the largest of
-    the others with their effects.
+    """A model with a second effect, where it then explains the records, or more of them than each of the larger ones,
+    and has fewer parameters than the largest of the others with their effects.
 
     A machine of many parameters makes up for one of two effects that a smaller one lacks, but not for both.
     """
-    largest = max(other.size for other in others)
+    larger = [other for other in others if other.size > judged.size + 1]
     near = CRITERIA.structure.within_reach * min(other.error for other in others)
-    if judged.with_effect is None or judged.size >= largest or judged.error > near or not judged.above_noise:
+    if judged.with_effect is None or judged.size >= max(other.size for other in others) or judged.error > near:
+        return judged
+    if not judged.above_noise:
         return judged
     more = judged.helped(report)
-    return judged if more.above_noise else more
+    explains_more = bool(larger) and more.error < min(other.error for other in larger)
+    return more if explains_more or not more.above_noise else judged
 
 
 def _gains_half(first: _JudgedStructure, larger: _JudgedStructure) -> bool:

@@ -1,4 +1,4 @@
-"""A motor that works against a spring: command → position, about which a mass swings."""
+"""A motor that works against a spring: command → motion of a mass that swings about a position."""
 
 from ident.chain.chain import Chain
 from ident.presets.preset import Combined, Display, Preset, RequiredData, SearchPlan
@@ -13,7 +13,7 @@ SPRUNG_MOTOR = Preset(
     ),
     chain=Chain(
         stages=(OPENED_BY_COMMAND, INSTANT_VALVE, RIGID_SPOOL, TORQUE, DRIVEN_MASS, IDEAL_SENSOR),
-        outputs={"displacement": "y", "acceleration": "ay"},
+        outputs={"displacement": "y", "velocity": "vy", "acceleration": "ay"},
     ),
     listed=("m0", "c0", "k0", "Kt"),
     combinations=(

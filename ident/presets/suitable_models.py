@@ -100,9 +100,10 @@ def on_a_spring(models: Collection[Preset], runs: Sequence[Described], oil: bool
     """The machines against a spring that are not among the `models` in question, since no record of theirs rings.
 
     Friction and damping keep a throttle or a valve from ringing. Such a machine is in question where the position
-    follows the command, so that what integrates explains less of it than a lag: only fits can tell.
+    follows the command, so that what integrates explains less of it than a lag: only fits can tell. A speed does not
+    follow against a spring.
     """
-    if len(models) == 1:
+    if len(models) == 1 or any(run.output == "velocity" for run in runs):
         return ()
     return tuple(known for known in _allowed(runs, oil) if known.data.rings and known not in models)
 
@@ -223,13 +224,13 @@ def _rank(model: Preset, runs: Sequence[Described], oil: bool) -> int:
 
 
 def _by_force(model: Preset, run: Described) -> bool:
-    """Whether a drive's force may be what was recorded as the command: by its unit, or for that is not known.
+    """Whether a drive's force may be what was recorded as the command: by its unit, or before a force for that is not
+    known.
 
-    Of a position, a motor against a spring makes the force of a command in an unknown unit: its drive may be late, or
-    have a dead zone.
+    Of a motion, a motor makes the force of a command in an unknown unit: its drive may be late, or have a dead zone.
     """
     unit = run.units.get("command")
-    is_force = unit in ("N", "N*m") or (unit == "1" and run.output not in ("displacement", "acceleration"))
+    is_force = unit in ("N", "N*m") or (unit == "1" and run.output == "force")
     return model.data.driven_by == "drive_force" and is_force and "drive_force" not in run.channels
 
 

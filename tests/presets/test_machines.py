@@ -112,8 +112,8 @@ def test_in_units_of_1_a_mass_on_a_spring_is_found():
             )
         )
     matrix = Matrix(Actuator("MASS"), tuple(runs))
-    assert {"drive", "first_order", "motor"} <= {model.name for model in in_question(matrix.runs)}
-    assert choose_structure(matrix).structures[0].machine == "drive"
+    assert {"sprung_motor", "first_order", "motor"} <= {model.name for model in in_question(matrix.runs)}
+    assert choose_structure(matrix).structures[0].machine == "sprung_motor"
 
 
 def test_the_command_of_a_loop_is_no_motion_of_a_specimen():
@@ -248,6 +248,13 @@ def test_where_no_model_is_driven_by_what_was_recorded_the_channels_are_named():
         identify(specimen(1), Settings())
 
 
+def test_what_is_in_units_of_1_is_no_force_where_a_motion_is_recorded():
+    """A motor has the same equations, and its drive may have a dead zone or be late; a force has neither."""
+    for channel in ("velocity", "displacement"):
+        run = Run("r", "", RATE, {"command": TIME, channel: TIME}, units={"command": "1", channel: "rad"})
+        assert "drive" not in {model.name for model in in_question([replace(run, output=channel)])}
+
+
 @pytest.mark.parametrize(
     ("unit", "models"),
     [("N*m", ["drive"]), ("N", ["drive"]), ("V", ["motor", "first_order"])],
@@ -293,7 +300,7 @@ def test_a_measured_motor_has_a_dead_zone(measured_data):
     found = diagnose(matrix, settings=Settings(model="motor"), most=1)
     first = found.candidates[0]
     assert first.effect == "dead_zone"
-    assert {*first.group} <= {"dead_zone", "coulomb_friction"}
+    assert {*first.group} <= {"dead_zone", "coulomb_friction", "stribeck_friction"}
     assert first.parameters["dead_zone.half_width"].value == pytest.approx(1.9, abs=0.15)
     assert first.error["verify"] < 0.133
     values = {name: found.ladder[-1].parameters[name].value for name in ("Kt", "c0", "m0")}

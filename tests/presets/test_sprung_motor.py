@@ -58,11 +58,11 @@ def test_a_mass_that_swings_about_the_place_that_a_voltage_holds_is_on_a_spring(
         ({"units": {"command": "A", "displacement": "m"}}, True),
         ({"units": {"command": "N*m", "displacement": "rad"}}, False),
         ({"omega": 0.0}, False),
-        ({"units": {"command": "V", "velocity": "rad/s"}}, False),
+        ({"units": {"command": "V", "velocity": "rad/s"}}, True),
     ],
-    ids=["volts", "amperes", "a-torque-drives-a-mass", "a-motor-that-integrates", "no-position"],
+    ids=["volts", "amperes", "a-torque-drives-a-mass", "a-motor-that-integrates", "its-speed"],
 )
-def test_it_is_in_question_where_a_voltage_or_a_current_makes_a_position_ring(changed, is_named):
+def test_it_is_in_question_where_a_voltage_or_a_current_makes_a_mass_ring(changed, is_named):
     matrix = machine(2, **changed)
     if "velocity" in matrix.runs[0].units:
         spun = ({"command": run.command, "velocity": run.measured} for run in matrix.runs)
