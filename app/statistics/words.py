@@ -79,7 +79,8 @@ def called(found: StatisticsView) -> list[Called]:
 
 def of_dependence(found: DependenceView) -> list[tuple[str, str]]:
     """What the law over a condition says, and what it says at the condition that was asked for."""
-    shown = [("Sets", str(message("sets", count=found.n, model=found.model))), ("Law", found.text)]
+    sets = message("sets", count=found.n, model=found.model) if found.n else "none"
+    shown = [("Sets", str(sets)), ("Law", found.text)]
     condition = CONDITIONS[found.over]
     if found.without:
         shown.append((f"Without the {condition.title}", count(found.without, "set")))

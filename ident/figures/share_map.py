@@ -24,7 +24,7 @@ def share_map_chart(found: ShareMap, case: Case, controller: str, look: Look) ->
         y = alt.Y("m:O", axis=alt.Axis(title="Physical share of the mass (%)", format=".0f"), sort="descending")
         scale = alt.Scale(type="log", range=list(look.ramp))
         base = alt.Chart(alt.NamedData("map"), width=look.across(520), height=look.across(440)).encode(x=x, y=y)
-        colour = alt.Color("s:Q", scale=scale, legend=alt.Legend(title="reference_rms (%)"))
+        colour = alt.Color("s:Q", scale=scale, legend=alt.Legend(title="Error (%)"))
         squares = base.transform_filter("datum.s != null").mark_rect().encode(color=colour)
         crosses = base.transform_filter("!datum.ok").mark_point(shape="cross", angle=45, size=60, color=look.ink)
         count, whole = int(found.stable.sum()), found.stable.size
