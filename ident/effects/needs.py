@@ -95,6 +95,11 @@ def speed_measured(matrix: Matrix) -> bool:
     return all(run.output == "velocity" for run in matrix.runs)
 
 
+def no_speed(matrix: Matrix) -> bool:
+    """Whether no speed is to be reproduced: what slows it more than in proportion is the damping of a mass."""
+    return all(run.output != "velocity" for run in matrix.runs)
+
+
 def turns_round(matrix: Matrix) -> bool:
     """Whether speeds of rotation alone are recorded, one of which adds up to more than a turn within its run.
 

@@ -175,7 +175,11 @@ def _ends(errors: Sequence[float]) -> list[float]:
 
 def _generation(entry: Generation, axes: tuple[_Axis, _Axis], look: Look, colour: alt.Color, *, first: bool) -> Panel:
     across, up = axes
-    x = alt.X("x:Q", scale=across.scale, axis=alt.Axis(title=across.title, tickCount=4, format="~g", labelOverlap="greedy", labelSeparation=6))
+    x = alt.X(
+        "x:Q",
+        scale=across.scale,
+        axis=alt.Axis(title=across.title, tickCount=4, format="~g", labelOverlap="greedy", labelSeparation=6),
+    )
     ticks = alt.Axis(title=up.title if first else None, labels=first, tickCount=5, format="~g" if up.wide else "~r")
     y = alt.Y("y:Q", scale=up.scale, axis=ticks)
     named = {"x:Q": across.title, "y:Q": up.title, "e:Q": "Error (%)"}

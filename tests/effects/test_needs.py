@@ -450,6 +450,7 @@ def test_an_effect_is_looked_for_only_where_the_record_could_show_it():
     several = Matrix(Actuator("A"), (answers, replace(answers, id="s")))
     assert "degrading_hysteresis" not in CandidateModels.of(several, Settings(model="specimen")).effects
     speed, volts = np.cos(T), {"command": "V", "velocity": "rad/s"}
+    assert "progressive_loss" not in candidates("first_order", volts, command=FORCE, velocity=speed)
     motor = {"speed_sensor_lag"}
     assert of_records & candidates("motor", volts, command=FORCE, velocity=speed) - springs == motor
     rectified = candidates("motor", volts, command=FORCE, velocity=np.abs(speed))
