@@ -17,10 +17,12 @@ from app.pages.run_view import conditions
 from ident.design.experiment import Experiment
 from ident.figures import figure
 from ident.fit.result import FitResult
-from ident.matrix import Matrix
+from ident.matrix import Actuator, Matrix
+from ident.preprocessing import prepare
 from ident.presets import preset
 from ident.presets.record_units import RecordUnits, written
 from ident.readers import from_arrays
+from ident.run import Run
 from ident.units.grammar import powers_of
 from ident.words import conditions as lab
 from ident.workflows import study
@@ -181,3 +183,21 @@ def test_a_speed_in_counts_leaves_a_damping_its_force_and_a_mass_its_force_and_a
 @pytest.mark.parametrize("unit", ["1", "N*s/m", "1/s", "m^3/(Pa*s)", "kg*m^2", "1/(m*s)"])
 def test_a_unit_that_is_taken_apart_is_written_as_it_was(unit):
     assert written(powers_of(unit) or {}) == unit
+
+
+@pytest.mark.parametrize(
+    ("output", "unit", "shown", "gain"),
+    [
+        ("temperature", "K", "1/K", "K/V"),
+        ("force", "N", "1/N", "N/V"),
+        ("velocity", "m/s", "s/m", "m/(V*s)"),
+        ("velocity", "1", "1", "1/V"),
+    ],
+)
+def test_a_lag_of_a_temperature_or_a_force_has_its_unit_in_the_place_of_a_metre(output, unit, shown, gain):
+    """The curvature of a thermometer was in 1/m."""
+    t = np.arange(200.0)
+    run = Run("r", "", 1.0, {"command": t, output: t}, {"command": "V", output: unit}, output=output)
+    known, _ = prepare(preset("first_order", ("sensor_curve",)), Matrix(Actuator("A"), (run,)), "none")
+    assert known.unit(known.parameter("sensor_curve.curvature")) == shown
+    assert known.unit(known.parameter("gain")) == gain

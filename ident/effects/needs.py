@@ -80,6 +80,17 @@ def one_sided_position(matrix: Matrix) -> bool:
     return all(run.output == "displacement" and one_sided(run.measured) for run in matrix.runs)
 
 
+def one_sided_answer(matrix: Matrix) -> bool:
+    """Whether what answers stays on one side of zero: a position, or a force, a pressure or a current that a command
+    sets, such as the thrust of a propeller."""
+    set_by_command = ("force", "load_pressure", "current")
+    return all(
+        (run.output == "displacement" or ("command" in run.channels and run.output in set_by_command))
+        and one_sided(run.measured)
+        for run in matrix.runs
+    )
+
+
 def one_sided_command(matrix: Matrix) -> bool:
     """Whether the command stays on one side of zero: what drives then pushes and lets go, and never pulls."""
     return all("command" in run.channels and one_sided(run.command) for run in matrix.runs)

@@ -1,13 +1,14 @@
-"""The transducer's curve bends to one side."""
+"""The curve of a transducer, or of what it measures, bends to one side."""
 
 from ident.effects.effect import Effect
-from ident.effects.needs import one_sided_position
+from ident.effects.needs import one_sided_answer
 from ident.parameter import Parameter, Starts
 
 SENSOR_CURVE = Effect(
     name="sensor_curve",
     place="sensor",
-    meaning="the characteristic of the recorded displacement is curved to one side, right at both ends of its range",
+    meaning="the characteristic of what is recorded is curved to one side, right at both ends of its range",
+    does="an output that is curved to one side",
     strength=Parameter(
         "curvature",
         "c",
@@ -26,6 +27,7 @@ SENSOR_CURVE = Effect(
         ),
     ),
     looks="a gain that changes with the level; in open loop the dynamics do not change",
-    source="terminal-based linearity of a level or pressure gauge, its second-order term",
-    needs=one_sided_position,
+    source="terminal-based linearity of a level or pressure gauge, its second-order term; thrust over the speed of a "
+    "propeller",
+    needs=one_sided_answer,
 )

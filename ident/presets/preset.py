@@ -104,7 +104,11 @@ class Preset(Model):
         elif OPENED_BY_COMMAND in preset.chain.stages and matrix.runs:
             unit = matrix.runs[0].units.get("command", "m")
             preset = replace(preset, display=replace(preset.display, drive_unit=unit))
-        recorded = RecordUnits.of(matrix.runs, preset.data.driven_by)
+        way = preset.chain.outputs.get("displacement")
+        as_way = all(
+            run.output != "displacement" and preset.chain.outputs.get(run.output) == way for run in matrix.runs
+        )
+        recorded = RecordUnits.of(matrix.runs, preset.data.driven_by, as_way)
         preset = replace(preset, display=replace(preset.display, recorded=recorded))
         if preset.data.area:
             preset = preset._of_area(matrix)

@@ -35,8 +35,12 @@ class RecordUnits:
     command: str = "m"
 
     @classmethod
-    def of(cls, runs: Iterable[Run], driven_by: str = "") -> RecordUnits:
-        """Those of a matrix, by what is stated of its channels; of what is `driven_by` a force the command is one."""
+    def of(cls, runs: Iterable[Run], driven_by: str = "", as_way: bool = False) -> RecordUnits:
+        """Those of a matrix, by what is stated of its channels; of what is `driven_by` a force the command is one.
+
+        `as_way`: the model reproduces whatever is recorded, such as a temperature, as it does a way: a metre is then
+        the unit of the output.
+        """
         listed = tuple(runs)
         units = {name: unit for run in listed for name, unit in run.units.items() if name in run.channels}
         moving = [units[name] for name in KINEMATIC if name in units]
@@ -51,6 +55,10 @@ class RecordUnits:
             unknown["Pa"] = {}
         clock = SAMPLE if listed and all(run.time_unit == SAMPLE for run in listed) else "s"
         outputs = {run.units.get(run.output, "m") for run in listed}
+        if as_way and len(outputs) == 1:
+            (output,) = outputs
+            way = {} if output == "1" else dict(powers_of(output) or {})
+            return cls(unknown={"m": way}, clock=clock, output=output, command=units.get("command", "m"))
         return cls(
             any(run.units.get(run.output) in _TURNING for run in listed),
             unknown,

@@ -433,6 +433,10 @@ def test_an_effect_is_looked_for_only_where_the_record_could_show_it():
         *level,
         "upper_overflow",
     }  # its own outflow has one
+    thrust = Run("r", "", RATE, {"command": LEVEL, "force": LEVEL}, {"command": "1", "force": "N"}, output="force")
+    for level_only, run in ((True, thrust), (False, replace(thrust, channels={"command": LEVEL, "force": about_zero}))):
+        named = CandidateModels.of(Matrix(Actuator("A"), (run,)), Settings(model="first_order")).effects
+        assert ("sensor_curve" in named) is level_only
     driven = {"command": "N", "displacement": "m", "vertical_load": "N", "load_pressure": "Pa"}
     recorded = {"command": FORCE, "displacement": about_zero}
     assert of_records & candidates("drive", driven, **recorded) - springs == {"spring_preload", "speed_limit"}
