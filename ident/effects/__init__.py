@@ -85,6 +85,7 @@ OF_RECORDS = _of_files(
     "degrading_hysteresis",
     "relaxation",
     "bilinear_stiffness",
+    "bilinear_damping",
     "elastic_coupling",
     "elastic_load",
     "sensor_curve",

@@ -321,6 +321,13 @@ CASES = {
         {"velocity": SPEED},
         output="force",
     ),
+    "bilinear_damping": Case(
+        "specimen",
+        {"bilinear_damping.damping": -1.5, "bilinear_damping.speed": 0.5},
+        lambda k: moved() - 1.5 * k * (SPEED - np.clip(SPEED, -0.5, 0.5)),
+        {"velocity": SPEED},
+        output="force",
+    ),
     "arm_gravity": Case(
         "drive",
         {"arm_gravity.torque": 30.0, "arm_gravity.hanging": 0.5},
@@ -449,7 +456,14 @@ def test_an_effect_is_looked_for_only_where_the_record_could_show_it():
     }
     answers = Run("r", "", RATE, {"velocity": SPEED, "force": FORCE, "load_pressure": SQUEEZE}, {}, output="force")
     moves = CandidateModels.of(Matrix(Actuator("A"), (answers,)), Settings(model="specimen")).effects
-    shown = {"pressure_friction", "pressure_force", "degrading_hysteresis", "relaxation", "bilinear_stiffness"}
+    shown = {
+        "pressure_friction",
+        "pressure_force",
+        "degrading_hysteresis",
+        "relaxation",
+        "bilinear_stiffness",
+        "bilinear_damping",
+    }
     assert shown <= set(moves)
     several = Matrix(Actuator("A"), (answers, replace(answers, id="s")))
     assert "degrading_hysteresis" not in CandidateModels.of(several, Settings(model="specimen")).effects
