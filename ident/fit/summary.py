@@ -279,7 +279,7 @@ def _determined(
         open_ = any(one.held.keys() & combined.equation.names for one in space.conventions)
         if error <= (_OF.determined if open_ else _OF.combined):  # all that is known of what a convention holds
             value = float(quantity(found.point[None])[0])
-            unit = objective.preset.display.recorded.shown(combined.unit)
+            unit = objective.preset.combined_unit(combined)
             yield Combination(combined.text.replace("**", "^"), value, unit, abs(value) * error)
     yield from slow_lag(objective, found)
 
