@@ -1,0 +1,78 @@
+"""A record that begins before its drive is on: the first step is answered far later than the steps after it."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Iterator
+
+import numpy as np
+
+from ident.checks.finding import Finding
+from ident.matrix import Matrix
+from ident.run import Run, Samples
+from ident.words.message import message
+
+STEP = 0.2  # of the command's range within all runs, which a step goes at least
+MOVED = 0.1  # of the output's range, beyond which it has set out
+REST = 8  # samples for which command and output rest before a step
+LATE = 3.0  # times the latest answer to a later step
+LEAST = 2  # later steps: one may be a slow one
+
+
+def late_starts(matrix: Matrix) -> Iterator[Finding]:
+    """A doubt of each run whose first step, in its first samples, is answered far later than other steps are."""
+    runs = [run for run in matrix.runs if "command" in run.channels and run.output != "command"]
+    for output in dict.fromkeys(run.output for run in runs):
+        of_output = [run for run in runs if run.output == output]
+        range_ = max(float(np.ptp(run.command)) for run in of_output) or max(abs(float(r.command[0])) for r in of_output)
+        later = [time for run in of_output for time in _answers(run, STEP * range_)]
+        for run in of_output:
+            begin, wait = _first(run, STEP * range_)
+            if len(later) >= LEAST and wait > max(REST, LATE * max(later) * run.sample_rate):
+                yield Finding.of(
+                    run.id,
+                    "doubt",
+                    "late-start",
+                    message(
+                        "check.late_start",
+                        run=run.id,
+                        output=run.output,
+                        late=(wait / run.sample_rate, run.time_unit),
+                        usual=(max(later), run.time_unit),
+                        count=len(later),
+                        first=begin + wait,
+                        end=run.length,
+                    ),
+                )
+
+
+def _answers(run: Run, least: float) -> Iterator[float]:
+    """The times, in s, after which an output at rest sets out behind each step of so much, but for the first samples."""
+    steps = np.flatnonzero(np.abs(np.diff(run.command)) >= least) + 1
+    for step, after in itertools.pairwise([*steps, run.length]):
+        rested = slice(step - REST, step)
+        if step >= 2 * REST and np.ptp(run.command[rested]) < least / 2.0:
+            wait = _wait(run, rested, step, int(after))
+            if wait:
+                yield wait / run.sample_rate
+
+
+def _first(run: Run, least: float) -> tuple[int, int]:
+    """The last step in the first samples, and how many samples the output then stands; 0 where it does not set out."""
+    changes = np.flatnonzero(np.abs(np.diff(run.command[:REST])) >= least) + 1
+    begin = int(changes[-1]) if len(changes) else 0
+    steady = np.abs(run.command[begin:] - run.command[begin]) < least / 2.0
+    end = begin + (len(steady) if steady.all() else int(np.argmin(steady)))
+    if abs(float(run.command[begin])) < least or end - begin <= REST:
+        return begin, 0
+    return begin, _wait(run, slice(begin, begin + REST), begin, end)
+
+
+def _wait(run: Run, rested: slice, step: int, end: int) -> int:
+    """The samples from a step until the output leaves the values at which it rested; 0 where it did not rest or stays."""
+    y: Samples = run.measured
+    middle, beyond = float(np.median(y[rested])), MOVED * float(np.ptp(y))
+    if not beyond or np.any(np.abs(y[rested] - middle) > beyond):
+        return 0
+    away = np.abs(y[step:end] - middle) > beyond
+    return int(np.argmax(away)) if away.any() else 0
