@@ -23,31 +23,25 @@ def late_starts(matrix: Matrix) -> Iterator[Finding]:
     """A doubt of each run whose first step, in its first samples, is answered far later than other steps are."""
     runs = [run for run in matrix.runs if "command" in run.channels and run.output != "command"]
     for output in dict.fromkeys(run.output for run in runs):
-        of_output = [run for run in runs if run.output == output]
-        range_ = max(float(np.ptp(run.command)) for run in of_output) or max(abs(float(r.command[0])) for r in of_output)
-        later = [time for run in of_output for time in _answers(run, STEP * range_)]
-        for run in of_output:
-            begin, wait = _first(run, STEP * range_)
-            if len(later) >= LEAST and wait > max(REST, LATE * max(later) * run.sample_rate):
-                yield Finding.of(
-                    run.id,
-                    "doubt",
-                    "late-start",
-                    message(
-                        "check.late_start",
-                        run=run.id,
-                        output=run.output,
-                        late=(wait / run.sample_rate, run.time_unit),
-                        usual=(max(later), run.time_unit),
-                        count=len(later),
-                        first=begin + wait,
-                        end=run.length,
-                    ),
-                )
+        like = [run for run in runs if run.output == output]
+        least = STEP * max(float(np.ptp(run.command)) for run in like)
+        later = [seconds for run in like for seconds in _answers(run, least)]
+        if len(later) < LEAST:
+            continue
+        for run in like:
+            begin, wait = _first(run, least)
+            if wait > max(REST, LATE * max(later) * run.sample_rate):
+                values = {
+                    "late": (wait / run.sample_rate, run.time_unit),
+                    "usual": (max(later), run.time_unit),
+                    "first": ((begin + wait) / run.sample_rate, run.time_unit),
+                }
+                said = message("check.late_start", run=run.id, output=output, count=len(later), **values)
+                yield Finding.of(run.id, "doubt", "late-start", said)
 
 
 def _answers(run: Run, least: float) -> Iterator[float]:
-    """The times, in s, after which an output at rest sets out behind each step of so much, but for the first samples."""
+    """The times in s after which an output at rest sets out behind a step of so much, but for the first samples."""
     steps = np.flatnonzero(np.abs(np.diff(run.command)) >= least) + 1
     for step, after in itertools.pairwise([*steps, run.length]):
         rested = slice(step - REST, step)
@@ -69,7 +63,7 @@ def _first(run: Run, least: float) -> tuple[int, int]:
 
 
 def _wait(run: Run, rested: slice, step: int, end: int) -> int:
-    """The samples from a step until the output leaves the values at which it rested; 0 where it did not rest or stays."""
+    """The samples from a step until the output leaves where it rested; 0 where it did not rest, or stays."""
     y: Samples = run.measured
     middle, beyond = float(np.median(y[rested])), MOVED * float(np.ptp(y))
     if not beyond or np.any(np.abs(y[rested] - middle) > beyond):

@@ -93,9 +93,7 @@ class RawFile:
         """Every column that holds numbers, of which some may be missing."""
         named = enumerate(zip(self.table.names, self._meanings, strict=True))
         return tuple(
-            Column(n, name, self._unit(n), meaning, self._filled[n])
-            for n, (name, meaning) in named
-            if self._filled[n]
+            Column(n, name, self._unit(n), meaning, self._filled[n]) for n, (name, meaning) in named if self._filled[n]
         )
 
     @cached_property

@@ -15,6 +15,7 @@ from ident.words.sentence import all_of
 
 BACK = 3.0  # usual steps that a time may lie before the latest one: a stamp of a logger came late
 
+
 def oldest_first(raw: Mapping[str, Array]) -> tuple[dict[str, Array], str]:
     """The columns of a file, reversed where its `time` falls throughout, as historians write it; and what to say.
 

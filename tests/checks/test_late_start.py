@@ -32,7 +32,7 @@ def codes(off: int, delay: int) -> list[tuple[str | None, str]]:
         for name, volts, speed in runs
     )
     found = [one for one in check(Matrix(Actuator("M"), listed)) if one.code == "late-start"]
-    assert all("rows: [195, 3000]" in one.text for one in found)
+    assert all("leave out the rows before 97.50 ms" in one.text for one in found)
     return [(one.run, one.severity) for one in found]
 
 
