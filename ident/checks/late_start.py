@@ -42,11 +42,11 @@ def late_starts(matrix: Matrix) -> Iterator[Finding]:
 
 def _answers(run: Run, least: float) -> Iterator[float]:
     """The times in s after which an output at rest sets out behind a step of so much, but for the first samples."""
-    steps = np.flatnonzero(np.abs(np.diff(run.command)) >= least) + 1
+    steps = [int(place) + 1 for place in np.flatnonzero(np.abs(np.diff(run.command)) >= least)]
     for step, after in itertools.pairwise([*steps, run.length]):
         rested = slice(step - REST, step)
         if step >= 2 * REST and np.ptp(run.command[rested]) < least / 2.0:
-            wait = _wait(run, rested, step, int(after))
+            wait = _wait(run, rested, step, after)
             if wait:
                 yield wait / run.sample_rate
 
