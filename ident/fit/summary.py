@@ -289,8 +289,10 @@ def _forces_as_commands(objective: Fitness, label: Mapping[str, tuple[str, str]]
     """The forces of effects over the force for each unit of the command, where the forces have no scale: dry friction
     of a motor of unknown inertia is known as the voltage that overcomes it."""
     preset, space = objective.preset, objective.space
+    if not space.convention:
+        return
     drives = [name for name in preset.display.of_drive if name in preset.data.share_force and name in space.names]
-    if space.convention and len(drives) == 1:
+    if len(drives) == 1:
         for parameter in preset.parameters:
             name = parameter.in_equations
             if parameter.of and parameter.unit == "N" and name in space.names:
