@@ -13,6 +13,7 @@ from ident.checks.feedback import CODE, feedback
 from ident.checks.finding import Finding, Findings
 from ident.checks.flat import flat
 from ident.checks.gain import force_sign, gain
+from ident.checks.late_start import late_starts
 from ident.checks.means import means
 from ident.checks.missing_input import missing_input
 from ident.checks.offset import offset
@@ -50,6 +51,7 @@ def check(matrix: Matrix) -> Findings:
         *(scaled := list(scale(measured))),
         *repeats(matrix),
         *means(matrix),
+        *late_starts(matrix),
         *statements(matrix),
     ]
     found += unit_factor(measured, [one.run for one in scaled])

@@ -75,6 +75,7 @@ def missing_inputs(run: Run) -> tuple[MissingInput, ...]:
         begins = motion.starts(at_rest)
         begins = [k for k in begins if _turns(motion.way[k : k + AHEAD * samples], FAST * motion.quick) < SWINGS]
         begins = [k for k in begins if _beyond_steps(run.measured, k, samples)]
+        begins = [k for k in begins if np.ptp(motion.output[k : k + longest]) >= FAST * travel]  # or it is a ripple
         begins = [k for k in begins if not _towards_command(run, motion, k)]
         if _by_itself(changes, begins, longest, samples):
             evidence = _evidence(run, motion, begins, at_rest)

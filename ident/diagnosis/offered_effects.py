@@ -6,7 +6,7 @@ from collections.abc import Iterable
 
 from ident.chain.channels import unmeasured
 from ident.effects.effect import Effect
-from ident.effects.needs import electric, turns_round
+from ident.effects.needs import shows_oil, turns_round
 from ident.matrix import Matrix
 from ident.presets import Preset
 from ident.presets.stroke_centre import about_stroke_centre
@@ -14,7 +14,7 @@ from ident.run import MOTIONS
 from ident.words.titles import title
 
 _OF_DRIVE = ("valve", "spool", "flow", "pressure")
-"""Places with the names of hydraulic parts, which an electric drive does not have."""
+"""Places with the names of hydraulic parts, which a lag and an electric drive do not have."""
 
 
 def offered_effects(
@@ -46,9 +46,9 @@ def in_words(effect: Effect, preset: Preset, matrix: Matrix) -> str:
 
 
 def place_in_words(effect: Effect, preset: Preset, matrix: Matrix) -> str:
-    """Where an effect acts: an electric drive has no valve and no spool."""
-    is_electric = not preset.chain.has_oil and electric(matrix.runs, matrix.actuator.states_oil)
-    return "drive" if is_electric and effect.place in _OF_DRIVE else effect.place
+    """Where an effect acts: a model without oil has no valve and no spool, where nothing shows that there is oil."""
+    without_oil = not preset.chain.has_oil and not shows_oil(matrix.runs, matrix.actuator.states_oil)
+    return "drive" if without_oil and effect.place in _OF_DRIVE else effect.place
 
 
 def _has_specimen(preset: Preset, matrix: Matrix) -> bool:

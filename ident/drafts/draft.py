@@ -96,6 +96,12 @@ class Draft:
                 doubts.append(_contradicted(MINUS.join(one.name for one in columns), channel, answer.unit, stated))
             found[channel] = Answer(answer.column if columns else before.column, answer.unit or stated)
         found = {channel: answer for channel, answer in found.items() if answer.column != ""}
+        sparse = _sparse(file, found, said)
+        found = {channel: answer for channel, answer in found.items() if channel not in sparse}
+        doubts += [
+            str(message("draft.sparse", column=shown(a.column), use=channel, share=share))
+            for channel, (a, share) in sparse.items()
+        ]
         doubts += [
             str(message("draft.named", column=shown(a.column), use=channel))
             for channel, a in found.items()
@@ -334,6 +340,16 @@ def _stays(file: RawFile, channel: str, of: Answer, columns: Sequence[Column], s
     """Whether a column still is the channel that its name looks like, once it was said what `columns` are."""
     number = file.table.numbers(of.column, file.name)[0]
     return channel in said.channels or all(number != one.number for one in columns)
+
+
+def _sparse(file: RawFile, channels: Mapping[str, Answer], said: FileAnswers) -> dict[str, tuple[Answer, float]]:
+    """The channels that only a name makes one, of columns with a value in less than half as many rows as the fullest
+    channel has, with that share of the rows: a sample needs a value of each channel."""
+    filled = {column.number: column.filled for column in file.columns}
+    numbers = {channel: file.table.numbers(answer.column, file.name) for channel, answer in channels.items()}
+    shares = {channel: min(filled.get(number, 0.0) for number in of) for channel, of in numbers.items()}
+    least = 0.5 * max(shares.values(), default=0.0)
+    return {name: (channels[name], of) for name, of in shares.items() if of < least and name not in said.channels}
 
 
 def _clock(file: RawFile, said: FileAnswers, channels: Mapping[str, Answer]) -> tuple[Answer, str, tuple[str, ...]]:

@@ -48,13 +48,14 @@ _LONGEST_ENTRY = 200  # characters of a line that states a rate
 class Column:
     """A column of numbers: its number and name in the file, and the unit that the file states, or none.
 
-    `meaning` is the name without what all names of the file have in common.
+    `meaning` is the name without what all names of the file have in common, `filled` the share of rows with a value.
     """
 
     number: int
     name: str
     unit: str
     meaning: str
+    filled: float = 1.0
 
 
 @dataclass(frozen=True)
@@ -91,19 +92,24 @@ class RawFile:
     def columns(self) -> tuple[Column, ...]:
         """Every column that holds numbers, of which some may be missing."""
         named = enumerate(zip(self.table.names, self._meanings, strict=True))
-        return tuple(Column(n, name, self._unit(n), meaning) for n, (name, meaning) in named if self._fine[n])
+        return tuple(
+            Column(n, name, self._unit(n), meaning, self._filled[n]) for n, (name, meaning) in named if self._filled[n]
+        )
 
     @cached_property
     def _meanings(self) -> tuple[str, ...]:
         return without_common_words(self.table.names)
 
     @cached_property
-    def _fine(self) -> list[bool]:
-        """Of each column, whether it holds numbers: all are read at once, one by one where one of them holds none."""
+    def _filled(self) -> list[float]:
+        """Of each column, the share of rows with a number; 0 where it holds none, or marks events.
+
+        All columns are read at once, one by one where one of them holds no numbers.
+        """
         try:
-            return [_has_values(samples) for samples in self.table.load(range(len(self.table.names)))]
+            return [_share(samples) for samples in self.table.load(range(len(self.table.names)))]
         except Unusable:
-            return [self._holds_numbers(number) for number in range(len(self.table.names))]
+            return [self._share_of_numbers(number) for number in range(len(self.table.names))]
 
     def stated(self, column: str | int) -> str | int:
         """A column as matrix.yaml names it: by the name in the whole file where this is a part of it."""
@@ -152,7 +158,7 @@ class RawFile:
 
     def _unit_of_period(self, number: int) -> str:
         """The unit of a time that runs in steps of the interval that the heading states."""
-        if self.period is None or not self._fine[number]:
+        if self.period is None or not self._filled[number]:
             return ""
         step = float(np.median(np.diff(self.values(number))))
         return (self.period[1] or "s") if np.isclose(step, self.period[0], rtol=1e-3) else ""
@@ -189,7 +195,7 @@ class RawFile:
     @cached_property
     def left_out(self) -> tuple[str, ...]:
         """The columns that hold numbers, but not throughout, each with the row that breaks it, in words."""
-        flaws = ((name, self.flaw(n)) for n, name in enumerate(self.table.names) if not self._fine[n])
+        flaws = ((name, self.flaw(n)) for n, name in enumerate(self.table.names) if not self._filled[n])
         return tuple(f"{name!r} is left out: {why}" for name, why in flaws if why)
 
     def flaw(self, number: int) -> str:
@@ -206,19 +212,20 @@ class RawFile:
             return ""
         return f"sample {bad[0]} is {samples[bad[0]]}"
 
-    def _holds_numbers(self, number: int) -> bool:
+    def _share_of_numbers(self, number: int) -> float:
         try:
-            return _has_values(self.samples(number))
+            return _share(self.samples(number))
         except Unusable:
-            return False
+            return 0.0
 
 
-def _has_values(samples: NDArray[Any]) -> bool:
-    """Whether a column is one of numbers, of which some may be missing."""
+def _share(samples: NDArray[Any]) -> float:
+    """The share of a column's rows with a number; 0 where too few or no number is, or one is not finite."""
     if samples.dtype.kind not in NUMERIC or len(samples) < 2:
-        return False
-    known = samples[~np.isnan(samples)]
-    return len(known) >= max(2, _FEWEST * len(samples)) and bool(np.isfinite(known).all())
+        return 0.0
+    values = samples[~np.isnan(samples)]
+    enough = len(values) >= max(2, _FEWEST * len(samples)) and bool(np.isfinite(values).all())
+    return len(values) / len(samples) if enough else 0.0
 
 
 def _stated(pattern: re.Pattern[str], text: str) -> Sequence[tuple[float, str]]:

@@ -268,7 +268,8 @@ def _determined(
             and not (space.convention and name in objective.preset.data.share_force)
         ):
             yield Combination(label[name][0], values[name], label[name][1], abs(values[name]) * error)
-    for combined in objective.preset.combinations:
+    named = [(combined.text.replace("**", "^"), combined) for combined in objective.preset.combinations]
+    for text, combined in (*named, *_forces_as_commands(objective, label)):
         names = combined.equation.names - values.keys()
         known = {name: np.array(space.typical[name]) for name in names}
 
@@ -279,9 +280,24 @@ def _determined(
         open_ = any(one.held.keys() & combined.equation.names for one in space.conventions)
         if error <= (_OF.determined if open_ else _OF.combined):  # all that is known of what a convention holds
             value = float(quantity(found.point[None])[0])
-            unit = objective.preset.display.recorded.shown(combined.unit)
-            yield Combination(combined.text.replace("**", "^"), value, unit, abs(value) * error)
+            unit = objective.preset.combined_unit(combined)
+            yield Combination(text, value, unit, abs(value) * error)
     yield from slow_lag(objective, found)
+
+
+def _forces_as_commands(objective: Fitness, label: Mapping[str, tuple[str, str]]) -> Iterator[tuple[str, Combined]]:
+    """The forces of effects over the force for each unit of the command, where the forces have no scale: dry friction
+    of a motor of unknown inertia is known as the voltage that overcomes it."""
+    preset, space = objective.preset, objective.space
+    if not space.convention:
+        return
+    drives = [name for name in preset.display.of_drive if name in preset.data.share_force and name in space.names]
+    if len(drives) == 1:
+        for parameter in preset.parameters:
+            name = parameter.in_equations
+            if parameter.of and parameter.unit == "N" and name in space.names:
+                text = f"{name} / {drives[0]}"
+                yield text.replace(name, label[name][0]), Combined(text, "m", "command that overcomes it")
 
 
 def _reason(objective: Fitness, name: str, relative: Mapping[str, float], point: Array) -> str:

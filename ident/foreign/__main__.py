@@ -1,8 +1,12 @@
-"""``python -m ident.foreign FORMAT FILE MEMORY``: the columns of a file to standard output, within so many bytes."""
+"""``python -m ident.foreign FORMAT FILE MEMORY SECONDS``: the columns of a file to standard output.
+
+It takes so many bytes of memory and seconds of a processor at most.
+"""
 
 from __future__ import annotations
 
 import json
+import math
 import os
 import sys
 from importlib import import_module
@@ -11,13 +15,15 @@ from typing import Any
 import numpy as np
 
 
-def limited(memory: int) -> None:
-    """Let this process have no more memory, where the system can see to that."""
+def limited(memory: int, seconds: float) -> None:
+    """Let this process have no more memory and time of a processor, where the system can see to that."""
     try:
         import resource  # noqa: PLC0415 - not on Windows
     except ImportError:
         return
     resource.setrlimit(resource.RLIMIT_AS, (memory, memory))
+    whole = math.ceil(seconds)
+    resource.setrlimit(resource.RLIMIT_CPU, (whole, whole + 1))  # the first ends it by SIGXCPU, which tells why
 
 
 def answer(format_: str, path: str) -> tuple[dict[str, Any], list[Any]]:
@@ -43,8 +49,8 @@ def answer(format_: str, path: str) -> tuple[dict[str, Any], list[Any]]:
 
 def main() -> None:
     """Write a line of JSON, then the columns of numbers as float64, one after the other."""
-    format_, path, memory = sys.argv[1:]
-    limited(int(memory))
+    format_, path, memory, seconds = sys.argv[1:]
+    limited(int(memory), float(seconds))
     with os.fdopen(os.dup(1), "wb") as out:
         os.dup2(2, 1)  # what a parser prints does not come into the answer
         said, numbers = answer(format_, path)

@@ -19,8 +19,9 @@ FELT = Threshold(
 
 
 def _act(prepared: Prepared) -> tuple[Prepared, tuple[str, ...]]:
-    """Count commands from their neutral, where the chain integrates them.
+    """Count commands from their neutral, where the chain integrates them, or where they are pulse widths.
 
+    A pulse of 1 ms stops the motor of a drone, and one of 1.5 ms holds a servo in its middle: none has its zero at 0 s.
     A null bias, a dead zone that is not in the middle and a recorder's zero are one thing there, and any of them makes
     the model run away. One machine has one neutral: the middle one of the runs to fit that show it. Where friction or a
     dead zone holds the machine at commands of either sign, none of them is its neutral.
@@ -31,15 +32,14 @@ def _act(prepared: Prepared) -> tuple[Prepared, tuple[str, ...]]:
     shown = [run.command[0] for run in matrix.of_use("fit") or matrix.runs if run.stands]
     neutral = float(np.median(shown)) if shown else 0.0
     felt = neutral and abs(neutral) > FELT.value * max(run.drive for run in matrix.runs)
-    if not felt or not integrates(preset.core, matrix.runs, matrix.actuator):
+    pulses = {run.units.get("command") for run in matrix.runs} == {"s"}
+    if not felt or not (pulses or integrates(preset.core, matrix.runs, matrix.actuator)):
         return prepared, ()
     if any(level * neutral <= 0 for run in matrix.of_use("fit") for level in run.held_still(neutral)):
         return prepared, ()
     text = with_unit(f"{neutral:.4g}", matrix.runs[0].units.get("command", "1"))
-    said = (
-        f"The command is counted from {text}, at which it is held first while the output stands: that is the neutral "
-        f"of a machine that integrates it."
-    )
+    why = "a pulse width has its zero there" if pulses else "that is the neutral of a machine that integrates it"
+    said = f"The command is counted from {text}, at which it is held first while the output stands: {why}."
     runs = tuple(replace(run, channels={**run.channels, "command": run.command - neutral}) for run in matrix.runs)
     return replace(prepared, matrix=replace(matrix, runs=runs)), (said,)
 
@@ -47,8 +47,8 @@ def _act(prepared: Prepared) -> tuple[Prepared, tuple[str, ...]]:
 COMMAND_OFFSET = Step(
     name="command_offset",
     does="counts the command from the value at which the machine stands still",
-    applies="a machine in open loop integrates its command, and the estimation runs begin with a command that is held "
-    "while the output stands",
+    applies="a machine in open loop integrates its command, or the command is a pulse width, and the estimation runs "
+    "begin with a command that is held while the output stands",
     without="the command is taken as it was recorded",
     thresholds=(FELT,),
     act=_act,

@@ -5,9 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 from ident.parameter import Parameter
-from ident.presets.model import Model
-from ident.presets.record_units import RecordUnits
+from ident.presets.model import Combined, Model
+from ident.presets.record_units import RecordUnits, written
 from ident.stages import OPENED_BY_COMMAND
+from ident.units.grammar import powers_of
 
 
 @dataclass(frozen=True)
@@ -37,3 +38,15 @@ class Display:
             return self.recorded.gain
         drive = self.drive_unit if at_drive and OPENED_BY_COMMAND in model.chain.stages else None
         return self.recorded.shown(parameter.unit, drive)
+
+    def combined_unit(self, model: Model, combined: Combined) -> str:
+        """The unit of a combination as it is shown, with that of the command where one of the drive's parameters is in
+        it: Kt/c0 in 1/s of a motor that volts drive and that turns is in rad/(s*V)."""
+        powers = dict(powers_of(self.recorded.shown(combined.unit)) or {})
+        for parameter in model.parameters:
+            if parameter.name in self.of_drive:
+                exponent = combined.exponent(parameter.in_equations)
+                for sign, unit in ((1.0, self.unit(model, parameter)), (-1.0, self.recorded.shown(parameter.unit))):
+                    for name, power in (powers_of(unit) or {}).items():
+                        powers[name] = powers.get(name, 0.0) + sign * exponent * power
+        return written({name: power for name, power in powers.items() if power})

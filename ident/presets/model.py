@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 from typing import Literal, Self, TypeVar
@@ -38,6 +39,13 @@ class Combined:
     def equation(self) -> Equation:
         """The combination as an equation of the grammar."""
         return Equation(f"combination = {self.text}")
+
+    def exponent(self, name: str) -> float:
+        """The power in which the combination has a parameter that multiplies or divides all of it; else 0."""
+        if name not in self.equation.names:
+            return 0.0
+        once, twice = (self.equation.value(dict.fromkeys(self.equation.names, 1.0) | {name: of}) for of in (1.0, 2.0))
+        return round(math.log2(twice / once), 6)
 
 
 @dataclass(frozen=True)

@@ -75,6 +75,10 @@ class Preset(Model):
         """The unit of a parameter as it is shown."""
         return self.display.unit(self, parameter)
 
+    def combined_unit(self, combined: Combined) -> str:
+        """The unit of a combination as it is shown."""
+        return self.display.combined_unit(self, combined)
+
     def parameter(self, name: str) -> Parameter:
         """As :meth:`Model.parameter`; also one that it has under control."""
         try:

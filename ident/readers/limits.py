@@ -23,7 +23,8 @@ class Limits:
     members: int = 20000  # number of files in an archive
     ratio: float = 300.0  # unpacked by packed size of one archive member; measured noise packs to 2-10
     parser_memory: int = 3 << 30  # of the process of a parser from elsewhere
-    parser_seconds: float = 10.0  # that it may take
+    parser_seconds: float = 10.0  # of a processor that it may take, by the clock where the system counts none
+    parser_wait: float = 120.0  # seconds by the clock: a busy machine lets it wait for a processor
     ratio_from: int = 16 << 20  # the ratio counts from this unpacked size on: a constant channel packs well too
 
 

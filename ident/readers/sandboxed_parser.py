@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import json
 import os
+import signal
 import subprocess
 import sys
 import tempfile
@@ -23,6 +24,8 @@ from ident.units.quantity import shown
 
 _ALONE, _TIMES = 1 << 30, 16  # bytes that such a process takes by itself, and of memory for each byte of the file
 _NUMBER = 8  # bytes
+_TOO_LONG = -getattr(signal, "SIGXCPU", 0)
+"""The end of a process that took its seconds of a processor; 0 where the system does not count them."""
 _WHOLE = "install servoident whole, or save it as .csv"
 _REMEDIES = {"mdf": "install servoident[mdf], or save it as .csv"}  # where a parser is an extra
 
@@ -62,7 +65,8 @@ def _output(format_: str, data: bytes, where: str, limits: Limits) -> bytes:
     with tempfile.TemporaryDirectory() as folder:
         file = Path(folder) / "file"
         file.write_bytes(data)
-        command = [sys.executable, "-m", "ident.foreign", format_, str(file), str(memory)]
+        seconds = limits.parser_seconds
+        command = [sys.executable, "-m", "ident.foreign", format_, str(file), str(memory), str(seconds)]
         few = {
             "OPENBLAS_NUM_THREADS": "1",
             "OMP_NUM_THREADS": "1",
@@ -77,13 +81,19 @@ def _output(format_: str, data: bytes, where: str, limits: Limits) -> bytes:
                 stdin=subprocess.DEVNULL,
                 stdout=subprocess.PIPE,
                 stderr=subprocess.DEVNULL,
-                timeout=limits.parser_seconds,
+                timeout=limits.parser_wait if _TOO_LONG else seconds,
                 check=False,
             )
         except subprocess.TimeoutExpired:
-            what = f"reading it takes longer than {limits.parser_seconds:g} s"
-            raise Unusable("too-slow", what, where, "split the record, or save it as .parquet or .csv") from None
+            raise _too_slow(limits.parser_wait if _TOO_LONG else seconds, where) from None
+    if done.returncode and done.returncode == _TOO_LONG:
+        raise _too_slow(seconds, where)
     return done.stdout
+
+
+def _too_slow(seconds: float, where: str) -> Unusable:
+    what = f"reading it takes longer than {seconds:g} s"
+    return Unusable("too-slow", what, where, "split the record, or save it as .parquet or .csv")
 
 
 def _said(line: bytes, format_: str, where: str) -> dict[str, Any]:

@@ -13,6 +13,8 @@ from ident.run import Samples
 from ident.words.number import count
 from ident.words.sentence import all_of
 
+BACK = 3.0  # usual steps that a time may lie before the latest one: a stamp of a logger came late
+
 
 def oldest_first(raw: Mapping[str, Array]) -> tuple[dict[str, Array], str]:
     """The columns of a file, reversed where its `time` falls throughout, as historians write it; and what to say.
@@ -29,19 +31,30 @@ def oldest_first(raw: Mapping[str, Array]) -> tuple[dict[str, Array], str]:
 
 
 def with_new_times(time: Samples) -> tuple[NDArray[np.bool_], str]:
-    """Which rows have a time t (n,) in s that is known and not that of the row before; and what to say of the others.
+    """Which rows have a time t (n,) in s that is known and after all times before; and what to say of the others.
 
-    All rows that have a time, where an even clock was printed with too few digits, or where most times are repeated: a
-    remedy is in the refusal of such a clock.
+    All rows that have a time, where an even clock was printed with too few digits, where most times are repeated, or
+    where one lies far before the latest: a remedy is in the refusal of such a clock.
     """
     known = ~np.isnan(time)
     given = time[known]
     repeats = np.concatenate([[False], np.diff(given) == 0])[: len(given)]
     if repeats.any() and (2 * int(repeats.sum()) >= len(given) or of_few_digits(given) is not None):
         repeats[:] = False
+    earlier = _a_little_earlier(given) & ~repeats
     new = known.copy()
-    new[known] = ~repeats
+    new[known] = ~(repeats | earlier)
     repeated, without = int(repeats.sum()), int(len(time) - len(given))
     parts = [f"{count(without, 'row')} without a time"] if without else []
     parts += [f"{count(repeated, 'row')} with the time of the row before"] if repeated else []
+    parts += [f"{count(int(earlier.sum()), 'row')} with a time before that of an earlier row"] if earlier.any() else []
     return new, f"left out: {all_of(parts)}" if parts else ""
+
+
+def _a_little_earlier(time: Samples) -> NDArray[np.bool_]:
+    """Which rows lie before the latest time t (n,) so far; none where one lies far before it, as of a second record."""
+    latest = np.maximum.accumulate(time)[:-1]
+    back, steps = latest - time[1:], np.diff(time)
+    if not (back > 0).any() or np.max(back) > BACK * np.median(steps[steps > 0]):
+        return np.zeros(len(time), np.bool_)
+    return np.concatenate([[False], back >= 0])

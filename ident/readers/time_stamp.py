@@ -1,4 +1,7 @@
-"""Times of day and dates in a text table, ISO 8601 and its usual relatives, to seconds since the first row."""
+"""Times of day and dates in a text table, ISO 8601 and its usual relatives, to seconds since the first row.
+
+Behind the seconds stands their fraction, or milliseconds of three digits behind a colon, as some loggers write them.
+"""
 
 from __future__ import annotations
 
@@ -16,7 +19,7 @@ from ident.units.quantity import shown
 _STAMP = re.compile(
     r"(?:(?P<iso>\d{4}-\d{2}-\d{2})[T ]|(?P<dotted>\d{1,2}\.\d{1,2}\.\d{4})[ ,]\s*|"
     r"(?P<slashed>\d{1,4}/\d{1,2}/\d{1,4})[ ,]\s*)?"
-    r"(?P<h>\d{1,2}):(?P<m>\d{2}):(?P<s>\d{2}(?:[.,]\d+)?)(?:\s?(?P<half>[AaPp][Mm]))?(?P<zone>Z|[+-]\d{2}:?\d{2})?"
+    r"(?P<h>\d{1,2}):(?P<m>\d{2}):(?P<s>\d{2}(?:[.,]\d+|:\d{3})?)(?:\s?(?P<half>[AaPp][Mm]))?(?P<zone>Z|[+-]\d{2}:?\d{2})?"
 )
 _DAY, _HALF_A_DAY = 86_400.0, 43_200.0  # s
 
@@ -76,4 +79,4 @@ def _of_day(match: re.Match[str]) -> float:
     hour = int(match["h"])
     if match["half"]:
         hour = hour % 12 + (12 if match["half"].lower() == "pm" else 0)
-    return 3600.0 * hour + 60.0 * int(match["m"]) + float(match["s"].replace(",", "."))
+    return 3600.0 * hour + 60.0 * int(match["m"]) + float(re.sub("[,:]", ".", match["s"]))

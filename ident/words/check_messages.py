@@ -84,6 +84,10 @@ CHECKS: Mapping[str, str] = {
         "{speed:quantity}, half the speed of the slowest of these starts",
     "check.missing_input":
         "{evidence}. An input is not recorded: add its channel, or keep only the rows in which it rests",
+    "check.late_start":
+        "in {run:run} the command acts from the first samples on, but the {output} stands still for {late:quantity}; "
+        "after {count} later steps it sets out within {usual:quantity}. Its drive was probably not on yet: leave out "
+        "the rows before {first:quantity}, with rows",
     "oscillation.steady":
         "in {run:run} the {output} swings by itself at {frequency:quantity} with an amplitude of {amplitude:quantity}, "
         "which no recorded input explains",

@@ -16,6 +16,9 @@ DRAFTS: Mapping[str, str] = {
         "--out run.csv, and describe the joined files",
     "draft.say": "say it, as {options:listed}",
     "draft.named": "'{column}' is used as {use}, because of its name",
+    "draft.sparse":
+        "'{column}' is not used as {use}: it has values in {share:percent} of the rows alone, and a sample needs all "
+        "channels",
     "draft.unused": "no channel is taken from {columns}",
     "draft.first_is_time": "column {number} has no name and increases in equal steps, so it is used as time",
     "draft.rate": "the sample rate {rate:g} Hz is from the lines above the table",

@@ -220,3 +220,17 @@ def test_what_follows_its_command_at_once_does_not_set_out_before_it(noise: floa
         speed = speed + noise * rng.standard_normal(len(speed))
         channels, units = {"command": levels, "velocity": speed}, {"command": "rad/s", "velocity": "rad/s"}
         assert not missing_inputs(Run("quick", "", 200.0, channels, units, hold="zoh", output="velocity"))
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_a_speed_that_dips_once_a_turn_misses_no_input_at_the_tops_of_a_sweep(seed: int) -> None:
+    """A motor with a time constant of 5 ms and an eccentric coupling, under a swept sine of 12 V up to 3 Hz."""
+    rng, rate = np.random.default_rng(seed), 2000.0
+    time = np.arange(0.0, 10.0, 1 / rate)
+    volts = 12.0 * scipy.signal.chirp(time, 0.2, 10.0, 3.0, phi=-90)
+    fall = np.exp(-1.0 / (0.005 * rate))
+    speed = scipy.signal.lfilter([17.0 * (1.0 - fall)], [1.0, -fall], volts)  # rad/s
+    turn = (np.cumsum(speed) / rate + rng.uniform(0.0, 6.0) + np.pi) % (2.0 * np.pi) - np.pi
+    measured = speed - 10.0 * np.sign(speed) * np.exp(-((turn / 0.3) ** 2)) + 0.3 * rng.standard_normal(len(time))
+    channels, units = {"command": volts, "velocity": measured}, {"command": "V", "velocity": "rad/s"}
+    assert not missing_inputs(Run("sweep", "", rate, channels, units, output="velocity"))

@@ -467,3 +467,15 @@ def test_where_the_force_was_said_to_be_the_output_the_motion_is_asked_for():
     draft = Draft([raw(text)], Answers(serial="A1", output="force"))
     assert [one.key for one in draft.missing] == ["channel displacement"]
     assert draft.options == ("--channel displacement='Displacment (mm)'",)
+
+
+def test_a_channel_with_few_values_is_taken_only_where_it_is_said():
+    """Of a stand whose load cell reads once in 20 samples: with it 20 of 400 samples had all channels."""
+    rows = [f"{n / 100:g},{n % 7},{n % 5},{n if n % 20 == 0 else ''}" for n in range(400)]
+    text = "\n".join(["time (s),command (V),speed (rpm),force (N)", *rows, ""])
+    draft = Draft([raw(text)], Answers(serial="M"))
+    assert draft.description()["runs"][0]["channels"].keys() == {"command", "velocity"}
+    assert any("'force (N)' is not used as force: it has values in 5.00 %" in doubt for doubt in draft.doubts)
+    said = replace(draft, answers=Answers(serial="M", channels={"force": Answer("force (N)")}))
+    assert "force" in said.description()["runs"][0]["channels"]
+    assert not any("not used" in doubt for doubt in said.doubts)

@@ -27,6 +27,7 @@ def determined(monkeypatch: pytest.MonkeyPatch, parameter: float, combination: f
         preset=SimpleNamespace(
             combinations=(SimpleNamespace(equation=equation, text="2*a", unit="kg"),),
             display=SimpleNamespace(recorded=SimpleNamespace(shown=str)),
+            combined_unit=lambda combined: combined.unit,
         ),
     )
     found: Any = SimpleNamespace(point=np.ones(1), relative=lambda _: combination)

@@ -42,3 +42,16 @@ def test_where_friction_holds_a_machine_at_commands_of_either_sign_none_of_them_
     matrix = held(neutral, friction)
     _, prepared = prepare(preset("motor"), matrix)
     assert prepared.runs[0].command[0] == pytest.approx(LEVELS[0] - counted_from)
+
+
+@pytest.mark.parametrize(("unit", "counted_from"), [("s", 1.0e-3), ("V", 0.0)])
+def test_a_pulse_width_is_counted_from_where_the_machine_stands(unit, counted_from):
+    """0.1 w' = 1000 (u − 1 ms) − w of a drone's motor, which does not integrate: a voltage has its zero at 0 V."""
+    pulse = np.repeat([1.0e-3, 1.2e-3, 1.5e-3, 1.9e-3, 1.4e-3, 1.0e-3], 200)
+    speed = np.zeros(len(pulse))
+    for k in range(1, len(pulse)):
+        speed[k] = speed[k - 1] + 0.1 * (1000.0 * (pulse[k - 1] - 1.0e-3) - speed[k - 1])
+    channels, units = {"command": pulse, "velocity": speed}, {"command": unit, "velocity": "rad/s"}
+    run = Run("fit", "", 100.0, channels, units, hold="zoh", output="velocity")
+    _, prepared = prepare(preset("motor"), Matrix(Actuator("DRONE"), (run,)))
+    np.testing.assert_allclose(prepared.runs[0].command, pulse - counted_from, atol=1e-12)

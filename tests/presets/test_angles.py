@@ -43,6 +43,19 @@ def test_a_motor_turns():
     assert all(powers_of(unit) is not None for unit in found.values())  # they can be read
 
 
+@pytest.mark.parametrize(
+    ("matrix", "model", "unit", "known"),
+    [
+        (motor(8), "motor", "rad/s", {"Kt / c0": "rad/(V*s)", "m0 / c0": "s", "Kt / m0": "rad/(V*s^2)"}),
+        (motor(8), "motor", "m/s", {"Kt / c0": "m/(V*s)", "m0 / c0": "s", "Kt / m0": "m/(V*s^2)"}),
+        (cylinder(2, wander=0.0), "sprung_motor", "rad", {"Kt / k0": "rad/V", "k0 / m0": "1/s^2", "c0 / m0": "1/s"}),
+    ],
+)
+def test_a_combination_is_for_each_unit_of_the_command(matrix, model, unit, known):
+    shown, _ = preset(model).for_matrix(along(matrix, unit))
+    assert known.items() <= {entry.text: shown.combined_unit(entry) for entry in shown.combinations}.items()
+
+
 @pytest.mark.parametrize("model", ["motor", "open_valve"])
 def test_a_cylinder_does_not(model):
     found = units(along(cylinder(2, wander=0.0), "m"), model)

@@ -103,6 +103,17 @@ def test_a_part_of_an_electric_drive_has_no_name_of_a_hydraulic_one():
     assert cylinder.described("flow_saturation") == "flow saturation (a speed that saturates, at the spool)"
 
 
+def test_a_lag_has_no_spool_where_nothing_shows_oil():
+    """Under a duty, whose unit tells neither a motor nor a valve."""
+    matrix = servo(1)
+    runs = tuple(replace(run, units={**run.units, "command": "1"}) for run in matrix.runs)
+    lag = CandidateModels.of(replace(matrix, runs=runs), Settings(model="first_order"))
+    assert lag.described("flow_saturation") == "flow saturation (a speed that saturates, at the drive)"
+    pressed = tuple(replace(run, units={**run.units, "load_pressure": "Pa"}) for run in runs)
+    lag = CandidateModels.of(replace(matrix, runs=pressed), Settings(model="first_order"))
+    assert lag.described("flow_saturation") == "flow saturation (a speed that saturates, at the spool)"
+
+
 @pytest.mark.full
 def test_a_servo_whose_speed_is_limited_has_a_limit_of_its_drive(full):
     """The speed of a servo ends where its bridge gives all its voltage; the limit is found within 3 %."""

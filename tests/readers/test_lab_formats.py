@@ -152,6 +152,7 @@ PARSERS = {
     "eats": "def columns(path):\n    held = []\n    while True:\n        held.append(bytearray(1 << 28))\n",
     "hangs": "def columns(path):\n    while True:\n        pass\n",
     "crashes": "import os\ndef columns(path):\n    os.abort()\n",
+    "waits": "import time\ndef columns(path):\n    time.sleep(1.5)\n    return [('u', 'V', [1.0, 2.0])]\n",
     "prints": "def columns(path):\n    print('I am a parser')\n    return [('u', 'V', [1.0, 2.0])]\n",
 }
 
@@ -166,6 +167,18 @@ def test_a_parser_that_goes_astray_ends_as_a_refusal(parser, code, tmp_path, mon
     with pytest.raises(Unusable) as refused:
         read_sandboxed(parser, b"x", "run", limits)
     assert refused.value.code == code.replace("eats", parser)
+
+
+def test_a_parser_that_waits_for_a_processor_is_not_too_slow_until_its_wait_ends(tmp_path, monkeypatch):
+    """A busy machine, on which a second of a processor takes longer by the clock."""
+    from ident.readers.sandboxed_parser import read_sandboxed
+
+    _install(tmp_path, monkeypatch, "waits")
+    table = read_sandboxed("waits", b"x", "run", Limits(parser_seconds=1.0))
+    assert table.load([0])[0].tolist() == [1.0, 2.0]
+    with pytest.raises(Unusable) as refused:
+        read_sandboxed("waits", b"x", "run", Limits(parser_wait=1.0))
+    assert refused.value.code == "too-slow"
 
 
 def test_what_a_parser_prints_is_not_taken_for_its_answer(tmp_path, monkeypatch):

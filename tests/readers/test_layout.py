@@ -125,6 +125,7 @@ def test_the_line_of_names_that_matrix_yaml_states_is_the_one_that_is_found():
         ([f"12.03.2026 09:30:{n:02d}" for n in range(30)], 1.0),
         ([f"09:30:{n:02d},500" for n in range(30)], 1.0),
         ([f"3/12/2026 09:30:{n:02d} PM" for n in range(30)], 1.0),
+        ([f"2026-03-12 09:30:00:{10 * n:03d}" for n in range(30)], 0.01),  # milliseconds behind a colon
     ],
 )
 def test_time_stamps_are_seconds_since_the_first(stamps, step):

@@ -135,6 +135,22 @@ def test_rows_without_a_new_time_are_left_out_and_told(tmp_path):
     assert "left out: 1 row without a time and 2 rows with the time of the row before" in told(matrix)
 
 
+@pytest.mark.parametrize("back", [1.5, 50.0])
+def test_a_row_whose_stamp_came_late_is_left_out_unless_the_time_begins_again(tmp_path, back):
+    """Of a logger: a few times lie a step or two before the latest one; far before it begins a second record."""
+    rows = table()
+    rows[120] = f"{TIME[120] - back / RATE},{rows[120].split(',', 1)[1]}"
+    if back > 3.0:
+        with pytest.raises(Unusable) as refused:
+            read(tmp_path, rows)
+        assert refused.value.code == "time-not-monotonic"
+        return
+    matrix = read(tmp_path, rows)
+    (run,) = matrix.runs
+    np.testing.assert_allclose(run.channels["velocity"][:120], SPEED[:120], atol=1e-6)
+    assert "left out: 1 row with a time before that of an earlier row" in told(matrix)
+
+
 def test_rows_of_an_even_clock_that_was_printed_with_too_few_digits_all_stay(tmp_path):
     lines = [f"{time:.1f},{row.split(',', 1)[1]}" for time, row in zip(TIME, table(), strict=True)]
     matrix = read(tmp_path, lines)
