@@ -83,6 +83,7 @@ OF_RECORDS = _of_files(
     "degrading_hysteresis",
     "relaxation",
     "bilinear_stiffness",
+    "asymmetric_stiffness",
     "elastic_coupling",
     "elastic_load",
     "sensor_curve",
