@@ -11,6 +11,7 @@ from ident.drafts.answers import Answers
 from ident.drafts.draft import Draft
 from ident.drafts.raw_file import read_raw
 from ident.readers import read_matrix
+from ident.readers.channel_description import channel_scale
 from ident.workflows import identify
 
 GAIN, TAU, ROOM, STEP, COUNT = 0.8, 60.0, 21.0, 2.0, 600
@@ -103,3 +104,10 @@ def test_a_cooler_that_is_switched_on_is_found_though_its_record_is_little_else_
     fit = identify(read_matrix(tmp_path))
     assert fit.error["fit"] < 0.06
     assert fit.parameters["gain"].value < -5.0
+
+
+@pytest.mark.parametrize(("unit", "kelvin"), [("C", 323.15), ("F", 283.15), ("degC", 323.15)])
+def test_a_command_may_be_a_temperature_in_degrees(unit, kelvin):
+    """As of a wire of a shape memory alloy in water: coulomb and farad, which no command has, are not meant."""
+    scale = channel_scale(unit, "command", "unit")
+    assert scale.factor * 50.0 + scale.offset == pytest.approx(kelvin)
