@@ -10,6 +10,7 @@ from ident.checks.check import check
 from ident.drafts.answers import Answers
 from ident.drafts.draft import Draft
 from ident.drafts.raw_file import read_raw
+from ident.presets.suitable_models import in_question
 from ident.readers import read_matrix
 from ident.readers.channel_description import channel_scale
 from ident.workflows import identify
@@ -111,3 +112,16 @@ def test_a_command_may_be_a_temperature_in_degrees(unit, kelvin):
     """As of a wire of a shape memory alloy in water: coulomb and farad, which no command has, are not meant."""
     scale = channel_scale(unit, "command", "unit")
     assert scale.factor * 50.0 + scale.offset == pytest.approx(kelvin)
+
+
+def test_a_wire_that_is_heated_has_no_oil_and_nobody_asks_for_its_specimen(tmp_path):
+    time, _, heat = oven()
+    np.savetxt(
+        tmp_path / "run.csv", np.column_stack([time, heat, 0.1 * heat]), "%.9g", ",", header="t,h,x", comments=""
+    )
+    channels = {"command": {"column": "h", "unit": "C"}, "displacement": {"column": "x", "unit": "mm"}}
+    run = {"id": "a", "file": "run.csv", "sample_rate": "0.5 Hz", "channels": channels}
+    (tmp_path / "matrix.yaml").write_text(yaml.safe_dump({"actuator": {"serial": "WIRE"}, "runs": [run]}))
+    matrix = read_matrix(tmp_path)
+    assert not any(model.chain.has_oil for model in in_question(matrix.runs))
+    assert not {finding.code for finding in check(matrix)} & {"no-specimen", "one-condition", "no-piston-area"}
