@@ -20,12 +20,13 @@ def statements(matrix: Matrix) -> Iterator[Finding]:
     """Uses, and everything optional that a fit of the models in question would want."""
     yield from uses(matrix)
     known = [run for run in matrix.runs if run.kind not in BENCH]  # a bench has neither gain nor specimen
-    # Without physical units nothing is to be had; what turns is no cylinder, and what is moved is the specimen itself.
+    # Without physical units nothing is to be had; what turns, or a temperature drives, is no cylinder; what is moved is
+    # the specimen itself.
     runs = [
         run
         for run in known
         if {"command", "drive_force"} & run.channels.keys()
-        and run.units.get("command") != "1"
+        and run.units.get("command") not in ("1", "K")
         and run.units.get(run.output) not in _NO_CYLINDER
         and run.output not in ("temperature", "current")
     ]

@@ -86,6 +86,7 @@ OF_RECORDS = _of_files(
     "relaxation",
     "bilinear_stiffness",
     "bilinear_damping",
+    "asymmetric_stiffness",
     "elastic_coupling",
     "elastic_load",
     "sensor_curve",

@@ -35,14 +35,16 @@ class Recorded(Protocol):
 
 
 def electric(runs: Iterable[Recorded], oil: bool) -> bool:
-    """Whether units show an electric drive: what it turns is recorded in rad or rad/s, and nothing shows oil.
+    """Whether units show a drive without oil: it turns, in rad or rad/s, or is a temperature, and nothing shows oil.
 
     `oil` is whether parts of a machine with oil are stated (:attr:`ident.matrix.Actuator.states_oil`). Unknown units
     (``1``) exclude nothing.
     """
     runs = tuple(runs)
     return not shows_oil(runs, oil) and all(
-        run.units.get(run.output) in ("rad", "rad/s") and run.units.get("command") in _ELECTRIC for run in runs
+        run.units.get("command") == "K"
+        or (run.units.get(run.output) in ("rad", "rad/s") and run.units.get("command") in _ELECTRIC)
+        for run in runs
     )
 
 

@@ -109,13 +109,22 @@ class ReducedRun:
     rest: float
     total: float
 
+    @property
+    def shown(self) -> float:
+        """The share of the record's power that no first state explains: what of it tells models apart."""
+        return float((self.d @ self.d + self.rest) / self.total)
+
     def errors(self, g: Array, basis: Basis) -> tuple[Array, Array]:
         """Eq. (17) of models given by their values at the nodes, (v, 2·nodes) → (v,), and their doubt.
 
-        The doubt is how far a model is from being represented by the basis, relative to its size.
+        The doubt is how far a model is from being represented by the basis, relative to its size. Of a record that is
+        little else than the decay of its first state it is infinite: the decays of all filters together explain it
+        without a model, and a model has but its own.
         """
         errors, doubt = np.empty(len(g)), np.empty(len(g))
         _reduce(g, self.W, self.d, self.rest / self.total, 1.0 / self.total, basis.check, errors, doubt)
+        if self.shown < _OF.shown:
+            doubt[:] = np.inf
         return errors, doubt
 
 

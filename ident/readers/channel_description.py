@@ -85,6 +85,8 @@ def channel_scale(unit: str, name: str, where: str) -> Scale:
     Raises Unusable: ``unknown-unit``, ``wrong-dimension``.
     """
     allowed = (*KINDS_OF_UNIT[name], "dimensionless")
+    if unit in ("C", "F") and "temperature" in allowed:
+        allowed = ("temperature",)  # of no other kind are these
     for dimension in allowed:
         try:
             return unit_scale(unit, dimension, where)

@@ -16,7 +16,8 @@ STRAY = 0.1  # samples: 0.7 degrees of phase at 80 Hz and 4096 Hz
 _MOST, _FEWEST = 10, 8  # times the samples that were taken, and samples, that an even clock may make of a record
 _DIGITS = 7  # of a second, after the point: as many as a time is looked through for its last one
 _SHORT = 0.01  # of a record: a hole that is no longer is bridged, as long as at most half of the record is missing
-_LOST = 0.1  # of the samples: where more are missing in longer holes, hardly anything is known between them
+_LOST = 0.1  # of the samples: where more are missing in longer holes, hardly anything is known between them; and where
+# so many holes are, they are no pauses of a clock, but another clock
 _ROUNDED = 0.55  # of the last digit: so far off is the time of an even clock that was printed
 
 
@@ -25,6 +26,7 @@ class Clock:
     """`rate` in Hz; `jitter`, the largest deviation from an even clock, in samples; `gaps`, samples missing.
 
     `even`: the samples are taken as even; what deviates is the printing of the time, or too much is missing.
+    `scattered`: too much is missing, in many holes: no constant rate describes the samples.
     `time` (n,) in s is the time without what its printing rounds off. `unbroken` are the first and the last sample of
     the longest part without a gap.
     """
@@ -35,6 +37,7 @@ class Clock:
     even: bool
     time: Samples
     unbroken: tuple[int, int]
+    scattered: bool = False
 
 
 def read_clock(time: Samples, where: str) -> Clock:
@@ -68,7 +71,18 @@ def read_clock(time: Samples, where: str) -> Clock:
     lost = gaps > len(time) or float(long.sum()) > _LOST * len(time)
     parts = np.split(np.arange(len(time)), np.flatnonzero(counted > 1.0) + 1)
     first, last = (int(number) for number in max(parts, key=len)[[0, -1]])
-    return Clock(rate, stray / step, gaps, lost or (printed and not gaps), even if printed else time, (first, last))
+    taken_as_even = lost or (printed and not gaps)
+    scattered = lost and int((counted > 1.0).sum()) > _LOST * len(time)
+    return Clock(rate, stray / step, gaps, taken_as_even, even if printed else time, (first, last), scattered)
+
+
+def check_rate(clock: Clock, where: str) -> None:
+    """Raises Unusable ``uneven-clock`` for a clock that no constant rate describes, as a logarithmic one."""
+    if clock.scattered:
+        steps = np.diff(clock.time)
+        what = f"its steps go from {np.min(steps):.3g} s to {np.max(steps):.3g} s, which no constant rate describes"
+        remedy = "write the record on an even clock, or let matrix.yaml do so, time: {column: …, resample: 20 Hz}"
+        raise Unusable("uneven-clock", what, where, remedy)
 
 
 def of_few_digits(time: Samples) -> Clock | None:

@@ -8,6 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from ident.errors import Unusable
+from ident.readers.clock import check_rate
 from ident.readers.earlier_command import with_past
 from ident.readers.missing_values import Numbers, OnOneClock, on_one_clock
 from ident.readers.run_description import RunDescription, TimeColumn
@@ -29,7 +30,7 @@ def read_run(described: RunDescription, table: Table) -> tuple[tuple[Run, ...], 
 
     With what is to be said of it. Without the trend that is asked to be left out, of each part by itself.
     Raises Unusable: ``missing-column``, ``not-numeric``, ``unequal-lengths``, ``rows-outside``, ``too-short``,
-    ``not-finite``, ``zero-variance``, ``time-not-monotonic``, ``nothing-left``, ``bad-split``.
+    ``not-finite``, ``zero-variance``, ``time-not-monotonic``, ``uneven-clock``, ``nothing-left``, ``bad-split``.
     """
     run, described, told = _whole(described, table)
     parts: tuple[Run, ...] = (run,)
@@ -111,6 +112,8 @@ def _on_one_clock(
     found = on_one_clock(channels, time, numbers, outputs, held, resample, places["time"])
     clock = found.clock
     check_long_enough(len(found.channels[outputs[0]]), places["time"])
+    if resample is None:
+        check_rate(clock, places["time"])
     run = replace(
         described.labels,
         channels=found.channels,

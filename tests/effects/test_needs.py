@@ -180,6 +180,12 @@ def kinked(stiffness: float, beyond: float) -> np.ndarray:
     return moved() + stiffness * np.sign(way) * np.maximum(np.abs(way) - beyond, 0.0)
 
 
+def stiffer_beyond(stiffness: float, way: float) -> np.ndarray:
+    """The force of a spring and a damper with another stiffness beyond a displacement, to that side alone."""
+    x = scipy.integrate.cumulative_trapezoid(SPEED, dx=1.0 / RATE, initial=0.0)
+    return moved() + stiffness * np.where(x > way, x - way, 0.0)
+
+
 def relaxed(stiffness: float, time: float = 0.2) -> np.ndarray:
     """The force of a spring and a damper with a spring and a damper in series (Maxwell) that relaxes, moved at a
     speed."""
@@ -328,6 +334,13 @@ CASES = {
         {"velocity": SPEED},
         output="force",
     ),
+    "asymmetric_stiffness": Case(
+        "specimen",
+        {"asymmetric_stiffness.stiffness": 40.0, "asymmetric_stiffness.displacement": -0.1},
+        lambda k: stiffer_beyond(40.0 * k, -0.1),
+        {"velocity": SPEED},
+        output="force",
+    ),
     "arm_gravity": Case(
         "drive",
         {"arm_gravity.torque": 30.0, "arm_gravity.hanging": 0.5},
@@ -463,6 +476,7 @@ def test_an_effect_is_looked_for_only_where_the_record_could_show_it():
         "relaxation",
         "bilinear_stiffness",
         "bilinear_damping",
+        "asymmetric_stiffness",
     }
     assert shown <= set(moves)
     several = Matrix(Actuator("A"), (answers, replace(answers, id="s")))

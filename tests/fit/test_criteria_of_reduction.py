@@ -10,7 +10,7 @@ import pytest
 
 from ident.fit import reduction
 from ident.fit.linear_fitness import LinearFitness
-from ident.fit.reduction import Basis, reduced
+from ident.fit.reduction import Basis, ReducedRun, reduced
 
 BASIS = Basis(1.0)
 
@@ -114,3 +114,14 @@ def test_records_of_steps_are_simulated_up_to_a_hundred_thousand_samples(samples
     run = SimpleNamespace(length=samples, begins="at rest", hold="zoh", kind="step")
     fitness = LinearFitness(None, None, (run,), None, None)
     assert fitness._reduces is not simulated
+
+
+@pytest.mark.parametrize(("left", "doubted"), [(0.085, True), (0.115, False)])
+def test_a_record_that_is_a_decay_alone_is_evaluated_exactly(left, doubted):
+    """So much of its power is left once first states of all kinds are allowed."""
+    nodes = len(BASIS.nodes)
+    run = ReducedRun(np.zeros((1, 2 * nodes)), np.array([np.sqrt(0.6 * left)]), 0.4 * left, 1.0)
+    assert run.shown == pytest.approx(left)
+    errors, doubt = run.errors(np.ones((2, 2 * nodes)), BASIS)
+    assert errors == pytest.approx(np.sqrt(left))
+    assert np.isinf(doubt).all() == doubted

@@ -65,6 +65,27 @@ def test_an_uneven_clock_is_no_error_of_the_model(tmp_path, hold, seed):
     assert identify(taken_as_even, Settings(model="first_order")).error["fit"] > worse * fit.error["fit"]
 
 
+def test_a_clock_that_no_rate_describes_is_refused_unless_a_rate_is_asked_for(tmp_path):
+    """A creep test on a logarithmic clock: taken as even its lag would be another. A pause leaves a clock even."""
+    time = np.concatenate([np.arange(60) * 0.02, 1.2 * 1.06 ** np.arange(1, 60)])
+    table = np.column_stack([time, np.where(time > 0.1, 1.0, 0.0), -np.expm1(-np.maximum(time - 0.1, 0.0) / LAG)])
+    np.savetxt(tmp_path / "run.csv", table, delimiter=",", header="t,u,x", comments="", fmt="%.9g")
+    channels = {"command": {"column": "u", "unit": "m"}, "displacement": {"column": "x", "unit": "m"}}
+    run = {"id": "one", "file": "run.csv", "channels": channels, "time": {"column": "t", "unit": "s"}}
+    matrix = {"actuator": {"serial": "CREEP"}, "runs": [run]}
+    (tmp_path / "matrix.yaml").write_text(yaml.safe_dump(matrix))
+    with pytest.raises(Unusable) as refused:
+        read_matrix(tmp_path)
+    assert refused.value.code == "uneven-clock"
+    assert "from 0.02 s to 2.11 s" in refused.value.what
+    run["time"] = {"column": "t", "unit": "s", "resample": "20 Hz"}
+    (tmp_path / "matrix.yaml").write_text(yaml.safe_dump(matrix))
+    (read,) = read_matrix(tmp_path).runs
+    assert (read.sample_rate, read.length) == (20.0, int(time[-1] * 20) + 1)
+    even = np.arange(600) / 50
+    assert not read_clock(even[(even < 2) | (even > 6)], "t").scattered
+
+
 def test_an_even_clock_is_left_as_it_was_recorded():
     """However its time was printed."""
     time = np.arange(4000) / 4096
