@@ -104,6 +104,11 @@ class Parameter:
         """Its name in the equations of a chain: ``dead_zone.half_width`` is ``dead_zone__half_width`` there."""
         return self.name.replace(".", "__")
 
+    @property
+    def is_force(self) -> bool:
+        """Whether it is a force, or a torque where an angle was recorded."""
+        return self.unit == "N"
+
     def of_effect(self, effect: str) -> Parameter:
         """The same as a model has it that has the effect."""
         return replace(self, name=f"{effect}.{self.name}", of=effect)

@@ -293,9 +293,9 @@ def _forces_as_commands(objective: Fitness, label: Mapping[str, tuple[str, str]]
         return
     drives = [name for name in preset.display.of_drive if name in preset.data.share_force and name in space.names]
     if len(drives) == 1:
-        for parameter in preset.forces_of_effects:
+        for parameter in preset.parameters:
             name = parameter.in_equations
-            if name in space.names:
+            if parameter.of and parameter.is_force and name in space.names:
                 text = f"{name} / {drives[0]}"
                 yield text.replace(name, label[name][0]), Combined(text, "m", "command that overcomes it")
 

@@ -75,11 +75,6 @@ class Preset(Model):
         """The unit of a parameter as it is shown."""
         return self.display.unit(self, parameter)
 
-    @property
-    def forces_of_effects(self) -> tuple[Parameter, ...]:
-        """The parameters of effects that are a force."""
-        return tuple(parameter for parameter in self.parameters if parameter.of and parameter.unit == "N")
-
     def combined_unit(self, combined: Combined) -> str:
         """The unit of a combination as it is shown."""
         return self.display.combined_unit(self, combined)
