@@ -85,7 +85,6 @@ OF_RECORDS = _of_files(
     "degrading_hysteresis",
     "relaxation",
     "bilinear_stiffness",
-    "bilinear_damping",
     "asymmetric_stiffness",
     "elastic_coupling",
     "elastic_load",

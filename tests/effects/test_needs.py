@@ -327,13 +327,6 @@ CASES = {
         {"velocity": SPEED},
         output="force",
     ),
-    "bilinear_damping": Case(
-        "specimen",
-        {"bilinear_damping.damping": -1.5, "bilinear_damping.speed": 0.5},
-        lambda k: moved() - 1.5 * k * (SPEED - np.clip(SPEED, -0.5, 0.5)),
-        {"velocity": SPEED},
-        output="force",
-    ),
     "asymmetric_stiffness": Case(
         "specimen",
         {"asymmetric_stiffness.stiffness": 40.0, "asymmetric_stiffness.displacement": -0.1},
@@ -475,7 +468,6 @@ def test_an_effect_is_looked_for_only_where_the_record_could_show_it():
         "degrading_hysteresis",
         "relaxation",
         "bilinear_stiffness",
-        "bilinear_damping",
         "asymmetric_stiffness",
     }
     assert shown <= set(moves)
