@@ -46,7 +46,9 @@ class Covariance:
     valley: Array
 
     def relative(self, quantity: Callable[[Array], Array]) -> float:
-        """Relative standard error of a quantity of one sign, a function of points (v, p) → (v,)."""
+        """Relative standard error of a quantity of one sign, a function of points (v, p) → (v,); none of nothing."""
+        if not np.all(quantity(np.concatenate([self.point[None], self.valley]))):
+            return np.inf
         along = np.ptp(np.log(np.abs(quantity(self.valley)))) if len(self.valley) else 0.0
         return float(np.sqrt(max(self._joint(self._gradient(quantity), self._gradient(quantity)), 0.0) + along**2))
 

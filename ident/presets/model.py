@@ -44,7 +44,10 @@ class Combined:
         """The power in which the combination has a parameter that multiplies or divides all of it; else 0."""
         if name not in self.equation.names:
             return 0.0
-        once, twice = (self.equation.value(dict.fromkeys(self.equation.names, 1.0) | {name: of}) for of in (1.0, 2.0))
+        others = {other: 1.0 + 0.37 * place for place, other in enumerate(sorted(self.equation.names))}
+        once, twice, again = (float(self.equation.value({**others, name: of})) for of in (1.0, 2.0, 4.0))
+        if once == 0.0 or once * twice <= 0.0 or not math.isclose(twice * twice, once * again, rel_tol=1e-9):
+            return 0.0  # it stands in a sum
         return round(math.log2(twice / once), 6)
 
 

@@ -12,6 +12,7 @@ from ident.errors import Unusable
 from ident.matrix import Matrix
 from ident.presets import preset
 from ident.presets.angles import in_si
+from ident.presets.model import Combined
 from ident.presets.record_units import RecordUnits
 from ident.units.grammar import powers_of
 from tests.fit.test_windows import cylinder
@@ -54,6 +55,20 @@ def test_a_motor_turns():
 def test_a_combination_is_for_each_unit_of_the_command(matrix, model, unit, known):
     shown, _ = preset(model).for_matrix(along(matrix, unit))
     assert known.items() <= {entry.text: shown.combined_unit(entry) for entry in shown.combinations}.items()
+
+
+@pytest.mark.parametrize(
+    ("text", "powers"),
+    [
+        ("a / b", {"a": 1.0, "b": -1.0, "c": 0.0}),
+        ("(a - b) / c", {"a": 0.0, "b": 0.0, "c": -1.0}),
+        ("(b - a) / c", {"a": 0.0, "b": 0.0, "c": -1.0}),
+        ("sqrt(a / b) + c", {"a": 0.0, "b": 0.0, "c": 0.0}),
+        ("sqrt(a / b) * c", {"a": 0.5, "b": -0.5, "c": 1.0}),
+    ],
+)
+def test_a_parameter_in_a_sum_has_no_power(text, powers):
+    assert {name: Combined(text, "m", "some").exponent(name) for name in "abc"} == powers
 
 
 @pytest.mark.parametrize("model", ["motor", "open_valve"])
