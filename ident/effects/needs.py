@@ -61,7 +61,9 @@ def angle_measured(matrix: Matrix) -> bool:
 def position_driven(matrix: Matrix) -> bool:
     """Whether a position is to be reproduced of every run, and its command is no position: no loop returns the mass, so
     a spring may. Of a speed alone nothing tells the place of rest."""
-    return all(run.output == "displacement" and run.units.get("command") not in ("m", "rad") for run in matrix.runs)
+    return all(
+        run.output == "displacement" and run.units.get("command", "m") not in ("m", "rad") for run in matrix.runs
+    )
 
 
 def force_answers(matrix: Matrix) -> bool:
