@@ -109,9 +109,8 @@ class Preset(Model):
             unit = matrix.runs[0].units.get("command", "m")
             preset = replace(preset, display=replace(preset.display, drive_unit=unit))
         way = preset.chain.outputs.get("displacement")
-        as_way = all(
-            run.output != "displacement" and preset.chain.outputs.get(run.output) == way for run in matrix.runs
-        )
+        shown = {run.output for run in matrix.runs}
+        as_way = "displacement" not in shown and {preset.chain.outputs.get(name, "") for name in shown} == {way}
         recorded = RecordUnits.of(matrix.runs, preset.data.driven_by, as_way)
         preset = replace(preset, display=replace(preset.display, recorded=recorded))
         if preset.data.area:
