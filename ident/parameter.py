@@ -86,7 +86,8 @@ class Parameter:
     start: Starts = Starts.ALONG_RANGE
     """From where its search begins."""
     of_motion: bool = False
-    """Whether it is a way, the inverse of one, or a speed of the motion, which measures it in place of the command."""
+    """Whether it is a way, the inverse of one, a speed, or the torque of a weight that the motion lifts: the motion
+    measures it, in place of the command."""
     at_reversals: AtReversals | None = None
     """What happens over it where the motion reverses, so that a simulation takes steps as short as that asks for."""
 
