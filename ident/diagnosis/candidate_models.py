@@ -17,6 +17,7 @@ from ident.diagnosis.objectives import Objectives
 from ident.diagnosis.offered_effects import in_words, offered_effects
 from ident.diagnosis.resting import Resting
 from ident.diagnosis.tie_breaking import stable_minimum, stable_ranking
+from ident.diagnosis.trial_records import TrialRecords
 from ident.diagnosis.verdict import Residual, is_noise
 from ident.effects import CATALOGUE
 from ident.effects.effect import Effect, off_values
@@ -32,7 +33,6 @@ from ident.fit.settings import Settings
 from ident.fit.simulated_fitness import SimulatedFitness
 from ident.fit.simulated_runs import SimulatedRuns
 from ident.fit.space import search_space
-from ident.fit.trial_runs import decimated, shortened
 from ident.fit.wider_bounds import reaching, searched_beyond, wider_at
 from ident.matrix import Matrix
 from ident.noise.floor import Floors, noise_floors
@@ -69,7 +69,7 @@ class CandidateModels:
     horizon: float | None = None
     memory: float | None = None
     _known: Objectives = field(default_factory=Objectives, repr=False)
-    _records: dict[int, tuple[Run, ...]] = field(default_factory=dict)
+    _trials: TrialRecords | None = None
     _compared: dict[int, ComparedRecords] = field(default_factory=dict)
     _recent: RecentMoments = field(default_factory=RecentMoments, repr=False)
     bars: Once[tuple[str, ...], float] = field(default_factory=Once, repr=False)
@@ -103,7 +103,7 @@ class CandidateModels:
     def without(self, runs: Iterable[str]) -> CandidateModels:
         """The same models, fitted to fewer runs."""
         return replace(
-            self, left_out=self.left_out | frozenset(runs), _known=Objectives(), _records={}, _compared={}, bars=Once()
+            self, left_out=self.left_out | frozenset(runs), _known=Objectives(), _trials=None, _compared={}, bars=Once()
         )
 
     def doubting(self, fitted: FittedModel) -> CandidateModels:
@@ -114,6 +114,13 @@ class CandidateModels:
         if not contradicted:
             return self
         return replace(self, contradicted=contradicted, _known=Objectives(), _compared={}, bars=Once())
+
+    def representing(self, fitted: FittedModel) -> CandidateModels:
+        """The same models, tried on records whose parts show what a fitted model leaves of the whole."""
+        trials = self._trial_records.representing(fitted.residuals_fitted.series)
+        if trials is self._trials:
+            return self
+        return replace(self, _known=Objectives(), _trials=trials, _compared={}, bars=Once())
 
     def with_effects(self, effects: Mapping[str, Effect], given: Settings) -> CandidateModels:
         """The models of other effects, and of what is given of these."""
@@ -239,7 +246,7 @@ class CandidateModels:
             model = self.model(effects)
             given = of_model(self.given, model, self.effects.keys())
             space = search_space(model, self.matrix, given, self.band)
-            runs = self._shortened(samples) if samples else self.runs
+            runs = self._trial_records.of(samples) if samples else self.runs
             objectives[key] = SimulatedFitness(
                 model,
                 self.matrix,
@@ -255,18 +262,15 @@ class CandidateModels:
 
     def compared_records(self, samples: int = 0) -> ComparedRecords:
         """The records of at most so many samples in all, as models are compared on them."""
-        runs = self._shortened(samples) if samples else self.runs
+        runs = self._trial_records.of(samples) if samples else self.runs
         of_these = self._compared.get(samples) or ComparedRecords(runs, lambda: self.floors)
         return self._compared.setdefault(samples, of_these)
 
-    def _shortened(self, samples: int) -> tuple[Run, ...]:
-        """The records at that length, the same ones for every model: what is known of a record is found once."""
-        return self._records.setdefault(samples, self._records.get(samples) or shortened(self._decimated, samples))
-
-    @cached_property
-    def _decimated(self) -> tuple[Run, ...]:
-        """The records, decimated where they are finely sampled."""
-        return decimated(self.runs, self.band)
+    @property
+    def _trial_records(self) -> TrialRecords:
+        """The records on which effects are predicted and tried, the same ones for every model."""
+        self._trials = self._trials or TrialRecords(self.runs, self.band)
+        return self._trials
 
     @cached_property
     def floors(self) -> Floors:
@@ -380,13 +384,9 @@ class CandidateModels:
         """Those of first steps that left least, as first refits that have to come below `aim`: others cannot win."""
         rest = stable_ranking([one for one in refits if one.stable], lambda one: one.local.error)
         leading: list[FittedModel] = []
-        while (
-            rest and len(leading) < CRITERIA.estimation.leading
-        ):  # only of those that lead it is asked whether they keep their promise
-            asked, rest = (
-                rest[: CRITERIA.estimation.leading - len(leading)],
-                rest[CRITERIA.estimation.leading - len(leading) :],
-            )
+        while rest and len(leading) < CRITERIA.estimation.leading:  # whether they keep their promise is asked of few
+            room = CRITERIA.estimation.leading - len(leading)
+            asked, rest = rest[:room], rest[room:]
             leading += [one for one, kept in zip(asked, each(lambda one: one.finite, asked), strict=True) if kept]
         on = replace(CRITERIA.estimation.trial, aim=aim)
         return each(lambda one: self.continued(one, on, CRITERIA.estimation.trial_samples), leading)

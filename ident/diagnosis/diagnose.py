@@ -153,7 +153,7 @@ class Diagnoser:
             raise Unusable("bad-fit", "the fitted model is unstable on a run", "fit", "fit the model to this matrix")
         if (models := models.doubting(base)).contradicted:
             base = replace(base, records=models.compared_records())
-        models = from_the_start(models, base)
+        models = from_the_start(models, base).representing(base)
         begin = begin or fitted_with_shown(models, self.matrix, base)
         return Moves(models, base, self.budget.most, self.budget.report_progress, self._publish_step, begin)
 

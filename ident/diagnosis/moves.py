@@ -63,7 +63,9 @@ class Moves:
 
     def step(self, selection: Selection, fitted: FittedModel) -> Selection:
         """The selection with one more model on its path, refined until it converges."""
-        selection = self.keep(replace(selection, path=(*selection.path, self.models.converged(fitted))))
+        fitted = self.models.converged(fitted)
+        self.models = self.models.representing(fitted)
+        selection = self.keep(replace(selection, path=(*selection.path, fitted), models=self.models))
         self.refitted_sets.met([selection.fitted])
         self.listener(selection)
         return selection

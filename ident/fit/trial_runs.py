@@ -6,7 +6,7 @@ the distance of two samples: where the samples are decimated, only the command b
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Container, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -40,16 +40,18 @@ def band_stride(runs: Sequence[Run], band: float, remaining: float) -> int:
     return max(1, int(slowest / (remaining * (band / (2 * np.pi)))))
 
 
-def shortened(runs: Sequence[Run], samples: int) -> tuple[Run, ...]:
+def shortened(runs: Sequence[Run], samples: int, whole: Container[str] = ()) -> tuple[Run, ...]:
     """The runs for a search, at most about `samples` in all: those that go on as they begin are cut, others are kept.
 
-    The first part of a sweep would not show what the rest does.
+    The first part of a sweep would not show what the rest does. The runs with an id in `whole` are kept, too.
     """
     total = sum(run.length for run in runs)
     if total <= samples:
         return tuple(runs)
     return tuple(
-        run.part(0, max(_OF.shortest_part, run.length * samples // total)) if _goes_on_alike(run) else run
+        run.part(0, max(_OF.shortest_part, run.length * samples // total))
+        if run.id not in whole and _goes_on_alike(run)
+        else run
         for run in runs
     )
 
