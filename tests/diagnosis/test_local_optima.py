@@ -32,15 +32,17 @@ def refit(*effects: str, error: float) -> Any:
 @pytest.fixture
 def models():
     """A family of models in which nothing is at the noise, each effect as simple as the others."""
-    return SimpleNamespace(
+    found = SimpleNamespace(
         floor=0.1,
         at_floor=lambda _refit: False,
         residual_above_noise=lambda _refit: True,
         simplicity=lambda name: (1, name),
         converged=lambda one: one,
+        representing=lambda _one: found,
         trial_error=lambda one: one.error,
         is_shown=lambda _effect: False,
     )
+    return found
 
 
 @pytest.mark.parametrize(("anew", "error"), [(0.7, 0.7), (0.99, 1.0), (1.2, 1.0)])
