@@ -38,7 +38,7 @@ class Estimation:
     """[samples] Of all runs on which effects are predicted, points of the whole space are judged, refits from far away
     begin and terms are sought. Why: all effects take about a second, and 128 points about as much as one trial.
     Test: test_criteria_of_estimation.py::test_a_refit_takes_so_much_of_the_records"""
-    late_power: float = 1.5
+    delayed_power: float = 1.5
     """[ratio of powers] Of the residual of a run to that of its first part, above which trials take the run whole. Why:
     the power of the first part of a stationary residual with a hundred independent samples scatters by a seventh; a
     stop that is hit after it makes the ratio 1.3 to 3,000.

@@ -352,15 +352,38 @@ class Moves:
         trials = (refit for refits in restarts for refit in refits)
         return self._best_of(selection, self.models.leading(trials, self.models.trial_error(selection.fitted)))
 
-    def _best_of(self, selection: Selection, trials: Sequence[FittedModel]) -> Selection | None:
-        """Continue with the best of some trials, where its refit improves the model on all records."""
+    def from_anywhere(self, selection: Selection) -> Selection | None:
+        """Begin again with one effect from the whole search space, where the records are short.
+
+        A model without the effect may have ended so far away that no effect promises anything there: a limit of the
+        drive was fitted as a small gain.
+        """
+        base = selection.base
+        if not self.models.is_short(base):
+            return None
+        names = self._addable(base)
+
+        def begun(name: str) -> list[FittedModel]:
+            return self.models.global_starts((*base.effects, name))
+
+        restarts = each(counted(begun, "searching further", lambda: len(names), self.report), names)
+        trials = (refit for refits in restarts for refit in refits)
+        leading = self.models.leading(trials, self.models.trial_error(selection.fitted))
+        again = replace(selection, path=(base,), changes=selection.changes + 1)
+        return self._best_of(selection, leading, again)
+
+    def _best_of(
+        self, selection: Selection, trials: Sequence[FittedModel], before: Selection | None = None
+    ) -> Selection | None:
+        """Continue, from the selection `before`, with the best of some trials whose refit improves the model on all
+        records."""
         best = stable_minimum(trials, lambda trial: trial.local.error) if trials else None
         if best is None or not best.local.error < self.models.trial_error(selection.fitted):
             return None
         refit = self.models.refit(best.effects, best.values)
         if not refit.finite or not worth_adding(self.models, selection.fitted, refit):
             return None
-        return self.step(selection, refit)
+        return self.step(before or selection, refit)
 
     def strong_starts(self, selection: Selection) -> Selection | None:
         """Continue with an effect that improves the model only where its refit begins with a strong one."""

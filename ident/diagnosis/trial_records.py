@@ -26,14 +26,14 @@ class TrialRecords:
     runs: tuple[Run, ...]
     band: float
     whole: frozenset[str] = frozenset()
-    _known: dict[int, tuple[Run, ...]] = field(default_factory=dict, repr=False)
+    _made: dict[int, tuple[Run, ...]] = field(default_factory=dict, repr=False)
 
     def of(self, samples: int) -> tuple[Run, ...]:
         """The runs with at most about `samples` samples in all."""
-        if 0 not in self._known:
-            self._known[0] = decimated(self.runs, self.band)
-        known = self._known.get(samples)
-        return self._known.setdefault(samples, known or shortened(self._known[0], samples, self.whole))
+        if 0 not in self._made:
+            self._made[0] = decimated(self.runs, self.band)
+        made = self._made.get(samples)
+        return self._made.setdefault(samples, made or shortened(self._made[0], samples, self.whole))
 
     def representing(self, residuals: Sequence[Array]) -> TrialRecords:
         """The same records, with each run whole of which the first part does not show its residual (n,) in `residuals`.
@@ -42,12 +42,12 @@ class TrialRecords:
         largest of the amplitudes alone.
         """
         firsts = self.of(CRITERIA.estimation.rough_samples)
-        late = {
+        cut_off = {
             run.id
             for run, first, residual in zip(self.runs, firsts, residuals, strict=True)
-            if _power(residual) > CRITERIA.estimation.late_power * _power(residual[: _as_long(run, first)])
+            if _power(residual) > CRITERIA.estimation.delayed_power * _power(residual[: _as_long(run, first)])
         }
-        return self if late <= self.whole else TrialRecords(self.runs, self.band, self.whole | late)
+        return self if cut_off <= self.whole else TrialRecords(self.runs, self.band, self.whole | cut_off)
 
 
 def _as_long(run: Run, first: Run) -> int:

@@ -21,6 +21,7 @@ _FILES = (
     "motor",
     "sprung_motor",
     "position_servo",
+    "speed_servo",
     "two_tanks",
     "moving_base",
     "specimen",

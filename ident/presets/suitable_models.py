@@ -17,7 +17,7 @@ from ident.stages import OPENED_BY_COMMAND
 
 _STATED, _LOOP, _OTHER_LOOP, _OPEN, _UNLIKELY = 0, 1, 2, 3, 6
 """Ranks: a force, or a motion, by the unit of its command; a loop, and one that is of another drive as a rule; a
-command in open loop; a motion of another cause."""
+command in open loop, or a loop of a speed; a motion of another cause."""
 _STRETCHES, _NEAR = 20, 0.1  # of a record whose means are compared; how near they are, a share of the command's
 _RESTS, _RESTED = 3, 4  # rests of a command at whose ends an output may have arrived, and samples of one
 
@@ -83,7 +83,7 @@ def in_question(runs: Sequence[Described], machine: str = "", oil: bool = False)
     found = suitable_models(runs, oil)
     if _rank(found[0], runs, oil) < _OPEN:
         return found[:1]
-    return tuple(known for known in found if not known.chain.reads("Kp"))
+    return tuple(known for known in found if not known.chain.reads("Kp") or _rank(known, runs, oil) == _OPEN)
 
 
 def is_assumed_loop(model: Preset, runs: Sequence[Described]) -> bool:
@@ -218,7 +218,10 @@ def _rank(model: Preset, runs: Sequence[Described], oil: bool) -> int:
         compared = _compared(model)
         looped = any(run.gain is not None for run in runs) and compared in {run.output for run in runs}
         looped = looped or all(_comparable(run, compared) for run in runs)
-        usual = _LOOP if electric(runs, oil) or not model.data.turns else _OTHER_LOOP
+        if compared == "velocity":
+            usual = _OPEN  # a drive without a loop may be scaled so that its speed is nearly the commanded one
+        else:
+            usual = _LOOP if electric(runs, oil) or not model.data.turns else _OTHER_LOOP
         return usual if looped else _UNLIKELY - 1
     return _OPEN if OPENED_BY_COMMAND in model.chain.stages and not has_no_parts(model) else _OPEN + 1
 

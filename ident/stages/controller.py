@@ -67,7 +67,11 @@ def _law(
     )
 
 
-_ERROR_SUM = (Quantity("ei", "m*s", "integral of the error"), "ei' = r - y_in", "the error is integrated")
+_RESET = (
+    "the error is integrated, as far as the drive signal follows it (automatic reset, Åström and Murray 2021, 11.4)"
+)
+_ERROR_SUM = (Quantity("ei", "m*s", "integral of the error"), "ei' = (e - KI * ei) / Kp", _RESET)
+_ERROR_OF_PID = (_ERROR_SUM[0], "ei' = (e - KI * ei - KD * (r - y_in - ef) / Tf) / Kp", _RESET)
 _ERROR_LAG = (Quantity("ef", "m", "error behind the filter"), "ef' = (r - y_in - ef) / Tf", "the error is filtered")
 
 PI = _law(
@@ -81,7 +85,7 @@ PI = _law(
 PID = _law(
     "e = Kp * (r - y_in) + KI * ei + KD * (r - y_in - ef) / Tf",
     "proportional, integral, and filtered derivative",
-    (_ERROR_SUM, _ERROR_LAG),
+    (_ERROR_OF_PID, _ERROR_LAG),
     (_INTEGRAL, _DERIVATIVE, _FILTER),
     (
         Scale("KI", "Kp * W", 0.0, 1e1, logarithmic=False),

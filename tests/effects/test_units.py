@@ -32,6 +32,7 @@ OTHER_UNIT = {
     "sprung_motor": _OF_VALVE,
     "pressure_drive": _OF_VALVE,
     "position_servo": _OF_VALVE,
+    "speed_servo": _OF_VALVE,
     "kononykhin": _RATED,
     "strano": _OF_VALVE,
     "drive under control": frozenset({("e", "m")}),

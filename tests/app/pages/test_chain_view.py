@@ -21,6 +21,7 @@ AT_LEAST = {
     "motor": 38,
     "sprung_motor": 38,
     "position_servo": 40,
+    "speed_servo": 40,
     "moving_base": 29,
     "specimen": 18,
     "force_loop": 54,
@@ -29,7 +30,8 @@ AT_LEAST = {
 }
 LOOPS = {
     "qian2014": {"v", "y"}, "first_order": set(), "drive": set(), "open_valve": {"v"}, "motor": set(),
-    "pressure_drive": set(), "sprung_motor": set(), "position_servo": {"y"}, "two_tanks": set(), "specimen": set(),
+    "pressure_drive": set(), "sprung_motor": set(), "position_servo": {"y"}, "speed_servo": {"y"},
+    "two_tanks": set(), "specimen": set(),
     "moving_base": set(), "force_loop": {"v", "y"}, "kononykhin": set(), "strano": {"P", "v", "y"},
 }  # fmt: skip
 
