@@ -116,7 +116,7 @@ class CandidateModels:
         return replace(self, contradicted=contradicted, _known=Objectives(), _compared={}, bars=Once())
 
     def representing(self, fitted: FittedModel) -> CandidateModels:
-        """The same models, tried on records whose parts show what a fitted model leaves of the whole."""
+        """The same models, tried on records whose parts represent the residual of a fitted model."""
         trials = self._trial_records.representing(fitted.residuals_fitted.series)
         if trials is self._trials:
             return self

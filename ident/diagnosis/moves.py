@@ -352,7 +352,7 @@ class Moves:
         trials = (refit for refits in restarts for refit in refits)
         return self._best_of(selection, self.models.leading(trials, self.models.trial_error(selection.fitted)))
 
-    def from_anywhere(self, selection: Selection) -> Selection | None:
+    def global_multistart(self, selection: Selection) -> Selection | None:
         """Begin again with one effect from the whole search space, where the records are short.
 
         A model without the effect may have ended so far away that no effect promises anything there: a limit of the
@@ -363,10 +363,10 @@ class Moves:
             return None
         names = self._addable(base)
 
-        def begun(name: str) -> list[FittedModel]:
+        def started(name: str) -> list[FittedModel]:
             return self.models.global_starts((*base.effects, name))
 
-        restarts = each(counted(begun, "searching further", lambda: len(names), self.report), names)
+        restarts = each(counted(started, "searching further", lambda: len(names), self.report), names)
         trials = (refit for refits in restarts for refit in refits)
         leading = self.models.leading(trials, self.models.trial_error(selection.fitted))
         again = replace(selection, path=(base,), changes=selection.changes + 1)

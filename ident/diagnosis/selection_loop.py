@@ -32,7 +32,7 @@ def select(moves: Moves, selection: Selection) -> Selection:
             moves.strong_starts,
             moves.runner_up,
             moves.pair_search,
-            moves.from_anywhere,
+            moves.global_multistart,
         ):
             if moves.above_floor(selection):
                 farther = look_farther(selection) or selection

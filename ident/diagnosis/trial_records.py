@@ -1,4 +1,4 @@
-"""The records on which effects are predicted and tried: parts of them that show what the whole records show."""
+"""The records on which effects are predicted and tried: parts that represent the whole records."""
 
 from __future__ import annotations
 
@@ -19,8 +19,8 @@ Array = NDArray[np.float64]
 class TrialRecords:
     """The `runs` that are fitted, with fewer samples: decimated by the `band` (rad/s) that commands excite, and cut.
 
-    The runs with an id in `whole` are not cut. The same records serve every model: what is known of a run is worked out
-    once.
+    The runs with an id in `whole` are not cut. The same records serve every model: the properties of a run are worked
+    out once.
     """
 
     runs: tuple[Run, ...]

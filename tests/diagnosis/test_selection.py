@@ -87,6 +87,10 @@ class Judged:
         """It stays."""
         return refit
 
+    def is_short(self, _refit):
+        """No: they are long."""
+        return False
+
     def representing(self, _fitted):
         """Its records show everything from their beginnings on."""
         return self
@@ -451,7 +455,7 @@ def test_a_selected_set_is_extended_by_strong_effects_before_other_sets_are_look
     def over(_selection: Any) -> None:
         raise TimeIsUp
 
-    farther = ("exchange_pass", "joint_refit", "strong_starts", "runner_up", "pair_search")
+    farther = ("exchange_pass", "joint_refit", "strong_starts", "runner_up", "pair_search", "global_multistart")
     found = SimpleNamespace(
         above_floor=lambda _: True,
         may_lack_width=over,

@@ -11,7 +11,8 @@ import scipy
 from ident.diagnosis.structure_selection import choose_structure
 from ident.fit.settings import Settings
 from ident.matrix import Actuator, Matrix
-from ident.presets import preset
+from ident.presets.description import described
+from ident.presets.machine import composed
 from ident.run import Run
 from ident.workflows import diagnose, identify
 from tests.conftest import rank_only
@@ -77,6 +78,6 @@ def test_the_limit_of_the_drive_is_found_and_the_integral_does_not_wind_up(monke
 def test_a_controller_of_a_machine_of_ones_own_integrates_as_far_as_its_drive_follows():
     """The rate of the integral is the error where nothing limits the drive signal, by the equations."""
     for law in ("pi", "pid"):
-        chain = preset(f"machine(controller={law}, of=velocity, load=mass_spring_damper)").chain
-        (rate,) = [line.text for line in chain.equations if line.target == "ei"]
+        made = composed(described({"controller": law, "of": "velocity", "load": "mass_spring_damper"}))
+        (rate,) = [line.text for line in made.chain.equations if line.target == "ei"]
         assert "e - KI * ei" in rate
