@@ -353,12 +353,15 @@ class Moves:
         return self._best_of(selection, self.models.leading(trials, self.models.trial_error(selection.fitted)))
 
     def global_multistart(self, selection: Selection) -> Selection | None:
-        """Begin again with one effect from the whole search space, where the records are short.
+        """Begin again with one effect from the whole search space, where the records are short and little is explained.
 
         A model without the effect may have ended so far away that no effect promises anything there: a limit of the
         drive was fitted as a small gain.
         """
-        base = selection.base
+        base, floor = selection.base, self.models.floor or 0.0
+        explainable = base.error**2 - floor**2
+        if selection.fitted.error**2 - floor**2 < CRITERIA.selection.unexplained * explainable:
+            return None
         if not self.models.is_short(base):
             return None
         names = self._addable(base)

@@ -4,8 +4,9 @@ Forward: the best effect of the ranking is added while it improves the model bey
 became redundant are taken out. Then each added effect is compared with all others in its place: a better one is
 exchanged for it, and effects that are indistinguishable from it are its alternatives. Where all of this ends above the
 noise, the search continues from all promising effects at once, with strong effects, from the next best sets, and from
-pairs of effects in the place of one; then it begins again with an effect whose widths are free. At
-the end the most probable of the sets with as many effects is taken.
+pairs of effects in the place of one. Where little is explained it begins again with one effect from the whole search
+space; then it begins again with an effect whose widths are free. At the end the most probable of the sets with as many
+effects is taken.
 """
 
 from __future__ import annotations

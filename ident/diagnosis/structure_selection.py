@@ -116,8 +116,9 @@ def _compared(
     strange = {model.name for model in models if unusual(model, matrix.runs)}
     first = min(good, key=lambda one: (one.machine in strange, one.parameters))
     with_effects = _with_an_effect_each(first, tried, report)
-    others = list(with_effects.values())
     lags = {model.name for model in models if has_no_parts(model)}
+    with_effects |= _more_effects(with_effects, _probabilities(list(with_effects.values()), lags, strange), report)
+    others = list(with_effects.values())
     best, why = _preferred(with_effects[first.machine], others, _probabilities(others, lags, strange))
     compared = [best, *(with_effects.get(one.machine, one) for one in tried if one.machine != best.machine)]
     probable = _probabilities(compared, lags, strange)
@@ -224,6 +225,21 @@ def _explaining(judged: _JudgedStructure, others: Collection[_JudgedStructure], 
     more = judged.helped(report)
     explains_more = bool(larger) and more.error < min(other.error for other in larger)
     return more if explains_more or not more.above_noise else judged
+
+
+def _more_effects(
+    models: Mapping[str, _JudgedStructure], probable: Mapping[str, float], report: Report
+) -> dict[str, _JudgedStructure]:
+    """The most probable model and the model of the smallest error with one more effect each, where they are two.
+
+    Neither explains the records then, and each lacks another part: one the most, the other where little disturbs.
+    """
+    least = min(models.values(), key=lambda judged: judged.error)
+    likeliest = max(models.values(), key=lambda judged: (probable.get(judged.machine, 0.0), judged is least))
+    both = least, likeliest
+    if least is likeliest or not all(judged.with_effect and judged.above_noise for judged in both):
+        return {}
+    return {judged.machine: judged.helped(report) for judged in both}
 
 
 def _gains_half(first: _JudgedStructure, larger: _JudgedStructure) -> bool:

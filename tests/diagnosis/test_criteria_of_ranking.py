@@ -177,6 +177,28 @@ def test_the_eight_best_of_the_first_ranking_are_started_from_anywhere():
     assert sorted(begun) == list("01234567")
 
 
+@pytest.mark.parametrize(("share", "begins"), [(0.085, False), (0.115, True)])
+def test_a_search_that_left_a_tenth_of_the_power_begins_again(share, begins):
+    begun: list[str] = []
+    models = SimpleNamespace(
+        floor=0.3,
+        is_short=lambda _: True,
+        global_starts=lambda effects: begun.append(effects[-1]) or [],
+        leading=lambda *_: [],
+        trial_error=lambda _: 1.0,
+    )
+    moves: Any = SimpleNamespace(
+        models=models, report=lambda _: None, _best_of=lambda *_: None, _addable=lambda _: ["a", "b"]
+    )
+    base = SimpleNamespace(effects=(), error=float(np.sqrt(1.0 + 0.3**2)))
+    fitted = SimpleNamespace(effects=("c",), error=float(np.sqrt(share + 0.3**2)))
+    selection: Any = SimpleNamespace(base=base, fitted=fitted, path=(base, fitted), changes=0)
+    with pytest.MonkeyPatch.context() as own:
+        own.setattr("ident.diagnosis.moves.replace", lambda of, **_: of)
+        Moves.global_multistart(moves, selection)
+    assert (sorted(begun) == ["a", "b"]) is begins
+
+
 def test_two_effects_that_worsen_a_part_are_tried_with_all_others():
     tried: list[str] = []
     moves: Any = SimpleNamespace(most=4, models=None, _rank=lambda alone, thorough: tried.append(alone) or [])  # noqa: ARG005

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -50,6 +51,24 @@ def test_a_smaller_machine_that_explains_the_records_with_an_effect_is_compared(
     valve, motor = model("open_valve", 5, above_noise=False), model("motor", size, above_noise=True)
     found = structure_selection._with_an_effect_each(valve, [valve, motor], silent)  # type: ignore[arg-type, list-item]
     assert found.keys() == machines
+
+
+@pytest.mark.parametrize(
+    ("probability", "noise", "more"), [(0.9, False, {"motor", "lag"}), (0.1, False, set()), (0.9, True, set())]
+)
+def test_where_the_likeliest_machine_is_not_the_one_with_the_least_error_both_get_one_more_effect(
+    probability, noise, more
+):
+    """Each lacks another part: a car that has a late engine was a lag with a loop, and a motor with a drag."""
+
+    def model(machine: str, error: float) -> SimpleNamespace:
+        of = SimpleNamespace(machine=machine, error=error, above_noise=not noise, with_effect="an effect")
+        of.helped = lambda _report: of
+        return of
+
+    models: Any = {"motor": model("motor", 0.08), "lag": model("lag", 0.11), "valve": model("valve", 0.2)}
+    probable = {"lag": probability, "motor": 1.0 - probability, "valve": 0.0}
+    assert structure_selection._more_effects(models, probable, silent).keys() == more
 
 
 @pytest.mark.parametrize(("model", "all_of_them"), [("first_order", True), ("motor", False)])
