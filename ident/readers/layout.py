@@ -27,6 +27,7 @@ _JUDGED = 12
 """Rows at the end of the head by which a form is judged: a run has 8 samples at least, so most of them are rows."""
 _BEHIND = re.compile(r"\d+(?:[eE][+-]?\d+)?")  # what stands behind a decimal sign
 _COMPARED = 50  # rows of the head, the last of them, that a last row is compared with
+_REMARKS = ("#", "%", ";", "//", "!")  # signs with which a line that is no row begins
 _ENOUGH = 3
 """Rows in succession that begin a table: two lines of numbers may stand in a preamble."""
 
@@ -342,8 +343,9 @@ def _end(
     foot = _foot(text, below, last, form, shape)
     if foot is not None:
         lines = text.count(b"\n", 0, foot) + 1, text.count(b"\n", 0, last) + 1
-        some = f"line {lines[0]}" if lines[0] == lines[1] else f"lines {lines[0]} to {lines[1]}"
-        return foot, (f"{where}: {some}, below the table, are not of it and were left out",)
+        one = f"line {lines[0]}, below the table, is not of it and was left out"
+        several = f"lines {lines[0]} to {lines[1]}, below the table, are not of it and were left out"
+        return foot, (f"{where}: {one if lines[0] == lines[1] else several}",)
     begin = text.rfind(b"\n", below, last) + 1
     if begin <= below or last - begin > LONGEST_LINE:
         return len(text), ()
@@ -360,7 +362,7 @@ def _end(
 def _foot(text: bytes, below: int, last: int, form: Form, shape: _Shape) -> int | None:
     """Where the lines below the last row begin: a result, a remark, another table; None where the last line is a row.
 
-    The first of them begins with a word, which no row does, and none of them is a row. So a row with a flaw is not
+    The first of them begins with a word or the sign of a remark, which no row does, and none of them is a row. So a row with a flaw is not
     taken for a foot, and loading says what is wrong with it.
     """
     if 0 not in shape.numbers | shape.stamps:
@@ -376,7 +378,7 @@ def _foot(text: bytes, below: int, last: int, form: Form, shape: _Shape) -> int 
             return foot
         if line.strip():
             first = fields[0].strip(QUOTES)
-            word = is_label(first) and first.strip()[0] not in "+-.,0123456789"
+            word = first.startswith(_REMARKS) or (is_label(first) and first.strip()[0] not in "+-.,0123456789")
             foot = begin if word and not has_no_value(first) and not is_stamp(first) else None
         end = begin - 1
     return None

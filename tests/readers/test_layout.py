@@ -219,6 +219,8 @@ SECOND = ["Data Acquisition\t\tTime:\t12.5\ts", "Force", "kN", "1.5", "-3.5"]
         (["Maximum\t29.5\t31.25"], "line 42,"),
         (["", "End of test", "approved by:\tthe laboratory"], "lines 43 to 44,"),
         (["", *SECOND], "lines 43 to 47,"),
+        (["# stopped\tby hand"], "line 42, below the table, is"),
+        (["% 12.5\t3.5"], "line 42,"),
     ],
 )
 def test_a_result_a_remark_or_another_table_below_the_table_is_told_and_left_out(foot, said):
