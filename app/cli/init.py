@@ -68,8 +68,8 @@ def init(
         _Texts,
         typer.Option(
             metavar="HZ",
-            help="Sample rate, such as '4096 Hz', if there is no time column; @FILE=HZ: in some "
-            "files only. May be repeated.",
+            help="Sample rate, such as '4096 Hz', if there is no time column; with --time the rate "
+            "to which the record is brought; @FILE=HZ: in some files only. May be repeated.",
         ),
     ] = None,
     dialect: Annotated[

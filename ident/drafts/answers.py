@@ -48,7 +48,7 @@ class FileAnswers:
     def over(self, other: FileAnswers) -> FileAnswers:
         """These answers, completed by more general ones; a column of times stated here outweighs a rate stated there.
 
-        A rate outweighs a column of times that is stated at the same place.
+        Of a column of times and a rate that are stated at the same place both hold: the record is brought to the rate.
         """
         channels = {
             name: self.channels.get(name, Answer()).over(other.channels.get(name, Answer()))

@@ -314,6 +314,7 @@ class Draft:
         run: dict[str, Any] = {"id": name, "file": f"runs/{file_name(file)}"}
         if known.time.column != "":
             run["time"] = {"column": file.stated(known.time.column), "unit": known.time.unit}
+            run["time"] |= {"resample": known.rate} if known.rate else {}
         else:
             run["sample_rate"] = known.rate
         run |= {"skip_rows": file.skip_rows} if file.skip_rows else {}
@@ -353,13 +354,13 @@ def _sparse(file: RawFile, channels: Mapping[str, Answer], said: FileAnswers) ->
 
 
 def _clock(file: RawFile, said: FileAnswers, channels: Mapping[str, Answer]) -> tuple[Answer, str, tuple[str, ...]]:
-    """Column of times or rate, and what was assumed."""
+    """Column of times or rate, and what was assumed; where both were stated the record is brought to the rate."""
     answer = said.time
-    if said.rate:
-        return Answer(), said.rate, ()
     if answer.column not in ("", NONE):
         (column,) = _columns(file, file.table.number(answer.column, f"{file.name}: time"), "time")
-        return Answer(answer.column, answer.unit or column.unit), "", tuple(_other_unit(column, answer.unit))
+        return Answer(answer.column, answer.unit or column.unit), said.rate, tuple(_other_unit(column, answer.unit))
+    if said.rate:
+        return Answer(), said.rate, ()
     named = [] if answer.column == NONE else [column for column in file.columns if is_time(column.meaning)]
     if len(named) > 1:
         named = _as_long_as(file, named, channels)

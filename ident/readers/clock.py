@@ -81,7 +81,10 @@ def check_rate(clock: Clock, where: str) -> None:
     if clock.scattered:
         steps = np.diff(clock.time)
         what = f"its steps go from {np.min(steps):.3g} s to {np.max(steps):.3g} s, which no constant rate describes"
-        remedy = "write the record on an even clock, or let matrix.yaml do so, time: {column: …, resample: 20 Hz}"
+        remedy = (
+            "write the record on an even clock, or bring it to one: time: {column: …, resample: 20 Hz} in matrix.yaml, "
+            "--time and --rate '20 Hz' of servoident init"
+        )
         raise Unusable("uneven-clock", what, where, remedy)
 
 
