@@ -366,7 +366,7 @@ class Selection:
     """[effects] Of the first ranking started from the whole search space. Why: a local optimum far from the true one
     makes another effect look better.
     Test: test_criteria_of_ranking.py::test_the_eight_best_of_the_first_ranking_are_started_from_anywhere"""
-    unexplained: float = 0.1
+    little_explained: float = 0.1
     """[1] Share of the explainable power that the selected effects leave, above which one effect is looked for from the
     whole search space. Why: effects that stand for a limit of a speed loop left a fifth to all of it, and effects that
     miss a part of the true ones, on six measured machines, less than a fourteenth; there it doubled the time.

@@ -360,7 +360,7 @@ class Moves:
         """
         base, floor = selection.base, self.models.floor or 0.0
         explainable = base.error**2 - floor**2
-        if selection.fitted.error**2 - floor**2 < CRITERIA.selection.unexplained * explainable:
+        if selection.fitted.error**2 - floor**2 < CRITERIA.selection.little_explained * explainable:
             return None
         if not self.models.is_short(base):
             return None

@@ -46,7 +46,8 @@ class FileAnswers:
             _check(channel)
 
     def over(self, other: FileAnswers) -> FileAnswers:
-        """These answers, completed by more general ones; a column of times stated here outweighs a rate stated there.
+        """These answers, completed by more general ones; a column of times stated here outweighs a rate stated there, and a
+        rate a column of times.
 
         Of a column of times and a rate that are stated at the same place both hold: the record is brought to the rate.
         """
@@ -56,7 +57,8 @@ class FileAnswers:
         }
         timed = self.time.column not in ("", NONE)
         rate = self.rate or ("" if timed else other.rate)
-        return FileAnswers(channels, self.time.over(other.time), rate, self.dialect.over(other.dialect))
+        time = self.time if self.rate and not timed else self.time.over(other.time)
+        return FileAnswers(channels, time, rate, self.dialect.over(other.dialect))
 
 
 @dataclass(frozen=True)

@@ -409,10 +409,10 @@ def test_a_column_of_times_that_is_none_leaves_the_rate_to_be_said():
 
 def test_a_record_with_times_is_brought_to_a_rate_that_is_stated_with_them():
     """A rate alone takes the place of the times, as before; a command line may state both."""
-    both = Draft([raw(IN_MS, "a.csv")], Answers(channels=SAID, time=Answer("time", "ms"), rate="50 Hz"))
+    both = Draft([raw(IN_MS, "a.csv")], Answers("S", SAID, Answer("time", "ms"), rate="50 Hz"))
     assert both.description()["runs"][0]["time"] == {"column": "time", "unit": "ms", "resample": "50 Hz"}
     assert "sample_rate" not in both.description()["runs"][0]
-    alone = Draft([raw(IN_MS, "a.csv")], Answers(channels=SAID, rate="50 Hz"))
+    alone = Draft([raw(IN_MS, "a.csv")], Answers("S", SAID, rate="50 Hz"))
     assert alone.description()["runs"][0]["sample_rate"] == "50 Hz"
 
 
