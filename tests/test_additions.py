@@ -148,8 +148,8 @@ print(json.dumps({
     "same": all(np.array_equal(a.measured, b.measured) for a, b in zip(plain.runs, columns.runs)),
     "errors": {name: fit.error["fit"] for name, fit in fits.items()},
     "fields": {field.label: [said for _, said in field.choices]
-               for form in forms((), fits["plain"]) if form.name == "residual-histogram" for field in form.fields},
-    "figure": json.loads(render(figure(fits["plain"], "residual-histogram", bins=7), "json")),
+               for form in forms((), fits["plain"]) if form.name == "counted-residuals" for field in form.fields},
+    "figure": json.loads(render(figure(fits["plain"], "counted-residuals", bins=7), "json")),
     "parameters": [parameter.name for parameter in model.parameters],
     "scales": [scale.name for scale in model.scales],
     "models": client.get("/api/v1/models").json(),
