@@ -268,8 +268,8 @@ def why_this_verdict() -> list[str]:
     gain, chance = math.log(1.0 / limits.chance - 1.0) / limits.learning_rate, f"{100 * limits.chance:g} %"
     reasons = (
         ("`unexplained`", f"""a floor is known: `error` is not below `limit` = ({limits.floor_margin:g} +
-          {noise.floor_deviations:g} × relative deviation) × `floor`, the deviation √(½/n + ½/d) of n independent samples
-          of the residual and d degrees of freedom of the floor; of a bench
+          {noise.floor_deviations:g} × relative deviation) × `floor`, the deviation √(½/n + ½/d) of n independent
+          samples of the residual and d degrees of freedom of the floor; of a bench
           {1 + noise.bench_excess:g} is in the place of {limits.floor_margin:g}. Where no command was repeated and the
           error is at most {noise.colour:g} times the floor, `predicted` has to be above `predicted_limit`, too""",
          "`noise_test`", "look at `proposals` and at the figure `residual-curve`"),
@@ -302,10 +302,10 @@ def why_this_verdict() -> list[str]:
         "",
         *table(("reason", "what it means", "fields", "remedy"), reasons),
         "",
-        "`probability` and `probabilities` are computed apart from this: a stand-in may be probable. No sentence has the",
-        "word. What remains is called something unlisted where `probabilities` has at least a half for `unlisted`, otherwise",
-        "noise or a drift. The first of the three lines says *Missing: …*; it says *The error falls with …* of an effect with",
-        "less than a half, where `unlisted` has at least a half or `nothing` has more than the effect.",
+        "`probability` and `probabilities` are computed apart from this: a stand-in may be probable. No sentence has",
+        "the word. What remains is called something unlisted where `probabilities` has at least a half for `unlisted`,",
+        "otherwise noise or a drift. The first of the three lines says *Missing: …*; it says *The error falls with …*",
+        "of an effect with less than a half, where `unlisted` has at least a half or `nothing` has more than the effect.",
         "",
         "**Why contradicted?** With each effect of `contradicted_by` the error on validation data rises by more than",
         f"{deviations:g} of its standard errors, from the stable rung of `ladder` before to its own, or the model is",

@@ -13,12 +13,12 @@ from ident.diagnosis.discovery.proposal import Proposal
 from ident.diagnosis.evidence.criteria import EVIDENCE_CRITERIA
 from ident.diagnosis.evidence.evidence import Evidence
 from ident.diagnosis.evidence.free_run import FreeRun, drifts
-from ident.diagnosis.evidence.probability import is_improbable, is_rather_noise
 from ident.diagnosis.evidence.rule import QUESTIONS, refusing
 from ident.diagnosis.result import Explanation, Suspect
 from ident.diagnosis.run_consistency import InconsistentParameter
 from ident.diagnosis.slip_forces import SlipForces
 from ident.diagnosis.total_delay import TotalDelay
+from ident.diagnosis.verdict import is_improbable, is_rather_noise
 from ident.diagnosis.verification import Contradiction, VerifyChange
 from ident.effects.effect import Effect
 from ident.fit.result import Combination

@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
-from ident.diagnosis.evidence.probability import is_improbable, is_rather_noise
 from ident.diagnosis.result import Diagnosis, Suspect
 from ident.diagnosis.sentences import has_two
+from ident.diagnosis.verdict import is_improbable, is_rather_noise
 from ident.diagnosis.verification import noise_on_validation_data
 from ident.words.message import Message, message
 from ident.words.result_tables import in_brief

@@ -46,10 +46,10 @@ class FileAnswers:
             _check(channel)
 
     def over(self, other: FileAnswers) -> FileAnswers:
-        """These answers, completed by more general ones; a column of times stated here outweighs a rate stated there, and a
-        rate a column of times.
+        """These answers, completed by more general ones.
 
-        Of a column of times and a rate that are stated at the same place both hold: the record is brought to the rate.
+        A column of times stated here outweighs a rate stated there, and a rate a column of times. Of a column of times
+        and a rate that are stated at the same place both hold: the record is brought to the rate.
         """
         channels = {
             name: self.channels.get(name, Answer()).over(other.channels.get(name, Answer()))

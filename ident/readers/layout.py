@@ -362,8 +362,8 @@ def _end(
 def _foot(text: bytes, below: int, last: int, form: Form, shape: _Shape) -> int | None:
     """Where the lines below the last row begin: a result, a remark, another table; None where the last line is a row.
 
-    The first of them begins with a word or the sign of a remark, which no row does, and none of them is a row. So a row with a flaw is not
-    taken for a foot, and loading says what is wrong with it.
+    The first of them begins with a word or the sign of a remark, which no row does, and none of them is a row. So a row
+    with a flaw is not taken for a foot, and loading says what is wrong with it.
     """
     if 0 not in shape.numbers | shape.stamps:
         return None

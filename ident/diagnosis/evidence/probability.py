@@ -91,26 +91,6 @@ def probabilities(sets: SetGains, criteria: EvidenceCriteria = EVIDENCE_CRITERIA
     return Probabilities(*(dict(zip(sets.gains, of.tolist(), strict=True)) for of in weights))
 
 
-def is_improbable(probability: float | None, of_all: Mapping[str, float]) -> bool:
-    """Whether an effect, with all of its group, is less probable than not, and another explanation is more probable.
-
-    The other explanation is something unlisted that is more probable than not, or that nothing is missing. The median
-    model does not have the effect then (Barbieri and Berger 2004). Otherwise the effect is one of several listed ones
-    that may act. `of_all` has the probabilities of :attr:`Probabilities.named`.
-    """
-    if probability is None or probability >= 0.5:
-        return False
-    return of_all.get("unlisted", 0.0) >= 0.5 or of_all.get("nothing", 0.0) > probability
-
-
-def is_rather_noise(of_all: Mapping[str, float]) -> bool:
-    """Whether it is more probable that nothing unlisted acts, although the residual is above its limit of noise.
-
-    False where the probabilities, those of :attr:`Probabilities.named`, are not known.
-    """
-    return of_all.get("unlisted", 1.0) < 0.5
-
-
 def structure_probabilities(
     gains: Sequence[float],
     parameters: Sequence[int],
