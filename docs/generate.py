@@ -305,7 +305,7 @@ def why_this_verdict() -> list[str]:
         "`probability` and `probabilities` are computed apart from this: a stand-in may be probable. No sentence has",
         "the word. What remains is called something unlisted where `probabilities` has at least a half for `unlisted`,",
         "otherwise noise or a drift. The first of the three lines says *Missing: …*; it says *The error falls with …*",
-        "of an effect with less than a half, where `unlisted` has at least a half or `nothing` has more than the effect.",
+        "of an effect below a half, where `unlisted` has at least a half or `nothing` has more than the effect.",
         "",
         "**Why contradicted?** With each effect of `contradicted_by` the error on validation data rises by more than",
         f"{deviations:g} of its standard errors, from the stable rung of `ladder` before to its own, or the model is",
