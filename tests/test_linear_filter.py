@@ -23,7 +23,10 @@ u = np.random.default_rng(0).standard_normal(2000)
 run = Run("a", "", 1000.0, {"command": u, "displacement": np.cumsum(u)}, kind="other", use="fit")
 models = CandidateModels.of(Matrix(Actuator("A", piston_area=1e-3), (run,)), Settings())
 assert models.effects
-print(sorted({"scipy.signal", "scipy.stats"} & set(sys.modules)))
+slow = {"scipy.signal", "scipy.stats", "scipy.ndimage", "scipy.optimize"}
+import ident
+assert ident.identify and ident.diagnose
+print(sorted(slow & set(sys.modules)))
 """
 
 

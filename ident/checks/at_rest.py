@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
+import scipy  # ndimage, which takes long to load, is loaded where it is first used
 from numpy.typing import NDArray
-from scipy.ndimage import maximum_filter1d, minimum_filter1d
 
 from ident.run import DISTURBANCES, KINEMATIC, MOTIONS, Run, Samples
 
@@ -45,7 +45,7 @@ def _may_rest(x: Samples, samples: int) -> bool:
 
 def spans(x: Samples, samples: int) -> Samples:
     """The largest less the least of so many samples from each on, (n − samples + 1,)."""
-    found = maximum_filter1d(x, samples) - minimum_filter1d(x, samples)
+    found = scipy.ndimage.maximum_filter1d(x, samples) - scipy.ndimage.minimum_filter1d(x, samples)
     return np.asarray(found[samples // 2 : len(x) - (samples - 1 - samples // 2)], np.float64)
 
 

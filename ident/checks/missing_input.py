@@ -13,8 +13,8 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
+import scipy  # ndimage, which takes long to load, is loaded where it is first used
 from numpy.typing import NDArray
-from scipy.ndimage import maximum_filter1d, median_filter
 
 from ident.checks.at_rest import HELD, acting, held, spans
 from ident.checks.finding import Finding
@@ -62,7 +62,7 @@ def missing_inputs(run: Run) -> tuple[MissingInput, ...]:
     inputs = acting(run)
     if run.kind in BENCH or not inputs or np.ptp(run.measured) == 0 or not held(inputs, (REST + 2) * SHORTEST).any():
         return ()
-    y = np.asarray(median_filter(run.measured, SPIKE), np.float64)
+    y = np.asarray(scipy.ndimage.median_filter(run.measured, SPIKE), np.float64)
     extent = _extent(y)
     longest, travel, changes = _quick(y, extent), TRAVEL * extent, _changes(inputs)
     for half in range(FINER):
@@ -109,7 +109,7 @@ def _answer(y: Samples, changes: NDArray[np.intp], samples: int, longest: int) -
     The median over the changes. Where a command mostly rests, most motions are a drift about where it holds the output.
     """
     way = np.abs(y[samples:] - y[:-samples])
-    fastest = maximum_filter1d(way, longest, origin=-(longest // 2))[changes[changes < len(way)]]
+    fastest = scipy.ndimage.maximum_filter1d(way, longest, origin=-(longest // 2))[changes[changes < len(way)]]
     return float(np.median(fastest)) if len(fastest) else 0.0
 
 

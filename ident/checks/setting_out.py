@@ -10,8 +10,8 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
+import scipy  # ndimage, which takes long to load, is loaded where it is first used
 from numpy.typing import NDArray
-from scipy.ndimage import maximum_filter1d, minimum_filter1d, uniform_filter1d
 
 from ident.run import Samples
 
@@ -38,7 +38,7 @@ class Motion:
     @classmethod
     def of(cls, y: Samples, samples: int, least: float, at_rest: NDArray[np.bool_]) -> Motion:
         """Of an output, averaged over half of a quick motion; that goes at least so far, and beyond noise at rest."""
-        output = np.asarray(uniform_filter1d(y, samples // 2), np.float64)
+        output = np.asarray(scipy.ndimage.uniform_filter1d(y, samples // 2), np.float64)
         way = output[samples:] - output[:-samples]
         at = np.flatnonzero(at_rest) + REST * samples
         bends = np.abs(way[at] - way[at - samples])
@@ -68,7 +68,7 @@ class Motion:
         most, fewest, up, down = (
             _ahead(of, self.way[begin:], self.samples)[:count]
             for begin in (0, rest)
-            for of in (maximum_filter1d, minimum_filter1d)
+            for of in (scipy.ndimage.maximum_filter1d, scipy.ndimage.minimum_filter1d)
         )
         creep, bend = 0.5 * (most + fewest), most - fewest
         rests = np.maximum(most, -fewest) <= SLOW * self.quick

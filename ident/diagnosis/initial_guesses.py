@@ -6,9 +6,9 @@ from collections.abc import Mapping
 from itertools import product
 
 import numpy as np
+import scipy  # signal, which takes a second to load, is loaded where it is first used
 from numpy.typing import NDArray
 from scipy.fft import next_fast_len
-from scipy.signal import welch
 
 from ident.diagnosis.criteria import CRITERIA
 from ident.diagnosis.fitted_model import FittedModel
@@ -145,7 +145,7 @@ def _away_from_resonance(base: FittedModel) -> list[float]:
     total = np.zeros(len(grid))
     for run in base.fitness.runs:
         length = min(run.length, round(periods * run.sample_rate))
-        frequencies, power = welch(run.measured - outputs[run.id], run.sample_rate, nperseg=length)
+        frequencies, power = scipy.signal.welch(run.measured - outputs[run.id], run.sample_rate, nperseg=length)
         total += np.interp(grid, 2.0 * np.pi * frequencies, power / np.var(run.measured))
     away = np.abs(np.log(grid / ringing)) > np.log(criteria.apart)
     if not away.any():

@@ -16,8 +16,8 @@ from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
+import scipy  # optimize, which takes long to load, is loaded where it is first used
 from numpy.polynomial.legendre import legvander
-from scipy.optimize import least_squares
 from scipy.special import fdtrc, stdtrit
 
 from ident.statistics.law_forms import LINE, Array, LawForm, forms_of
@@ -184,7 +184,9 @@ def _fitted(form: LawForm, x: Array, y: Array, relative: bool) -> ConditionLaw |
 
     starts = [np.array([middle, *start[1:]]) for start in form.starts]
     start = min(starts, key=lambda one: float(np.sum(residual(one) ** 2)))
-    end = least_squares(residual, start, bounds=(form.lower, form.upper), x_scale="jac", xtol=1e-10, ftol=1e-10)
+    end = scipy.optimize.least_squares(
+        residual, start, bounds=(form.lower, form.upper), x_scale="jac", xtol=1e-10, ftol=1e-10
+    )
     at_bound = np.select([end.active_mask < 0, end.active_mask > 0], [form.lower, form.upper], end.x)
     rss = 2 * float(end.cost) * size**2
     bic = len(x) * math.log(max(rss, 1e-300) / len(x)) + count * math.log(len(x))

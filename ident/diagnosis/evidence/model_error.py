@@ -19,8 +19,8 @@ from collections.abc import Sequence
 from itertools import combinations
 
 import numpy as np
+import scipy  # optimize, which takes long to load, is loaded where it is first used
 from numpy.typing import NDArray
-from scipy.optimize import minimize_scalar
 
 from ident.diagnosis.evidence.blocks import block_ratio
 from ident.diagnosis.evidence.criteria import EVIDENCE_CRITERIA, EvidenceCriteria
@@ -137,7 +137,7 @@ def _most_likely(rows: Array, e: Array) -> tuple[Array, float]:
         return len(e) * float(np.log(remaining)) + float(np.sum(np.log1p(d / penalty)))
 
     bounds = np.log(largest) + np.log(EPSILON) / 2, np.log(largest) - np.log(EPSILON) / 2
-    penalty = float(np.exp(minimize_scalar(unlikely, bounds=bounds, method="bounded").x))
+    penalty = float(np.exp(scipy.optimize.minimize_scalar(unlikely, bounds=bounds, method="bounded").x))
     return np.asarray(directions @ (z / (d + penalty))), penalty
 
 
