@@ -16,7 +16,7 @@ from ident.drafts.raw_file import Column, RawFile
 from ident.drafts.steps import moves_in_steps
 from ident.errors import Unusable
 from ident.readers import PACKED
-from ident.readers.column_names import is_time
+from ident.readers.column_names import is_time, may_measure
 from ident.readers.hold import are_band_limited
 from ident.readers.run_description import LESS
 from ident.readers.table import MINUS, some_of
@@ -185,7 +185,8 @@ class Draft:
                 "displacement, velocity, acceleration, force, load pressure (load_pressure), temperature or current"
             )
             what = wanted or answers
-            found.append(Missing(f"channel {wanted or OUTPUTS[0]}", f"which column of {_listed(file)} is the {what}"))
+            likely = wanted or self._likely_output(file)
+            found.append(Missing(f"channel {likely}", f"which column of {_listed(file)} is the {what}"))
         for channel, answer in known.channels.items():
             if not answer.unit:
                 found.append(Missing(f"unit {channel}", f"unit of {channel}, column {shown(answer.column)!r}"))
@@ -194,6 +195,12 @@ class Draft:
         elif known.time.column != "" and not known.time.unit:
             found.append(Missing("unit time", f"unit of the time, column {shown(known.time.column)!r}"))
         return found
+
+    def _likely_output(self, file: RawFile) -> str:
+        """The first output that may have the unit of the one column left; the first of all where none is left alone."""
+        _, others = self._left(file)
+        unit = unit_of(others[0]) if len(others) == 1 else ""
+        return next((output for output in OUTPUTS if unit and may_measure(output, unit)), OUTPUTS[0])
 
     def _missing_drive(self, file: RawFile, known: Known) -> Missing:
         """The question for what drives: the motion, where the force was said to be the output."""
@@ -326,7 +333,7 @@ class Draft:
             **self.answers.common,
         }
         if self.answers.validation and run["use"] == "fit":
-            rows = len(file.samples(file.columns[0].number))
+            rows = len(file.samples(known.channels[output].column))
             run["split"] = {"validation": [round((1.0 - self.answers.validation) * rows), rows]}
         channels = sorted(known.channels.items(), key=lambda item: CHANNELS.index(item[0]))
         return run | {"channels": {name: {"column": file.stated(a.column), "unit": a.unit} for name, a in channels}}

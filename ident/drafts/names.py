@@ -40,7 +40,10 @@ def _most_usual(columns: Sequence[Column]) -> Sequence[Column]:
 
 
 def _fitting(channel: str, columns: Sequence[Column]) -> Sequence[Column]:
-    """The columns that a channel may be: of Force (V) and Force (N) the second, where each has a unit."""
+    """The columns that a channel may be: of Force (V) and Force (N) the second, where each has a unit; of force and
+    old/force, which stands in a part of the file, the first."""
+    whole = [one for one in columns if all(one is other or other.name.endswith(f"/{one.name}") for other in columns)]
+    columns = whole or columns
     if len(columns) == 1 or not all(is_unit(unit_of(column)) for column in columns):
         return columns
     return [column for column in columns if may_measure(channel, unit_of(column))]

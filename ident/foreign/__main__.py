@@ -14,6 +14,9 @@ from typing import Any
 
 import numpy as np
 
+_SAID = ("notices", "aliases")
+"""What a parser may say in addition to the columns and their rate."""
+
 
 def limited(memory: int, seconds: float) -> None:
     """Let this process have no more memory and time of a processor, where the system can see to that."""
@@ -32,6 +35,7 @@ def answer(format_: str, path: str) -> tuple[dict[str, Any], list[Any]]:
         parser = import_module(f"ident.foreign.{format_}")
         found = list(parser.columns(path))
         rate = parser.rate(path) if hasattr(parser, "rate") else 0.0
+        said = {name: getattr(parser, name)(path) for name in _SAID if hasattr(parser, name)}
     except ModuleNotFoundError as error:
         return {"refused": "not-installed", "what": error.name}, []
     except MemoryError:
@@ -44,7 +48,9 @@ def answer(format_: str, path: str) -> tuple[dict[str, Any], list[Any]]:
         {"name": name, "unit": unit, "length": len(values) if fine else None}
         for (name, unit, _), values, fine in zip(found, numbers, sound, strict=True)
     ]
-    return {"columns": entries, "rate": rate}, [values for values, fine in zip(numbers, sound, strict=True) if fine]
+    return {"columns": entries, "rate": rate, **said}, [
+        values for values, fine in zip(numbers, sound, strict=True) if fine
+    ]
 
 
 def main() -> None:

@@ -3,15 +3,20 @@ of signals, each an object with its samples, its name and perhaps its unit.
 
 In addition to its columns an object may state ``sample_rate`` (Hz) or ``dt`` (s), and ``units`` by the names of the
 columns. It may stand within other objects, beside what describes the test: of several the one with most numbers counts.
+The columns of others that have the same names are offered with the names of their objects before them.
 """
 
 from __future__ import annotations
 
 import json
 from collections.abc import Iterator
+from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
 from typing import Any
+
+from ident.units.quantity import shown
+from ident.words.sentence import first_of
 
 RATES = ("sample_rate", "samplerate", "sampling_rate", "sample_rate_hz", "rate", "rate_hz", "fs", "fs_hz")
 """Entries that state a sample rate in Hz, in small letters."""
@@ -20,6 +25,9 @@ STEPS = ("dt", "dt_s", "ts", "sample_time", "sample_interval", "sample_period", 
 
 UNIT = "unit"
 """What the name of the entry contains that holds the unit of a signal."""
+
+
+_LISTED = 3  # parts in a notice
 
 
 @lru_cache(1)
@@ -32,34 +40,57 @@ def _held(path: str) -> Any:
         return [json.loads(line) for line in text.splitlines() if line.strip()]
 
 
+@dataclass(frozen=True)
+class _Part:
+    """A part of a document: the names of the objects that it stands in, each with a stroke behind it, what it holds,
+    the names of its columns, and how many numbers they have."""
+
+    place: str
+    held: Any
+    names: tuple[str, ...]
+    size: int
+
+    @property
+    def shown(self) -> str:
+        return shown(self.place.rstrip("/") or "the whole")
+
+
 @lru_cache(1)
-def _record(path: str) -> Any:
-    """The part of the document that has the most numbers in columns; the document where no part has any.
+def _parts(path: str) -> list[_Part]:
+    """The parts of the document that have numbers in columns, the largest first; the document where no part has any.
 
     A document without columns may be large: only an object can hold another part.
     """
-    held = _held(path)
-    parts, largest, most = [held], held, 0
+    whole = ("", _held(path))
+    parts, found = [whole], []
     while parts:
-        part = parts.pop(0)
-        within = part.values() if isinstance(part, dict) else ()
-        parts += [value for value in within if isinstance(value, dict) or is_signals(value)]
-        if (size := _numbers(part)) > most:
-            largest, most = part, size
-    return largest
+        place, held = parts.pop(0)
+        within = held.items() if isinstance(held, dict) else ()
+        parts += [(f"{place}{key}/", value) for key, value in within if isinstance(value, dict) or is_signals(value)]
+        names, size = _names(held)
+        found += [_Part(place, held, names, size)] if size else []
+    return sorted(found, key=lambda part: -part.size) or [_Part(*whole, (), 0)]
 
 
-def _numbers(part: Any) -> int:
-    """How many numbers a part of a document has in columns; 0 where it has no columns."""
+def _names(held: Any) -> tuple[tuple[str, ...], int]:
+    """The names of the columns of a part, and how many numbers they have; none where it has no columns."""
     try:
-        return sum(len(values) for _, _, values in _columns(part) if values and isinstance(values[0], float))
+        columns = list(_columns(held))
     except ValueError:
-        return 0
+        return (), 0
+    numbers = (len(values) for _, _, values in columns if values and isinstance(values[0], float))
+    return tuple(name for name, _, _ in columns), sum(numbers)
+
+
+def _repeats(path: str) -> list[_Part]:
+    """The other parts with columns of the same names as the largest."""
+    largest, *others = _parts(path)
+    return [part for part in others if set(part.names) == set(largest.names)]
 
 
 def rate(path: str) -> float:
     """The sample rate in Hz that an object states; 0 where it states none."""
-    record = _record(path)
+    record = _parts(path)[0].held
     stated = {name.lower(): value for name, value in record.items()} if isinstance(record, dict) else {}
     for names, per in ((RATES, False), (STEPS, True)):
         for name in names:
@@ -71,11 +102,31 @@ def rate(path: str) -> float:
 
 def columns(path: str) -> Iterator[tuple[str, str, Any]]:
     """Every entry that the first record has, as a column. Raises ValueError where records differ in their entries."""
-    record, units = _record(path), {}
+    record, units = _parts(path)[0].held, {}
     if isinstance(record, dict) and isinstance(record.get("units"), dict):
         units = record["units"]
     for name, unit, values in _columns(record):
         yield name, unit or str(units.get(name, "")), values
+    for part in _repeats(path):
+        for name, unit, values in _columns(part.held):
+            yield part.place + name, unit or str(units.get(name, "")), values
+
+
+def aliases(path: str) -> list[str]:
+    """The names of all columns with those of their objects, where columns of the same names stand in several parts."""
+    others = _repeats(path)
+    return [part.place + name for part in (_parts(path)[0], *others) for name in part.names] if others else []
+
+
+def notices(path: str) -> list[str]:
+    """That columns of the same names stand in several parts: which of them are read, and how the others are called."""
+    others, largest = _repeats(path), _parts(path)[0]
+    if not others:
+        return []
+    name = shown(largest.names[0])
+    told = f"{name!r} is the column of {largest.shown!r}, which has the most samples"
+    places = first_of([part.shown for part in others], _LISTED)
+    return [f"{told}; it stands in {places}, too, as {shown(others[0].place + name)!r}"]
 
 
 def _columns(held: Any) -> Iterator[tuple[str, str, Any]]:

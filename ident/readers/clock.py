@@ -53,6 +53,13 @@ def read_clock(time: Samples, where: str) -> Clock:
         before, after = time[index - 1 : index + 1]
         what = f"time does not increase at sample {index}: {after:.9g} s comes after {before:.9g} s"
         remedy = "sort the lines by time and delete repeated ones, or state the sample rate in place of the time"
+        begins = np.flatnonzero(steps < 0.0) + 1
+        if len(begins) and (time[begins] <= time[0] + np.median(steps[steps > 0.0])).all():
+            records = len(begins) + 1
+            remedy = (
+                f"if it holds {records} records, make a run of each, rows: [0, {index}] and so on; "
+                "if one record goes on, state the sample rate in place of the time"
+            )
         raise Unusable("time-not-monotonic", what, where, remedy)
     near = steps[steps <= STEP_OF_A_GAP * np.median(steps)]
     usual, uneven = float(np.mean(near)), float(np.std(near)) > UNEVEN * float(np.mean(near))

@@ -20,7 +20,9 @@ _MISSING = re.compile(r"^(?:nan|n/?a|null|none|inf|-+|\?+|#.*|overflow|ovl|err\w
 _DASHES = ("-", "–", "--", "---")
 _ENTRY = re.compile(r"[:=]$")
 _DATE = re.compile(r"\d{4}-\d{2}-\d{2}.*|\d{1,2}[./]\d{1,2}[./]\d{2,4}.*|\d+(?:\.\d+){2,}")
-_NO_UNIT = ("-", "–", "1", "[-]", "[]", "()", "")
+_ONE = "1"
+"""What stands for no unit where it is the number of a line of units."""
+_NO_UNIT = ("-", "–", _ONE, "[-]", "[]", "()", "")
 _REMARK = re.compile(r"^\s*(?:#+|%+|//)\s*")
 _BLANKS = 2
 """Blank lines that may stand between the names and the first row."""
@@ -183,6 +185,12 @@ def _is_pure_unit(field: str) -> bool:
     return field in _NO_UNIT or _unwrapped(field) != field or is_unit(field)
 
 
+def _holds_units(row: _Row) -> bool:
+    """Whether each field of a line is a unit or the 1 of a quantity that has none, and one at least is a unit."""
+    words = [field for field in row.fields if field not in _NO_UNIT]
+    return bool(words) and all(map(_is_pure_unit, words))
+
+
 def _completes(upper: _Row, names: _Row, columns: int) -> bool:
     """Whether a line has a name wherever the line below it has none, but a unit or a blank, and nowhere else."""
     if upper.has_numbers or upper.width > max(columns, names.width):
@@ -217,8 +225,8 @@ def _named(
             period = _period(row)
         elif _UNITS.match(row.fields[0]):
             units = ["", *map(_unwrapped, filled(row.fields, len(fields))[1:])]
-        elif not row.has_numbers and not any(units):
-            units = [_unwrapped(field) for field in filled(row.fields, len(fields))]
+        elif (not row.has_numbers or _holds_units(row)) and not any(units):
+            units = [_unwrapped(field) if field != _ONE else "" for field in filled(row.fields, len(fields))]
             told = ", ".join(filter(None, units))
             notices.append(f"{where}: the line below the column names was read as units: {told}")
             continue

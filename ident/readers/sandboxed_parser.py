@@ -56,7 +56,9 @@ def read_sandboxed(format_: str, data: bytes, where: str, limits: Limits) -> Tab
         return [np.frombuffer(numbers, "<f8", lengths[n], _NUMBER * int(starts[n])) for n in wanted]
 
     units = tuple(str(column["unit"]) for column in columns)
-    return Table(names, load, units=units, rate=float(said.get("rate") or 0.0))
+    notices = tuple(f"{where}: {notice}" for notice in said.get("notices", ()))
+    aliases = (tuple(said["aliases"]),) if said.get("aliases") else ()
+    return Table(names, load, notices, units, aliases, rate=float(said.get("rate") or 0.0))
 
 
 def _output(format_: str, data: bytes, where: str, limits: Limits) -> bytes:

@@ -470,6 +470,22 @@ def test_the_rate_and_the_units_of_a_tdms_are_found(tmp_path):
     assert (known.rate, known.channels["command"].unit, known.channels["displacement"].unit) == ("500 Hz", "V", "mm")
 
 
+@pytest.mark.parametrize(
+    ("unit", "output"), [("bar", "load_pressure"), ("degC", "temperature"), ("mm", "displacement")]
+)
+def test_the_one_column_left_is_offered_as_an_output_that_its_unit_measures(unit, output):
+    """A level that nobody calls by a name of its own: a pressure in bar was offered as a displacement."""
+    draft = Draft([raw(table(f"Time (s),Command (V),Reading 7 ({unit})"))], Answers(serial="A1"))
+    assert draft.options == (f"--channel {output}='Reading 7 ({unit})'",)
+
+
+def test_a_line_of_units_may_hold_the_one_of_a_quantity_without_a_unit():
+    """The units beside it are read; what 1 stands for is asked, since a file may not choose unknown units."""
+    file = raw(table("time,command,force", "s,1,kN"))
+    known = Draft([file], Answers()).known(file)
+    assert (known.time.unit, known.channels["command"].unit, known.channels["force"].unit) == ("s", "", "kN")
+
+
 def test_where_the_force_was_said_to_be_the_output_the_motion_is_asked_for():
     """Not the command: a name that is misspelt is no displacement by itself."""
     text = table("Time (s),Displacment (mm),Force (kN)")

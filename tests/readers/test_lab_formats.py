@@ -88,6 +88,19 @@ def test_a_record_within_a_document_is_the_part_that_has_the_most_numbers():
     np.testing.assert_array_equal(table.load([1])[0], X)
 
 
+def test_columns_of_the_same_names_in_other_parts_of_a_document_are_offered_and_said():
+    """A test as it was measured, and as a model is to follow it, with samples in between: the second has more."""
+    between = {"u": list(np.repeat(U, 2)), "x": list(np.repeat(X, 2))}
+    held = {"name": "c", "data": {"u": U, "x": X}, "run_data": between, "ply": {"thickness": [1.0, 11.0]}}
+    table = read_table(json.dumps(held).encode(), "run.json", FOUND, LIMITS)
+    assert table.names == ("u", "x", "data/u", "data/x")
+    np.testing.assert_array_equal(table.load([table.number("data/x", "")])[0], X)
+    assert table.number("run_data/x", "") == table.number("x", "") == 1
+    assert table.notices == (
+        "run.json: 'u' is the column of 'run_data', which has the most samples; it stands in data, too, as 'data/u'",
+    )
+
+
 def test_a_list_of_signals_within_a_document_is_read_by_their_names_and_units():
     """Each signal is an object with its name, its unit and its samples; lists of settings stand beside them."""
     signals = [{"name": name, "units": unit, "data": list(one)} for name, unit, one in (("u", "V", U), ("x", "mm", X))]

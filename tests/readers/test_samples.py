@@ -119,6 +119,17 @@ def test_time_that_does_not_increase_is_refused(matrix, change):
     assert refusal(matrix.write()).code == "time-not-monotonic"
 
 
+def test_a_file_of_several_records_is_refused_with_the_rows_of_the_first():
+    """Each from its own zero, as of a logger that appends: to sort them by time would mix them. A clock that begins
+    anew every 10 s looks alike."""
+    with pytest.raises(Unusable) as refused:
+        read_clock(np.tile(np.arange(25) / 100, 3), "t")
+    assert refused.value.remedy.startswith("if it holds 3 records, make a run of each, rows: [0, 25] and so on; if one")
+    with pytest.raises(Unusable) as refused:
+        read_clock(np.array([0.0, 0.1, 0.2, 0.3, 0.4, 0.2, 0.5]), "t")
+    assert refused.value.remedy.startswith("sort the lines by time")
+
+
 def test_gaps_are_counted_and_do_not_change_the_rate():
     time = np.delete(np.arange(4000) / 4096, [100, 101, 102, 2500])
     clock = read_clock(time, "t")
