@@ -7,6 +7,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from ident.figures.control_chart import control_chart
 from ident.figures.delay_map import delay_map_chart
 from ident.figures.feedforward import REFERENCE, feedforward_figure
 from ident.figures.ladder import ladder
@@ -16,6 +17,7 @@ from ident.hybrid.coupled_stability import DelayMap
 from ident.hybrid.feedforward_tracking import FeedforwardTracking
 from ident.hybrid.share_map import ShareMap
 from ident.matrix import Actuator
+from ident.statistics import control_chart as chart_of
 
 LOOK = LOOKS["dark"]
 TIMES = tuple(np.linspace(0.0, 1.0, 50).tolist())
@@ -53,16 +55,24 @@ MAPS = {
 
 
 @pytest.mark.parametrize("name", MAPS)
-def test_each_row_of_a_map_has_its_label_beside_it_and_a_cross_is_one_sign(name):
-    """A label that is moved to the end of the axis stands beside the next row; two outlines make no cross."""
+def test_each_row_of_a_map_has_its_label_at_its_height_and_a_cross_is_a_single_sign(name):
+    """A label that is moved to the end of the axis stands at the next row; two outlines make no cross."""
     crosses = MAPS[name].to_dict()["layer"][1]
     assert crosses["encoding"]["y"]["axis"]["labelFlush"] is False
     assert crosses["mark"]["filled"] is True
 
 
-def test_the_error_of_a_step_is_read_before_the_noise_floor_beside_it():
+def test_the_error_of_a_step_is_read_before_the_noise_floor():
     """The line of the floor ends before the text; the legend has the colours of the points."""
     layers = ladder([("first order", 0.00505, 0.00497)], 0.0051, Actuator("SW-1"), LOOK).to_dict()["layer"]
     assert [layer["mark"]["type"] for layer in layers][-3:] == ["rule", "text", "text"]
     assert layers[-2]["mark"]["stroke"] == LOOK.ground
     assert layers[0]["encoding"]["color"]["legend"]["symbolOpacity"] == 1
+
+
+def test_a_control_chart_of_errors_is_in_per_cent():
+    values = [0.0101, 0.0102, 0.0099, 0.0100]
+    chart = control_chart(chart_of(values), "error.fit", "%", "every batch", list("abcd"), (None, 0.02), LOOK).to_dict()
+    assert [row["v"] for row in chart["datasets"]["individuals"]] == [1.01, 1.02, 0.99, 1.0]
+    assert {row["v"] for row in chart["datasets"]["individuals_lines"]} > {2.0}
+    assert chart["vconcat"][0]["layer"][0]["encoding"]["y"]["axis"]["title"] == "error.fit (%)"
