@@ -172,7 +172,8 @@ def test_the_kept_record_shows_the_reference(service, simulation):
     assert followed == pytest.approx(1, abs=simulation["scores"]["reference_peak"] + 0.01)
 
 
-def test_the_page_of_a_fit_counts_what_goes_with_it(service, fitted, simulation):
+@pytest.mark.usefixtures("simulation")
+def test_the_page_of_a_fit_counts_what_goes_with_it(service, fitted):
     assert "hybrid simulations: " in service.get(f"/fits/{fitted}").text
 
 
