@@ -21,7 +21,7 @@ from app.pages import (
 )
 from app.pages.draft_view import column_picture, draft_page
 from app.pages.job_view import JobPageView
-from app.pages.manual import file_of, manual_page
+from app.pages.manual import PICTURES, file_of, manual_page
 from app.pages.problems import PageRoute, Unknown
 from app.pages.rendering import page
 from app.search import service as search_service
@@ -141,8 +141,8 @@ def manual(request: Request, name: str) -> Response:
     path = file_of(name)
     if path is None:
         raise HTTPException(404)
-    if path.suffix == ".png":
-        return FileResponse(path, media_type="image/png")
+    if path.suffix in PICTURES:
+        return FileResponse(path, media_type=PICTURES[path.suffix])
     return page(request, "manual.html", manual=manual_page(path))
 
 

@@ -20,6 +20,8 @@ DOCS = Path(__file__).resolve().parents[2] / "docs"
 """In a checkout and in the image; a wheel has none."""
 AT = "/manual/"
 FIRST = "index"
+PICTURES = {".png": "image/png", ".svg": "image/svg+xml"}
+"""Kinds of pictures that a page may show, by the ends of their names."""
 _DIRECTIVE = re.compile(r"```\{(?!toctree)")  # what only Sphinx makes: such a page is in the site alone
 _COMMENT = re.compile(r"^<!--.*?-->\n", re.MULTILINE | re.DOTALL)
 _TOCTREE = re.compile(r"```\{toctree\}\n:caption: (?P<caption>.+)\n:hidden:\n\n(?P<names>[^`]+)```")
@@ -41,7 +43,7 @@ def is_there() -> bool:
 
 def file_of(name: str) -> Path | None:
     """The Markdown of a page, or a picture, by its name below `docs`; None where there is none."""
-    path = DOCS / (name if name.endswith(".png") else f"{name}.md")
+    path = DOCS / (name if name.endswith(tuple(PICTURES)) else f"{name}.md")
     inside = ".." not in PurePosixPath(name).parts and not name.startswith("/")
     if not inside or not path.is_file() or (path.suffix == ".md" and _DIRECTIVE.search(path.read_text("utf-8"))):
         return None

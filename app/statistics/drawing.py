@@ -9,6 +9,7 @@ from app.statistics.dependence import over_condition
 from ident.figures import MEDIA, figure, render
 from ident.figures.subjects import Charted, OverCondition
 from ident.statistics import control_chart as chart_of
+from ident.words.error import ERROR
 from ident.words.titles import symbol
 
 Style = tuple[str, float]
@@ -25,7 +26,7 @@ def control_chart(
         raise Failure(409, "too-few", "one set makes no chart", "parameter", "approve a second one")
     limits = (found.limits.lower, found.limits.upper) if found.limits else (None, None)
     labels = [point.serial if serial is None else point.created_at[:10] for point in found.points]
-    subject = Charted(chart, symbol(parameter, ""), found.unit, _where(batch, serial), labels, limits)
+    subject = Charted(chart, symbol(parameter, ""), _unit(parameter, found.unit), _where(batch, serial), labels, limits)
     return render(figure("control-chart", subject, *style), kind), MEDIA[kind]
 
 
@@ -46,8 +47,15 @@ def dependence(
         raise Failure(409, "too-few", found.text.rstrip("."), "over", "state it in the block test of matrix.yaml")
     limits = (found.limits.lower, found.limits.upper) if found.limits else (None, None)
     labels = [point.serial for point in found.points]
-    subject = OverCondition(own, symbol(parameter, ""), found.unit, _where(batch, serial), labels, limits)
+    subject = OverCondition(
+        own, symbol(parameter, ""), _unit(parameter, found.unit), _where(batch, serial), labels, limits
+    )
     return render(figure("dependence", subject, *style), kind), MEDIA[kind]
+
+
+def _unit(parameter: str, unit: str) -> str:
+    """The unit in which a figure shows the parameter; errors, which are stored as fractions, are in per cent."""
+    return "%" if parameter.startswith(ERROR) else unit
 
 
 def _check(kind: str) -> None:

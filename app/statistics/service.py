@@ -100,15 +100,14 @@ def _nothing(parameter: str, chosen: Chosen, batches: Callable[[], Sequence[str]
     )
     for where, name, known in asked:
         if name is not None and name not in known and (near := nearest(name, known)) is not None:
-            return Failure(
-                404, "no-sets", f"no approved set here has the {where} {name!r}", where, f"did you mean {near}?"
-            )
+            return Failure(404, "no-sets", f"no approved set has the {where} {name!r}", where, f"did you mean {near}?")
+    of = f" of {chosen.serial}" if chosen.serial else f" of batch {chosen.batch}" if chosen.batch else ""
     return Failure(
         404,
         "no-sets",
-        f"no approved set here has {parameter!r}",
+        f"no approved set{of} has {parameter!r}",
         "parameter",
-        "see /api/v1/parameter-sets for the names, and approve a fit first",
+        "approve a fit, or name another parameter",
     )
 
 

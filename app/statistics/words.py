@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 from ident.rig.conditions import CONDITIONS
 from ident.words.engineering import quantity
+from ident.words.error import ERROR
 from ident.words.message import message
 from ident.words.number import count, plain
 from ident.words.percent import percent_in_print
@@ -31,7 +32,7 @@ def facts(found: StatisticsView) -> list[tuple[str, str]]:
 
 def _numbers(found: StatisticsView) -> Iterator[tuple[str, str]]:
     def of(value: float | None) -> str:
-        return "–" if value is None else quantity(value, found.unit)
+        return "–" if value is None else _quantity(value, found)
 
     yield "Sets", str(message("sets.newest" if found.left_out else "sets", count=found.n, model=found.model))
     if found.unstable:
@@ -70,7 +71,7 @@ def called(found: StatisticsView) -> list[Called]:
         Called(
             found.points[place].fit,
             found.points[place].serial,
-            quantity(found.points[place].value, found.unit),
+            _quantity(found.points[place].value, found),
             "; ".join(dict.fromkeys(texts)),
         )
         for place, texts in sorted(why.items())
@@ -86,7 +87,7 @@ def of_dependence(found: DependenceView) -> list[tuple[str, str]]:
         shown.append((f"Without the {condition.title}", count(found.without, "set")))
     if (at := found.at) is not None:
         place = f"At {condition.said(at.condition)}"
-        shown.append((place, _level(at.level, found.unit) if at.level else at.reason))
+        shown.append((place, _level(at.level, found) if at.level else at.reason))
         if at.outcome is not None:
             said = {"inside": "within the limits", "outside": "outside the limits", "unknown": "inconclusive"}
             shown.append((f"{place}, against the limits", said[at.outcome]))
@@ -100,7 +101,7 @@ def laws(found: DependenceView) -> list[tuple[str, str, str, str, str]]:
             one.name,
             one.formula,
             percent_in_print(one.probability),
-            percent_in_print(one.scatter) if one.relative else quantity(one.scatter, found.unit),
+            percent_in_print(one.scatter) if one.relative else _quantity(one.scatter, found),
             _lack_of_fit(one),
         )
         for one in found.laws
@@ -114,5 +115,13 @@ def _lack_of_fit(law: ConditionLawView) -> str:
     return p if law.holds else str(message("law.does_not_hold", p=p))
 
 
-def _level(level: LevelView, unit: str) -> str:
-    return f"{quantity(level.value, unit)}, 95 % band {quantity(level.lower, unit)} to {quantity(level.upper, unit)}"
+def _level(level: LevelView, found: DependenceView) -> str:
+    value, low, high = (_quantity(one, found) for one in (level.value, level.lower, level.upper))
+    return f"{value}, 95 % band {low} to {high}"
+
+
+def _quantity(value: float, found: StatisticsView | DependenceView) -> str:
+    """A value of the parameter with its unit; errors are in per cent."""
+    if found.parameter.startswith(ERROR):
+        return percent_in_print(value, 4)
+    return quantity(value, found.unit)

@@ -14,7 +14,7 @@ from ident.fit.result import Estimate, FitResult
 from ident.unstable import UNSTABLE
 from ident.words.error import ErrorOf
 from ident.words.error_change import error_change
-from ident.words.number import count
+from ident.words.number import count, plain
 from ident.words.plus_minus import plus_minus
 from ident.words.result_tables import Listing, TabularResult
 from ident.words.titles import DATA
@@ -113,7 +113,7 @@ class SideBySide(TabularResult):
         criteria = [column.fit.aic for column in self.columns]
         if all(same_samples(self.columns[0].fit, column.fit) for column in self.columns) and None not in criteria:
             least = min(one for one in criteria if one is not None)
-            yield "AIC, above the least", *(f"{one - least:.4g}" for one in criteria if one is not None)
+            yield "AIC, above the least", *(plain(one - least) for one in criteria if one is not None)
 
     def parameter_rows(self) -> Iterator[tuple[str, ...]]:
         """One row a parameter that one of the fits has, with its standard error."""

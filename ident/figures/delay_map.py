@@ -16,10 +16,14 @@ def delay_map_chart(found: DelayMap, case: str, look: Look) -> Chart:
     """A filled square where the sampled loop is stable, a cross where it is not; delays in samples."""
     with unchecked():
         x = alt.X("b:O", axis=alt.Axis(title=f"Delay of {found.names[1]} (samples)", labelAngle=0))
-        y = alt.Y("a:O", axis=alt.Axis(title=f"Delay of {found.names[0]} (samples)"), sort="descending")
+        y = alt.Y(
+            "a:O", axis=alt.Axis(title=f"Delay of {found.names[0]} (samples)", labelFlush=False), sort="descending"
+        )
         base = alt.Chart(alt.NamedData("map"), width=look.across(520), height=look.across(440)).encode(x=x, y=y)
         squares = base.transform_filter("datum.ok").mark_rect(color=look.series[0])
-        crosses = base.transform_filter("!datum.ok").mark_point(shape="cross", angle=45, size=60, color=look.ink)
+        crosses = base.transform_filter("!datum.ok").mark_point(
+            shape="cross", angle=45, size=60, color=look.ink, filled=True
+        )
         told = [
             f"stable at {int(found.stable.sum())} of {found.stable.size} pairs of delays",
             "filled: stable; cross: unstable",

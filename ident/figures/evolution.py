@@ -133,6 +133,11 @@ class _Axis:
             return alt.Scale(type="log", domain=[low, high], nice=False)
         return alt.Scale(domain=[low, high], nice=False)
 
+    @property
+    def format(self) -> str:
+        """Of the labels: in full where the axis is linear; powers of ten where decades need them."""
+        return "~g" if self.wide else "~r"
+
 
 def _table(entry: Generation) -> str:
     return f"generation{entry.index}"
@@ -156,7 +161,7 @@ def _scatter(look: Look, axes: tuple[_Axis, _Axis], pictured: Sequence[Generatio
     """One panel a generation, all on the same axes."""
     errors = [error for entry in pictured for error in entry.errors if math.isfinite(error)]
     ramp = alt.Scale(type="log", domain=_ends(errors), range=list(reversed(look.ramp)), clamp=True)
-    legend = alt.Legend(title="Error (%)", orient="right", format=".3~g", tickCount=4)
+    legend = alt.Legend(title="Error (%)", orient="right", format="~r", tickCount=4)
     colour = alt.Color("e:Q", scale=ramp, legend=legend)
     width = max(95, look.across(600 / len(pictured)))
     panels = [
@@ -178,9 +183,16 @@ def _generation(entry: Generation, axes: tuple[_Axis, _Axis], look: Look, colour
     x = alt.X(
         "x:Q",
         scale=across.scale,
-        axis=alt.Axis(title=across.title, tickCount=4, format="~g", labelOverlap="greedy", labelSeparation=6),
+        axis=alt.Axis(
+            title=across.title,
+            tickCount=4,
+            format=across.format,
+            labelOverlap="greedy",
+            labelSeparation=6,
+            labelBound=True,
+        ),
     )
-    ticks = alt.Axis(title=up.title if first else None, labels=first, tickCount=5, format="~g" if up.wide else "~r")
+    ticks = alt.Axis(title=up.title if first else None, labels=first, tickCount=5, format=up.format)
     y = alt.Y("y:Q", scale=up.scale, axis=ticks)
     named = {"x:Q": across.title, "y:Q": up.title, "e:Q": "Error (%)"}
     tips = [alt.Tooltip(field, title=title) for field, title in named.items()]

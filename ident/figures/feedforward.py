@@ -7,6 +7,7 @@ from typing import Any
 
 import altair as alt
 
+from ident.figures import words
 from ident.figures.drawing import Drawing, Options
 from ident.figures.render import Chart, Panel
 from ident.figures.subjects import Simulated
@@ -18,11 +19,14 @@ REFERENCE, ALONE, BOTH, BAND = "reference", "feedback alone", "with feedforward"
 
 
 def feedforward_figure(followed: FeedforwardTracking, look: Look, title: str = "") -> Chart:
-    """Positions (mm) above, errors (mm) with feedforward and their band below, against time (s)."""
+    """Positions (mm) above, errors (mm) with feedforward and their band below, against time (s).
+
+    The reference is dashed over the other lines: with feedforward the machine is on it.
+    """
     facts = [followed.gain_said]
     if followed.drawn_ratio is not None:
         facts.append(message("feedforward.error", ratio=rounded(followed.drawn_ratio), draws=followed.draws))
-    headed = alt.TitleParams(title or "Following a reference", subtitle=["; ".join(map(str, facts))])
+    headed = alt.TitleParams(title or "Following a reference", subtitle=words.wrapped(list(map(str, facts)), look))
     panels = alt.vconcat(_positions(followed, look), _errors(followed, look), title=headed)
     chart: Chart = panels.configure(**look.config())
     return chart
@@ -31,7 +35,7 @@ def feedforward_figure(followed: FeedforwardTracking, look: Look, title: str = "
 def _positions(followed: FeedforwardTracking, look: Look) -> Panel:
     r = followed.reference
     alone, both = ([x - e for x, e in zip(r, error, strict=True)] for error in (followed.feedback, followed.both))
-    return _lines(followed, {REFERENCE: r, ALONE: alone, BOTH: both}, look, "Position (mm)")
+    return _lines(followed, {ALONE: alone, BOTH: both, REFERENCE: r}, look, "Position (mm)")
 
 
 def _errors(followed: FeedforwardTracking, look: Look) -> Panel:
@@ -70,7 +74,9 @@ def _colour(look: Look) -> alt.Color:
     """One scale for both panels, so that there is one legend."""
     colours = [look.ink, *look.series[:3]]
     scale = alt.Scale(domain=[REFERENCE, ALONE, BOTH, BAND], range=colours)
-    return alt.Color("n:N", title=None, scale=scale, legend=alt.Legend(orient="bottom"))
+    return alt.Color(
+        "n:N", title=None, scale=scale, legend=alt.Legend(orient="bottom", symbolType="stroke", symbolOpacity=1)
+    )
 
 
 def _rounded(row: Mapping[str, float], name: str) -> dict[str, Any]:

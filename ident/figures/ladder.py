@@ -15,6 +15,8 @@ from ident.figures.subjects import Ladder, Step
 from ident.figures.theme import Look
 from ident.matrix import Actuator
 
+_LABEL = {"align": "left", "dx": 7, "dy": 12, "fontSize": 11}  # of a point: where its error is written
+
 
 def ladder(steps: Sequence[Step], floor: float | None, actuator: Actuator, look: Look) -> Chart:
     """Steps from top to bottom, errors (fractions, drawn in per cent) to the right on a logarithmic axis.
@@ -35,7 +37,7 @@ def ladder(steps: Sequence[Step], floor: float | None, actuator: Actuator, look:
         "u:N",
         title=None,
         scale=alt.Scale(domain=uses, range=list(look.series[: len(uses)])),
-        legend=alt.Legend(orient="bottom", symbolType="circle"),
+        legend=alt.Legend(orient="bottom", symbolType="circle", symbolOpacity=1),
     )
     lowest = min([row["e"] for row in rows] + ([100 * floor] if floor else []))
     scale = alt.Scale(type="log", domain=[0.8 * lowest, 1.5 * max(row["e"] for row in rows)], nice=False)
@@ -46,11 +48,12 @@ def ladder(steps: Sequence[Step], floor: float | None, actuator: Actuator, look:
     layers: list[alt.Chart] = [
         base.mark_line(strokeWidth=1.5, opacity=0.6).encode(order="row:Q").transform_window(row="row_number()"),
         base.mark_circle(size=70, opacity=1).encode(tooltip=[alt.Tooltip("step:N", title="Step"), "u:N", "t:N"]),
-        named.mark_text(align="left", dx=7, dy=12, fontSize=11).encode(text="t:N"),
     ]
     if floor:
         at = alt.Chart(alt.NamedData("steps")).encode(x=alt.datum(100 * floor))
         layers.append(at.mark_rule(color=look.ink, strokeDash=[5, 3], strokeWidth=1.3))
+    ground = named.mark_text(**_LABEL, stroke=look.ground, strokeWidth=4).encode(text="t:N")  # the rule ends before it
+    layers += [ground, named.mark_text(**_LABEL).encode(text="t:N")]
     said = f"dashed: noise floor {words.percent(floor)}" if floor else "noise floor unknown"
     title = alt.TitleParams(words.headline(actuator, "the error with each effect added"), subtitle=[said])
     chart: Chart = alt.layer(

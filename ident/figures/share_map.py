@@ -21,12 +21,18 @@ def share_map_chart(found: ShareMap, case: Case, controller: str, look: Look) ->
     with unchecked():
         tables = {"map": _rows(found)}
         x = alt.X("k:O", axis=alt.Axis(title="Physical share of the stiffness (%)", labelAngle=0, format=".0f"))
-        y = alt.Y("m:O", axis=alt.Axis(title="Physical share of the mass (%)", format=".0f"), sort="descending")
+        y = alt.Y(
+            "m:O",
+            axis=alt.Axis(title="Physical share of the mass (%)", format=".0f", labelFlush=False),
+            sort="descending",
+        )
         scale = alt.Scale(type="log", range=list(look.ramp))
         base = alt.Chart(alt.NamedData("map"), width=look.across(520), height=look.across(440)).encode(x=x, y=y)
         colour = alt.Color("s:Q", scale=scale, legend=alt.Legend(title="Error (%)"))
         squares = base.transform_filter("datum.s != null").mark_rect().encode(color=colour)
-        crosses = base.transform_filter("!datum.ok").mark_point(shape="cross", angle=45, size=60, color=look.ink)
+        crosses = base.transform_filter("!datum.ok").mark_point(
+            shape="cross", angle=45, size=60, color=look.ink, filled=True
+        )
         count, whole = int(found.stable.sum()), found.stable.size
         told = [f"controller {controller}; stable at {count} of {whole} pairs of shares", "cross: unstable"]
         title = alt.TitleParams(f"{case.name} · measured against reference displacement", subtitle=told)

@@ -14,6 +14,7 @@ from ident.words import conditions
 from ident.words.display import displayed
 from ident.words.engineering import power_of, printed_unit, scaled_unit
 from ident.words.error import ErrorOf
+from ident.words.percent import PER_CENT
 from ident.words.percent import percent as in_percent
 from ident.words.run_name import run_name
 from ident.words.titles import DATA
@@ -34,7 +35,12 @@ def tidy_unit(unit: str) -> str:
 
 
 def engineering(values: Iterable[float], unit: str) -> tuple[float, str]:
-    """(factor, unit) that bring the largest of `values` into a readable range: 2.6e-6 m^4/s → (1e6, "1e-6 m^4/s")."""
+    """(factor, unit) that bring the largest of `values` into a readable range: 2.6e-6 m^4/s → (1e6, "1e-6 m^4/s").
+
+    Fractions of the unit % are brought into per cent.
+    """
+    if unit == "%":
+        return PER_CENT, unit
     size, unit = displayed(unit)
     power = power_of(max((abs(value) for value in values), default=0.0) / size)
     return 10.0**-power / size, scaled_unit(unit, power, _SIGNS) if power else tidy_unit(unit)

@@ -210,7 +210,7 @@ def notes_of(of: Machine) -> tuple[str, ...]:
     found = []
     if of.nonlinear:
         names = ", ".join(of.nonlinear)
-        found.append(f"stable is what this record showed: {names} cannot be judged by poles")
+        found.append(f"stable is said of this record alone: poles judge no loop with {names}")
     held = of_specimen(of)
     if held:
         found.append(f"{HELD} {', '.join(effect.name for effect in held)}")

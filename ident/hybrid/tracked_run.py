@@ -141,6 +141,6 @@ def _ranges(tau: Array, gain: Array, clock: str) -> str:
     factor, unit = (1e3, "ms") if clock == "s" else (1.0, "samples")
     (low, high), (least, most) = (np.percentile(part[settled], (10, 90)) for part in (factor * tau, gain))
     return (
-        f"τyr runs from {low:.3g} to {high:.3g} {unit}, "
+        f"τyr runs from {plain(low, 3)} to {plain(high, 3)} {unit}, "
         f"kyr from {trimmed(round(least, 2))} to {trimmed(round(most, 2))}"
     )

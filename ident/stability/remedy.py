@@ -43,7 +43,7 @@ class Remedy:
     gain_margin: float | None
 
     def __str__(self) -> str:
-        what = self.kind if self.name == self.kind else f"{self.kind} {self.name}"
+        what = self.kind if self.kind.endswith(self.name) else f"{self.kind} {self.name}"
         return f"{what} × {plain(self.factor, 3)} ({from_to(self.before, self.after, self.unit)})"
 
 

@@ -22,6 +22,9 @@ smaller part of the residual.
 """
 _NAMED = 3  # runs that are called by name; of more the first ones, with their number
 
+ERROR = "error."
+"""Begins the names of the errors that a production line follows like parameters: error.fit, error.verify."""
+
 
 @dataclass(frozen=True)
 class ErrorOf:

@@ -73,12 +73,12 @@ FIGURES: Mapping[str, str] = {
     "sets.newest": "{count}, the newest, of model {model}",
     "design.nominal": "and within ± 1 dB, ± 10° to 25 Hz of nominal",
     "design.wanted": "and within ± 1 dB, ± 10° to 25 Hz of wanted",
-    "law.few": "{sets:sets} know the {condition}; a law takes {least}.",
+    "law.few": "The {condition} is stated for {sets:sets}; a law needs {least}.",
     "law.one_condition": "The {condition} of all sets is the same: nothing is known of its influence.",
     "law.holds":
         "Law over the {condition}: {name}, probability {share:percent}. The sets scatter by {scatter} about it.",
     "law.fails":
-        "No law over the {condition} holds. The best is {name}; chance would make its lack of fit with p = {p:.2g}.",
+        "No law over the {condition} holds. The best is {name}; its lack of fit is no chance (p = {p:.2g}).",
     "law.does_not_hold": "{p}, does not hold",
     "law.beyond": "{value} is outside the conditions of the sets, {low} to {high}.",
     "law.none": "The fit has no parameter.",

@@ -134,7 +134,7 @@ def test_what_the_law_does_not_reach_is_said(warm: TestClient) -> None:
     assert "outside the conditions of the sets" in beyond["reason"]
     unknown = warm.get(f"{API}/statistics/over", params=OVER | {"over": "oil_age"}).json()
     assert (unknown["law"], unknown["without"]) == (None, 30)
-    assert unknown["text"] == "0 sets know the age of the oil; a law takes 5."
+    assert unknown["text"] == "The age of the oil is stated for 0 sets; a law needs 5."
     for wrong, code in (({"over": "temprature"}, "unknown-condition"), ({"at": "60"}, "missing-unit")):
         answer = warm.get(f"{API}/statistics/over", params=OVER | wrong)
         assert (answer.status_code, answer.json()["code"]) == (422, code)

@@ -172,6 +172,11 @@ def test_the_kept_record_shows_the_reference(service, simulation):
     assert followed == pytest.approx(1, abs=simulation["scores"]["reference_peak"] + 0.01)
 
 
+@pytest.mark.usefixtures("simulation")
+def test_the_page_of_a_fit_counts_what_goes_with_it(service, fitted):
+    assert "hybrid simulations: " in service.get(f"/fits/{fitted}").text
+
+
 @pytest.mark.full
 def test_other_motions_effects_and_controllers(service, fitted, controller):
     """Live compensation against noise, a controller's own JSON against a sine, with an effect switched on."""

@@ -122,9 +122,13 @@ def test_statistics_of_a_batch_and_its_chart(line: TestClient) -> None:
             assert drawn.text.count('aria-roledescription="circle"') == 19
             assert 'aria-roledescription="point"' in drawn.text
     assert line.get(f"{API}/statistics", params={"parameter": "nothing"}).json()["code"] == "no-sets"
-    assert line.get(f"{API}/statistics", params={"batch": "LINE", "parameter": "error.fit"}).json()[
-        "mean"
-    ] == pytest.approx(0.01)
+    none = line.get("/statistics", params={"parameter": "Z0", "serial": "LINE-BARE"}).text
+    assert "no approved set of LINE-BARE has &#39;Z0&#39;: approve a fit, or name another parameter" in none
+    errors = {"batch": "LINE", "parameter": "error.fit"}
+    assert line.get(f"{API}/statistics", params=errors).json()["mean"] == pytest.approx(0.01)
+    assert "<dt>Mean</dt><dd>1.000 %</dd>" in line.get("/statistics", params=errors).text
+    drawn = line.get(f"{API}/statistics/figures/control-chart.json", params=errors).text
+    assert "error.fit (%)" in drawn
 
 
 def test_cpk_of_too_few_sets_is_not_given_over_http_on_the_page_or_the_terminal(

@@ -91,8 +91,12 @@ def test_a_profile_is_a_figure_in_every_form_and_on_the_page(service, three):
         assert service.get(f"{url}.{kind}", params={"theme": "dark"}).content.startswith(start)
     assert service.get(f"{url}.svg", params={"points": 3}).status_code == 422
     assert f'data-url="{url}"' in service.get(f"/fits/{three[0]}").text
-    assert "data-profile=" not in service.get(f"/fits/{three[0]}").text
-    assert f'data-profile="/api/v1/fits/{three[2]}/profiles"' in service.get(f"/fits/{three[2]}").text
+    linear = service.get(f"/fits/{three[0]}").text
+    assert "data-profile=" not in linear
+    assert "data-unmade=" not in linear
+    nonlinear = service.get(f"/fits/{three[2]}").text
+    assert f'data-profile="/api/v1/fits/{three[2]}/profiles"' in nonlinear
+    assert 'data-unmade="No profile of this parameter is computed yet."' in nonlinear
 
 
 def test_beside_eq_17_stands_what_is_left_in_the_unit_of_the_output(service, three):

@@ -62,3 +62,17 @@ def test_every_canvas_has_a_name_that_follows_what_it_shows(page: Page, site: Se
     expect(page.locator("#figure-time canvas")).to_have_attribute(
         "aria-label", re.compile(re.escape(run)), timeout=60_000
     )
+
+
+def test_a_profile_that_nobody_has_computed_is_no_error(page: Page, site: Service, fitted: str, watch) -> None:
+    """Of a model with effects a job makes it: the page says that there is none yet, not how a program asks for it."""
+    page.route(
+        re.compile(r"/figures/profile\.json"), lambda route: route.fulfill(status=422, json={"code": "too-long"})
+    )
+    page.goto(f"{site.address}/fits/{fitted}#parameters")
+    page.evaluate("document.querySelector('#profile').dataset.unmade = 'None is computed yet.'")
+    page.get_by_text("Profile likelihood of a parameter").click()
+    note = page.locator("#profile .figure > [role=status]")
+    expect(note).to_have_text("None is computed yet.", timeout=60_000)
+    expect(note).not_to_have_class("error")
+    watch.complaints.clear()  # the browser's own line on the refusal

@@ -202,6 +202,9 @@ def test_evolution_shows_generations_1_4_8_and_last_on_the_bounds_with_the_paper
     x = panels[0]["layer"][0]["encoding"]["x"]
     assert x["axis"]["title"].startswith("Z0")
     assert x["scale"]["domain"] == pytest.approx([1.751, 3.503])
+    assert (x["axis"]["labelOverlap"], x["axis"]["labelSeparation"]) == ("greedy", 6)
+    assert (x["axis"]["format"], x["axis"]["labelBound"]) == ("~r", True)  # 20, not 2e+1; none reaches the next panel
+    assert panels[0]["layer"][0]["encoding"]["color"]["legend"]["format"] == "~r"
 
 
 def test_error_over_generation_is_in_percent(matrix, fit):

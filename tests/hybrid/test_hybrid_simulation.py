@@ -218,7 +218,7 @@ def test_every_effect_at_a_tenth_runs_and_costs():
     found, before = simulate_hybrid(FIT, case, None, on), simulate_hybrid(FIT, case)
     assert found.stable
     assert found.scores.tracking_rms > before.scores.tracking_rms
-    assert any("cannot be judged by poles" in note for note in found.notes)
+    assert any("poles judge no loop" in note for note in found.notes)
 
 
 def test_sensor_noise_and_converters_are_in_what_is_measured():

@@ -14,7 +14,7 @@ from ident.errors import Unusable
 from ident.figures import look, render
 from ident.figures.tracking import tracking
 from ident.fit.settings import Settings
-from ident.hybrid.tracked_run import ROWS, sensor_noise, track
+from ident.hybrid.tracked_run import ROWS, _ranges, sensor_noise, track
 from ident.matrix import Actuator, Matrix
 from ident.readers import read_matrix
 from ident.run import Run
@@ -52,6 +52,12 @@ def test_a_simulated_first_order_loop_holds(loops, noise):
     found = track(recorded(loops, noise=noise))
     assert found.verdict.holds, found.verdict.reason
     assert (found.tau[-1], found.gain[-1]) == pytest.approx(loops[0][:2], rel=0.01)
+
+
+def test_a_range_up_to_seconds_is_written_without_an_exponent():
+    said = _ranges(np.linspace(0.5, 2.4, 101), np.linspace(1.0, 1.2, 101), "s")
+    assert "e+" not in said
+    assert said.startswith("τyr runs from 861 to 2229 ms")
 
 
 def test_a_loop_whose_parameters_step_still_holds():

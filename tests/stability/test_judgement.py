@@ -9,6 +9,7 @@ from ident.fit.result import Estimate, FitResult
 from ident.hybrid.changed_machine import Change
 from ident.hybrid.what_if import Before, what_if
 from ident.matrix import Actuator
+from ident.stability.remedy import Remedy
 from tests.stability import servo_reference as reference
 
 UNITS = {"Z0": "m^4/s", "tau": "s", "Cl": "m^3/(s*Pa)", "c0": "N*s/m", "m0": "kg", "Ka": "m^3/Pa"}
@@ -84,3 +85,9 @@ def test_nothing_is_said_to_be_unstable_of_stable_loops(full):
         assert found.state == "stable"
         assert not any("nstable" in said for said in found.stability[0].text)
         assert found.stability[0].gain_margin == pytest.approx(reference.margin(of, gain), abs=0.05)
+
+
+def test_a_quantity_whose_part_has_its_name_is_named_once():
+    """As the numerical share of a structure."""
+    share = Remedy("share", "numerical share", "", "1", 1.0, 0.5, 0.5, 0.7, None)
+    assert str(share).startswith("numerical share × 0.5")

@@ -59,6 +59,11 @@ function name(figure) {
   canvas.setAttribute("aria-label", [...said(text), ...said(subtitle)].join(". ") || figure.querySelector(".plot").ariaLabel);
 }
 
+// Whether a figure waits for a job that nobody has started: that is no error.
+function isUnmade(figure, { code }) {
+  return code === "too-long" && figure.closest("[data-unmade]") !== null;
+}
+
 async function draw(figure) {
   const plot = figure.querySelector(".plot");
   const wanted = query(figure);
@@ -81,6 +86,8 @@ async function draw(figure) {
     figure.asked = new AbortController();
     const answer = await fetch(address, { credentials: "same-origin", signal: figure.asked.signal });
     const spec = await answer.json();
+    note.classList.toggle("error", !isUnmade(figure, spec));
+    if (isUnmade(figure, spec)) return void (note.textContent = figure.closest("[data-unmade]").dataset.unmade);
     if (!answer.ok) throw new Error([spec.what ?? spec.detail ?? spec.title, spec.remedy].filter(Boolean).join("; "));
     figure.dispatchEvent(new CustomEvent("arrived", { detail: spec }));
     if (turn !== figure.turn) return;
@@ -92,6 +99,7 @@ async function draw(figure) {
     figure.heading = typeof spec.title === "string" ? { text: spec.title } : spec.title;
     name(figure);
   } catch (error) {
+    note.classList.add("error");
     if (turn === figure.turn) note.textContent = `This figure cannot be drawn: ${error.message}.`;
   } finally {
     if (turn === figure.turn) plot.setAttribute("aria-busy", "false");

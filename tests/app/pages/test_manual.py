@@ -35,10 +35,10 @@ def test_every_page_of_the_documentation_opens_and_leads_on(service: TestClient)
     lost = []
     for name, text in texts.items():
         article = text.partition("<article")[2].partition("</article>")[0]
-        for target in re.findall(r'(?:href|src)="(/manual/[^"]+)"', article):
+        for target in re.findall(r'(?:href="|src=")((?<=src=")[^"]+|/manual/[^"]+)"', article):
             page, _, place = target.removeprefix("/manual/").partition("#")
-            if page.endswith(".png"):
-                if service.get(f"/manual/{page}").headers["content-type"] != "image/png":
+            if page.endswith(tuple(manual.PICTURES)):
+                if service.get(target).headers["content-type"] not in manual.PICTURES.values():
                     lost.append((name, target))
             elif page not in texts or (place and f'id="{place}"' not in texts[page]):
                 lost.append((name, target))
