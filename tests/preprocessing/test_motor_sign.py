@@ -36,7 +36,7 @@ def axis(way: float, levels: tuple[float, ...] = (0.6, 0.65, 0.7)) -> Matrix:
 
 
 @pytest.mark.parametrize("way", [1.0, -1.0])
-def test_an_axis_with_a_dead_zone_and_a_stop_is_a_motor_whichever_way_it_goes(way: float) -> None:
+def test_an_axis_with_a_dead_zone_and_a_stop_is_a_motor_whichever_way_it_goes(way):
     """No balance of mass, damping and spring leaves a tenth of such a drive."""
     matrix = axis(way)
     assert {against_its_drive(run) for run in matrix.runs} == {None}
