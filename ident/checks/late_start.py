@@ -52,10 +52,13 @@ def _answers(run: Run, least: float) -> Iterator[float]:
 
 
 def _first(run: Run, least: float) -> tuple[int, int]:
-    """The last step in the first samples, and how many samples the output then stands; 0 where it does not set out."""
+    """The last step in the first samples, and how many samples the output then stands; 0 where it does not set out.
+
+    What sets out as the command changes is no answer to the step: a machine that is held may stand for long.
+    """
     changes = np.flatnonzero(np.abs(np.diff(run.command[:REST])) >= least) + 1
     begin = int(changes[-1]) if len(changes) else 0
-    steady = np.abs(run.command[begin:] - run.command[begin]) < least / 2.0
+    steady = np.abs(run.command[begin:] - run.command[begin]) <= MOVED / 2.0 * np.ptp(run.command)
     end = begin + (len(steady) if steady.all() else int(np.argmin(steady)))
     if abs(float(run.command[begin])) < least or end - begin <= REST:
         return begin, 0

@@ -118,10 +118,10 @@ def _compared(
     with_effects = _with_an_effect_each(first, tried, report)
     lags = {model.name for model in models if has_no_parts(model)}
     with_effects |= _more_effects(with_effects, _probabilities(list(with_effects.values()), lags, strange), report)
-    others = list(with_effects.values())
-    best, why = _preferred(with_effects[first.machine], others, _probabilities(others, lags, strange))
-    compared = [best, *(with_effects.get(one.machine, one) for one in tried if one.machine != best.machine)]
+    compared = [with_effects.get(one.machine, one) for one in tried]
     probable = _probabilities(compared, lags, strange)
+    best, why = _preferred(with_effects[first.machine], list(with_effects.values()), probable)
+    compared.sort(key=lambda model: model.machine != best.machine)
     said = (
         model.structure(over, _rather(model, best, probable) if number else why, probable.get(model.machine))
         for number, model in enumerate(compared)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from ident.preprocessing.motion_sign import BALANCED, against_its_drive, drives_mass
+from ident.preprocessing.motion_sign import BALANCED, FOLLOWED, a_motor_is_against, against_its_drive, drives_mass
 from ident.preprocessing.power import GIVES_BACK, mean_power, product
 from ident.preprocessing.step import Prepared, Step
 from ident.run import MOTIONS, Run
@@ -49,8 +49,9 @@ def _act(prepared: Prepared) -> tuple[Prepared, tuple[str, ...]]:
 
 def _motion_turned(prepared: Prepared) -> tuple[Prepared, tuple[str, ...]]:
     matrix = prepared.matrix
-    told = [against for run in matrix.of_use("fit") or matrix.runs if (against := against_its_drive(run)) is not None]
-    if not told or not all(told):
+    runs = matrix.of_use("fit") or matrix.runs
+    told = [against for run in runs if (against := against_its_drive(run)) is not None]
+    if not all(told) if told else not a_motor_is_against(runs):
         return prepared, ()
     said = (
         f"The {matrix.runs[0].output} is taken with the other sign: as recorded it goes against the force that drives "
@@ -64,8 +65,9 @@ FORCE_SIGN = Step(
     does="turns the sign of the force of a run, or of the motion that a force drives",
     applies="a motion drives the model, a run records force and speed, and their product says that the specimen gives "
     "work back; or a force, a pressure, a torque or a motor drives a mass in open loop, and every estimation run says "
-    "that the motion is counted against it",
+    "that the motion is counted against it; or none of them says anything, and only a motor of negative gain explains "
+    "them",
     without="force and motion are taken with the sign that was recorded",
-    thresholds=(GIVES_BACK, BALANCED),
+    thresholds=(GIVES_BACK, BALANCED, FOLLOWED),
     act=_act,
 )

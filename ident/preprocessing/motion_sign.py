@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 from numpy.typing import NDArray
 
+from ident.linear_filter import linear_filter
 from ident.preprocessing.power import GIVES_BACK, mean_power
 from ident.preprocessing.step import Threshold
 from ident.presets.preset import Preset
@@ -22,6 +25,13 @@ BALANCED = Threshold(
     "a balance of mass, damping and spring leaves less with the sign that is right, and more with the other",
     "what drifts away is next to a polynomial, whose rest a balance of the wrong sign explains by half, too",
 )
+FOLLOWED = Threshold(
+    0.8,
+    "of the output",
+    "a motor of one sign leaves less, and nothing that follows the drive with the other sign does",
+    "a dead zone, a limit or an end stop hides the balance, but not the way in which a drive moves a motor",
+)
+_LAGS = 9  # time constants of a motor, from a sample to the whole record
 
 
 def drives_mass(model: Preset) -> bool:
@@ -59,6 +69,55 @@ def against_its_drive(run: Run) -> bool | None:
     speeds = {"displacement": np.gradient(motion), "acceleration": terms[:, 1]}
     speed = speeds.get(run.output, motion)
     return turned < right and mean_power(-drive, speed) >= GIVES_BACK.value
+
+
+def a_motor_is_against(runs: Sequence[Run]) -> bool:
+    """Whether a motor explains the positions, or the speeds, of the runs only where it turns against its drive.
+
+    The motor is a lag of the speed, T v' + v = K u, without any of the effects that a machine may have. Where a run
+    stands, and how fast it moves as it begins, is free. What follows its drive with the right sign, as a loop or a mass
+    on a spring does, is not against it.
+    """
+    integrated = all(run.output == "displacement" for run in runs)
+    if not (integrated or all(run.output == "velocity" for run in runs)):
+        return False
+    shown, least = [_centred(run, run.measured) for run in runs], {1.0: 1.0, -1.0: 1.0}
+    for place in np.linspace(0.0, 1.0, _LAGS):
+        lagged = [_lagged(run.command, run.length**-place) for run in runs]
+        ways = [np.cumsum(speed) if integrated else speed for speed in lagged]
+        sign, left = _explained(shown, [_centred(run, way) for run, way in zip(runs, ways, strict=True)])
+        least[sign] = min(left, least[sign])
+        sign, left = _explained(shown, [_centred(run, x) for run, x in zip(runs, lagged, strict=True)])
+        least[1.0] = min(left, least[1.0]) if sign > 0 else least[1.0]
+    speeds = [np.gradient(run.measured) if integrated else run.measured for run in runs]
+    gives = all(mean_power(-run.command, v) >= GIVES_BACK.value for run, v in zip(runs, speeds, strict=True))
+    return least[-1.0] < FOLLOWED.value <= least[1.0] and gives
+
+
+def _explained(shown: Sequence[Array], by: Sequence[Array]) -> tuple[float, float]:
+    """The sign of the factor by which signals explain what is shown best, and what they leave of it; each run counts
+    by its mean square."""
+    along, size, power = (
+        sum(float(x @ y) / len(x) for x, y in zip(first, second, strict=True))
+        for first, second in ((by, shown), (by, by), (shown, shown))
+    )
+    explained = along**2 / (size * power) if size * power > 0 else 0.0
+    return (-1.0 if along < 0 else 1.0), float(np.sqrt(max(1.0 - explained, 0.0)))
+
+
+def _lagged(drive: Array, pole: float) -> Array:
+    """A drive (n,) behind a lag with this decay, samples⁻¹, from rest."""
+    held = float(np.exp(-pole))
+    return linear_filter([0.0, 1.0 - held], [1.0, -held], drive)
+
+
+def _centred(run: Run, samples: Array) -> Array:
+    """The samples without their mean, and without a straight line where a position begins at a speed of its own."""
+    left = samples - samples.mean()
+    if run.output == "displacement" and run.begins == "moving":
+        line = np.linspace(-1.0, 1.0, run.length)
+        left -= float(line @ left) / float(line @ line) * line
+    return left
 
 
 def _left(target: Array, terms: Array) -> float:

@@ -43,3 +43,19 @@ def test_a_start_that_is_answered_late_is_doubted():
 @pytest.mark.parametrize("delay", [0, 10, 194])
 def test_a_drive_that_is_on_is_not_however_late_it_always_is(delay):
     assert codes(off=0, delay=delay) == []
+
+
+@pytest.mark.parametrize("wander", [0.0, 0.3])
+def test_an_arm_that_its_drive_holds_sets_out_when_the_command_changes(wander):
+    """The record begins while it is held; the command of a slow swing changes by a few per cent before it is seen."""
+    time = np.arange(6000) / 100.0
+    volts = 6.0 + np.where(time > 8.0, 0.3 * (1.0 - np.cos(0.5 * (time - 8.0))), 0.0)
+    steps = np.repeat([6.0, 9.0, 6.0, 3.0, 6.0], 1200)
+    rng, units = np.random.default_rng(1), {"command": "V", "displacement": "rad"}
+    listed = []
+    for name, command in (("held", volts + wander * np.sin(0.4 * time) * (time > 5.0)), ("steps", steps)):
+        fall = np.exp(-1.0 / (0.2 * 100.0))
+        angle = scipy.signal.lfilter([0.1 * (1.0 - fall)], [1.0, -fall], command - 6.0) + 1.0
+        channels = {"command": command, "displacement": angle + rng.normal(0.0, 1e-4, len(time))}
+        listed.append(Run(name, "", 100.0, channels, units, hold="zoh"))
+    assert not [one for one in check(Matrix(Actuator("M"), tuple(listed))) if one.code == "late-start"]
