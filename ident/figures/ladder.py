@@ -15,7 +15,7 @@ from ident.figures.subjects import Ladder, Step
 from ident.figures.theme import Look
 from ident.matrix import Actuator
 
-_LABEL = {"align": "left", "dx": 7, "dy": 12, "fontSize": 11}  # of a point: where its error is written
+_LABEL: dict[str, Any] = {"align": "left", "dx": 7, "dy": 12, "fontSize": 11}  # of a point: where its error is written
 
 
 def ladder(steps: Sequence[Step], floor: float | None, actuator: Actuator, look: Look) -> Chart:

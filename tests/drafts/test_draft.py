@@ -407,15 +407,6 @@ def test_a_column_of_times_that_is_none_leaves_the_rate_to_be_said():
         FileAnswers({"motion": Answer("x")})
 
 
-def test_a_record_with_times_is_brought_to_a_rate_that_is_stated_with_them():
-    """A rate alone takes the place of the times, as before; a command line may state both."""
-    both = Draft([raw(IN_MS, "a.csv")], Answers("S", SAID, Answer("time", "ms"), rate="50 Hz"))
-    assert both.description()["runs"][0]["time"] == {"column": "time", "unit": "ms", "resample": "50 Hz"}
-    assert "sample_rate" not in both.description()["runs"][0]
-    alone = Draft([raw(IN_MS, "a.csv")], Answers("S", SAID, rate="50 Hz"))
-    assert alone.description()["runs"][0]["sample_rate"] == "50 Hz"
-
-
 def test_a_current_beside_a_speed_is_no_command_unless_the_kind_is_of_a_bench():
     """A log of a motor: what drove it is asked, and not refused when the description is read."""
     text = table("Time (s),Current (A),Speed (RPM)")

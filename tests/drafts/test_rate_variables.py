@@ -104,3 +104,14 @@ def test_the_command_of_a_loop_of_speed_is_known_by_its_name(head, command):
     assert Draft([file], Answers()).known(file).channels["command"] == Answer(
         command, file.columns[names.index(command)].unit
     )
+
+
+def test_a_record_with_times_is_brought_to_a_rate_that_is_stated_with_them():
+    """A rate alone takes the place of the times, as before; a command line may state both."""
+    text = "time,u,x\nms,mm,mm\n" + "".join(f"{10 * n},{n % 7},{n % 5}\n" for n in range(100))
+    files, said = [read_raw(text.encode(), "a.csv")], {"command": Answer("u"), "displacement": Answer("x")}
+    both = Draft(files, Answers("S", said, Answer("time", "ms"), rate="50 Hz"))
+    assert both.description()["runs"][0]["time"] == {"column": "time", "unit": "ms", "resample": "50 Hz"}
+    assert "sample_rate" not in both.description()["runs"][0]
+    alone = Draft(files, Answers("S", said, rate="50 Hz"))
+    assert alone.description()["runs"][0]["sample_rate"] == "50 Hz"
