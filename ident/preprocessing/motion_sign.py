@@ -117,7 +117,7 @@ def _centred(run: Run, samples: Array) -> Array:
     if run.output == "displacement" and run.begins == "moving":
         line = np.linspace(-1.0, 1.0, run.length)
         left -= float(line @ left) / float(line @ line) * line
-    return left
+    return np.asarray(left)
 
 
 def _left(target: Array, terms: Array) -> float:
