@@ -24,7 +24,7 @@ def noise_run(name: str, samples: int) -> Run:
     return Run(name, "", 100.0, channels, {"command": "N", "displacement": "m"}, kind="blwn")
 
 
-@pytest.mark.parametrize(("ratio", "is_whole"), [(1.3, False), (1.7, True)])
+@pytest.mark.parametrize(("ratio", "is_whole"), [(1.4, False), (1.6, True)])
 def test_a_run_whose_residual_comes_late_is_tried_whole(ratio, is_whole):
     runs = noise_run("steady", 40_000), noise_run("late", 40_000)
     steady, late = np.ones(40_000), np.ones(40_000)
