@@ -362,7 +362,7 @@ class Moves:
         explainable = base.error**2 - floor**2
         if selection.fitted.error**2 - floor**2 < CRITERIA.selection.little_explained * explainable:
             return None
-        if not self.models.is_short(base):
+        if not self.most or not self.models.is_short(base):
             return None
         names = self._addable(base)
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from ident.preprocessing.motion_sign import BALANCED, FOLLOWED, a_motor_is_against, against_its_drive, drives_mass
+from ident.preprocessing.motion_sign import BALANCED, FOLLOWED, TOLD, a_motor_is_against, against_its_drive, drives_mass
 from ident.preprocessing.power import GIVES_BACK, mean_power, product
 from ident.preprocessing.step import Prepared, Step
 from ident.run import MOTIONS, Run
@@ -68,6 +68,6 @@ FORCE_SIGN = Step(
     "that the motion is counted against it; or none of them says anything, and only a motor of negative gain explains "
     "them",
     without="force and motion are taken with the sign that was recorded",
-    thresholds=(GIVES_BACK, BALANCED, FOLLOWED),
+    thresholds=(GIVES_BACK, BALANCED, FOLLOWED, TOLD),
     act=_act,
 )

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ident.linear_filter import linear_filter
+from ident.noise.effective_sample_size import independent_samples
 from ident.preprocessing.power import GIVES_BACK, mean_power
 from ident.preprocessing.step import Threshold
 from ident.presets.preset import Preset
@@ -30,6 +31,12 @@ FOLLOWED = Threshold(
     "of the output",
     "a motor of one sign leaves less, and nothing that follows the drive with the other sign does",
     "a dead zone, a limit or an end stop hides the balance, but not the way in which a drive moves a motor",
+)
+TOLD = Threshold(
+    2.0,
+    "standard errors",
+    "the correlation with what the motor shows is beyond chance, by the number of independent samples of the output",
+    "a position that wanders by itself follows any command for a while",
 )
 _LAGS = 9  # time constants of a motor, from a sample to the whole record
 
@@ -89,9 +96,12 @@ def a_motor_is_against(runs: Sequence[Run]) -> bool:
         least[sign] = min(left, least[sign])
         sign, left = _explained(shown, [_centred(run, x) for run, x in zip(runs, lagged, strict=True)])
         least[1.0] = min(left, least[1.0]) if sign > 0 else least[1.0]
+    if not least[-1.0] < FOLLOWED.value <= least[1.0]:
+        return False
     speeds = [np.gradient(run.measured) if integrated else run.measured for run in runs]
     gives = all(mean_power(-run.command, v) >= GIVES_BACK.value for run, v in zip(runs, speeds, strict=True))
-    return least[-1.0] < FOLLOWED.value <= least[1.0] and gives
+    errors = np.sqrt((1.0 - least[-1.0] ** 2) * sum(independent_samples(run.measured) for run in runs))
+    return gives and bool(errors > TOLD.value)
 
 
 def _explained(shown: Sequence[Array], by: Sequence[Array]) -> tuple[float, float]:

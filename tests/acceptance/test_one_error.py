@@ -25,6 +25,7 @@ from tests.presets.test_machines import motor, specimen
 from tests.presets.test_moving_base import Storey
 from tests.presets.test_position_servo import servo
 from tests.presets.test_pressure_drive import CYLINDER
+from tests.presets.test_speed_servo import speeds
 from tests.presets.test_sprung_motor import machine as swinging
 from tests.presets.test_two_tanks import tanks
 from tests.short_form import short_form
@@ -119,6 +120,7 @@ MACHINES: dict[str, tuple[str, Callable[[], Matrix], tuple[str, ...]]] = {
     "a motor against a spring": ("sprung_motor", lambda: swinging(1), ()),
     "a storey": ("moving_base", lambda: Storey().measured("acceleration", 8.0), ()),
     "a servo": ("position_servo", lambda: servo(1), ()),
+    "a speed loop": ("speed_servo", speeds, ()),
     "a motor as a cylinder": ("open_valve", lambda: motor(5), ()),
     "a specimen": ("specimen", lambda: specimen(4), ()),
     "a specimen with an effect": ("specimen", lambda: specimen(4, friction=50.0), ("presliding_friction",)),

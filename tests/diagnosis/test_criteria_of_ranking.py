@@ -188,7 +188,7 @@ def test_a_search_that_left_a_tenth_of_the_power_begins_again(share, begins):
         trial_error=lambda _: 1.0,
     )
     moves: Any = SimpleNamespace(
-        models=models, report=lambda _: None, _best_of=lambda *_: None, _addable=lambda _: ["a", "b"]
+        models=models, most=4, report=lambda _: None, _best_of=lambda *_: None, _addable=lambda _: ["a", "b"]
     )
     base = SimpleNamespace(effects=(), error=float(np.sqrt(1.0 + 0.3**2)))
     fitted = SimpleNamespace(effects=("c",), error=float(np.sqrt(share + 0.3**2)))
