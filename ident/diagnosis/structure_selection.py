@@ -117,9 +117,9 @@ def _compared(
     first = min(good, key=lambda one: (one.machine in strange, one.parameters))
     with_effects = _with_an_effect_each(first, tried, report)
     lags = {model.name for model in models if has_no_parts(model)}
-    compared = [with_effects.get(one.machine, one) for one in tried]
+    compared = [with_effects.get(judged.machine, judged) for judged in tried]
     with_effects |= _more_effects(with_effects, _probabilities(compared, lags, strange), report)
-    compared = [with_effects.get(one.machine, one) for one in tried]
+    compared = [with_effects.get(judged.machine, judged) for judged in tried]
     probable = _probabilities(compared, lags, strange)
     best, why = _preferred(with_effects[first.machine], list(with_effects.values()), probable)
     compared.sort(key=lambda model: model.machine != best.machine)
