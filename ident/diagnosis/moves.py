@@ -344,13 +344,7 @@ class Moves:
         if not self.above_floor(selection):
             return None
         names = [candidate.effect for candidate in selection.ranking[: CRITERIA.selection.global_restarts]]
-
-        def restarted(name: str) -> list[FittedModel]:
-            return self.models.global_starts((*selection.base.effects, name))
-
-        restarts = each(counted(restarted, "searching further", lambda: len(names), self.report), names)
-        trials = (refit for refits in restarts for refit in refits)
-        return self._best_of(selection, self.models.leading(trials, self.models.trial_error(selection.fitted)))
+        return self._best_of(selection, self._global_trials(selection, names))
 
     def global_multistart(self, selection: Selection) -> Selection | None:
         """Begin again with one effect from the whole search space, where the records are short and little is explained.
@@ -364,16 +358,18 @@ class Moves:
             return None
         if not self.most or not self.models.is_short(base):
             return None
-        names = self._addable(base)
+        again = replace(selection, path=(base,), changes=selection.changes + 1)
+        return self._best_of(selection, self._global_trials(selection, self._addable(base)), again)
+
+    def _global_trials(self, selection: Selection, names: Sequence[str]) -> list[FittedModel]:
+        """The leading first refits of the base with each of these effects, from the whole search space."""
 
         def started(name: str) -> list[FittedModel]:
-            return self.models.global_starts((*base.effects, name))
+            return self.models.global_starts((*selection.base.effects, name))
 
-        restarts = each(counted(started, "searching further", lambda: len(names), self.report), names)
-        trials = (refit for refits in restarts for refit in refits)
-        leading = self.models.leading(trials, self.models.trial_error(selection.fitted))
-        again = replace(selection, path=(base,), changes=selection.changes + 1)
-        return self._best_of(selection, leading, again)
+        starts = each(counted(started, "searching further", lambda: len(names), self.report), names)
+        trials = (refit for refits in starts for refit in refits)
+        return self.models.leading(trials, self.models.trial_error(selection.fitted))
 
     def _best_of(
         self, selection: Selection, trials: Sequence[FittedModel], before: Selection | None = None

@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
+from ident.cached import cached_property
 from ident.diagnosis.criteria import CRITERIA
 from ident.fit.trial_runs import decimated, shortened
 from ident.run import Run
@@ -30,10 +31,12 @@ class TrialRecords:
 
     def of(self, samples: int) -> tuple[Run, ...]:
         """The runs with at most about `samples` samples in all."""
-        if 0 not in self._made:
-            self._made[0] = decimated(self.runs, self.band)
         made = self._made.get(samples)
-        return self._made.setdefault(samples, made or shortened(self._made[0], samples, self.whole))
+        return self._made.setdefault(samples, made or shortened(self._decimated, samples, self.whole))
+
+    @cached_property
+    def _decimated(self) -> tuple[Run, ...]:
+        return decimated(self.runs, self.band)
 
     def representing(self, residuals: Sequence[Array]) -> TrialRecords:
         """The same records, with each run whole of which the first part does not show its residual (n,) in `residuals`.

@@ -51,7 +51,8 @@ def _motion_turned(prepared: Prepared) -> tuple[Prepared, tuple[str, ...]]:
     matrix = prepared.matrix
     runs = matrix.of_use("fit") or matrix.runs
     told = [against for run in runs if (against := against_its_drive(run)) is not None]
-    if not all(told) if told else not a_motor_is_against(runs):
+    is_against = all(told) if told else a_motor_is_against(runs)
+    if not is_against:
         return prepared, ()
     said = (
         f"The {matrix.runs[0].output} is taken with the other sign: as recorded it goes against the force that drives "

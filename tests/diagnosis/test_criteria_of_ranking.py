@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from types import SimpleNamespace
 from typing import Any
 
@@ -173,6 +174,7 @@ def test_the_eight_best_of_the_first_ranking_are_started_from_anywhere():
     moves: Any = SimpleNamespace(
         above_floor=lambda _: True, models=models, report=lambda _: None, _best_of=lambda *_: None
     )
+    moves._global_trials = partial(Moves._global_trials, moves)
     Moves.global_restart(moves, a_selection(candidates=12))
     assert sorted(begun) == list("01234567")
 
@@ -190,6 +192,7 @@ def test_a_search_that_left_a_tenth_of_the_power_begins_again(share, begins):
     moves: Any = SimpleNamespace(
         models=models, most=4, report=lambda _: None, _best_of=lambda *_: None, _addable=lambda _: ["a", "b"]
     )
+    moves._global_trials = partial(Moves._global_trials, moves)
     base = SimpleNamespace(effects=(), error=float(np.sqrt(1.0 + 0.3**2)))
     fitted = SimpleNamespace(effects=("c",), error=float(np.sqrt(share + 0.3**2)))
     selection: Any = SimpleNamespace(base=base, fitted=fitted, path=(base, fitted), changes=0)
